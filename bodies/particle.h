@@ -1,0 +1,82 @@
+#pragma once
+
+/// \file
+/// Particles: bodies with a position only.
+
+#include <carom/core/body_kind.h>
+#include <carom/core/part.h>
+#include <carom/core/part_check.h>
+#include <carom/core/space.h>
+
+#include <limits>
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+template <int D>
+class ParticleKind;
+
+/// A point mass. Coordinates: its position; velocities: its velocity.
+template <int D>
+struct Particle {
+  static constexpr Role role = Role::body;
+  using Kind = ParticleKind<D>;
+
+  double mass = std::numeric_limits<double>::quiet_NaN();  ///< > 0 [kg]
+  Vec<D> position = Vec<D>::Zero();                        ///< at the start [m]
+  Vec<D> velocity = Vec<D>::Zero();                        ///< at the start [m/s]
+  bool contact = true;                                     ///< touches obstacles
+  MaterialId material{};                                   ///< for laws between materials
+};
+
+/// All particles of a system.
+template <int D>
+class CAROM_API ParticleKind final : public BodyKind {
+public:
+  static constexpr int part_dimension() { return D; }
+  static constexpr std::string_view part_label() { return "particle"; }
+
+  /// Checks and stores a particle. Throws ModelError.
+  void add(const Particle<D>& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<BodyKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const override;
+  void remove(Index slot) override;
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return D; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(masses_.size()); }
+  [[nodiscard]] Index q_size() const override { return D; }
+  [[nodiscard]] Index v_size() const override { return D; }
+  [[nodiscard]] bool has_orientation() const override { return false; }
+  [[nodiscard]] double mass(Index slot) const override { return masses_[slot]; }
+  [[nodiscard]] double length_scale(Index, Index) const override { return 1.0; }
+  [[nodiscard]] bool has_contact_point(Index slot) const override { return parts_[slot].contact; }
+  [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  void initial(Index slot, double* q, double* v) const override;
+  void rotations(Range, const double*, double*) const override {}
+  void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
+  void apply_inverse_mass(Range slots, const double* f, double* a) const override;
+  void apply_mass(Range slots, const double* v, double* p) const override;
+  [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  std::vector<double> masses_;
+  std::vector<Particle<D>> parts_;
+};
+
+extern template class ParticleKind<2>;
+extern template class ParticleKind<3>;
+
+}  // namespace generic
+
+namespace planar {
+using Particle = generic::Particle<2>;
+}
+namespace spatial {
+using Particle = generic::Particle<3>;
+}
+
+}  // namespace carom

@@ -1,0 +1,98 @@
+#include <carom/bodies/rigid_body.h>
+#include <carom/core/compensated_sum.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace carom::generic {
+
+void RigidBodyKind<2>::add(const RigidBody<2>& part, const PartCheck& check) {
+  check.positive(part.mass.mass, "mass", "kg");
+  check.positive(part.mass.inertia, "moment of inertia", "kg m^2");
+  // The body's frame has the centre of mass as origin; what is left by composing parts is rounding.
+  const double gyration_radius = std::sqrt(part.mass.inertia / part.mass.mass);
+  const Vec<2>& centre = part.mass.centre;
+  if (!(centre.norm() <= 1e3 * std::numeric_limits<double>::epsilon() * gyration_radius)) {
+    check.refuse("centre of mass", "(" + to_text(centre[0]) + ", " + to_text(centre[1]) + ") m",
+                 "the origin of the body's frame: use centred(), and shift the shapes by minus this centre");
+  }
+  check.finite({part.position.data(), 2}, "position", "m");
+  check.finite(part.angle, "angle", "rad");
+  check.finite({part.velocity.data(), 2}, "velocity", "m/s");
+  check.finite(part.spin, "spin", "rad/s");
+  parts_.push_back(part);
+}
+
+std::unique_ptr<BodyKind> RigidBodyKind<2>::clone() const { return std::make_unique<RigidBodyKind>(*this); }
+
+std::unique_ptr<BodyKind> RigidBodyKind<2>::arranged(std::span<const Index> order) const {
+  auto copy = std::make_unique<RigidBodyKind>();
+  copy->parts_.reserve(order.size());
+  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+  return copy;
+}
+
+void RigidBodyKind<2>::remove(Index slot) { parts_.erase(parts_.begin() + slot); }
+
+double RigidBodyKind<2>::length_scale(Index slot, Index i) const {
+  const MassProperties<2>& mass = parts_[slot].mass;
+  return i < 2 ? 1.0 : std::sqrt(mass.inertia / mass.mass);
+}
+
+void RigidBodyKind<2>::initial(Index slot, double* q, double* v) const {
+  const RigidBody<2>& part = parts_[slot];
+  Eigen::Map<Vec<2>>{q} = part.position;
+  q[2] = part.angle;
+  Eigen::Map<Vec<2>>{v} = part.velocity;
+  v[2] = part.spin;
+}
+
+void RigidBodyKind<2>::rotations(Range slots, const double* q, double* rotation) const {
+  for (Index i = 0; i < slots.size(); ++i) Space<2>::rotation(q + 3 * i + 2, rotation + 2 * i);
+}
+
+void RigidBodyKind<2>::advance(Range slots, const double* q0, const double* delta, double* q1) const {
+  for (Index i = 0; i < 3 * slots.size(); i += 3) {
+    q1[i] = q0[i] + delta[i];
+    q1[i + 1] = q0[i + 1] + delta[i + 1];
+    Space<2>::advance_orientation(q0 + i + 2, delta + i + 2, q1 + i + 2);
+  }
+}
+
+void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* a) const {
+  for (Index slot = slots.begin; slot < slots.end; ++slot, f += 3, a += 3) {
+    const MassProperties<2>& mass = parts_[slot].mass;
+    a[0] = f[0] / mass.mass;
+    a[1] = f[1] / mass.mass;
+    a[2] = f[2] / mass.inertia;
+  }
+}
+
+void RigidBodyKind<2>::apply_mass(Range slots, const double* v, double* p) const {
+  for (Index slot = slots.begin; slot < slots.end; ++slot, v += 3, p += 3) {
+    const MassProperties<2>& mass = parts_[slot].mass;
+    p[0] = v[0] * mass.mass;
+    p[1] = v[1] * mass.mass;
+    p[2] = v[2] * mass.inertia;
+  }
+}
+
+double RigidBodyKind<2>::kinetic_energy(Range slots, const double* v) const {
+  CompensatedSum sum;
+  for (Index slot = slots.begin; slot < slots.end; ++slot, v += 3) {
+    const MassProperties<2>& mass = parts_[slot].mass;
+    sum.add(0.5 * mass.mass * (v[0] * v[0] + v[1] * v[1]));
+    sum.add(0.5 * mass.inertia * v[2] * v[2]);
+  }
+  return sum.value();
+}
+
+void RigidBodyKind<2>::fingerprint(Fingerprint& print) const {
+  for (const RigidBody<2>& part : parts_) {
+    print.add(part.mass.mass);
+    print.add(part.mass.inertia);
+  }
+}
+
+}  // namespace carom::generic

@@ -1,0 +1,79 @@
+#pragma once
+
+/// \file
+/// Rigid bodies: position of the centre of mass and orientation.
+
+#include <carom/bodies/mass_properties.h>
+#include <carom/core/body_kind.h>
+#include <carom/core/part.h>
+#include <carom/core/part_check.h>
+#include <carom/core/space.h>
+
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+template <int D>
+class RigidBodyKind;
+
+/// A rigid body. Its frame has the centre of mass as origin. It touches nothing until it is given shapes.
+template <int D>
+struct RigidBody;
+
+/// In the plane. Coordinates: position and angle; velocities: velocity and spin.
+template <>
+struct RigidBody<2> {
+  static constexpr Role role = Role::body;
+  using Kind = RigidBodyKind<2>;
+
+  MassProperties<2> mass{};            ///< made by disc(), rod(), ... (required)
+  Vec<2> position = Vec<2>::Zero();    ///< of the centre of mass, at the start [m]
+  double angle = 0.0;                  ///< at the start, counter-clockwise [rad]
+  Vec<2> velocity = Vec<2>::Zero();    ///< of the centre of mass, at the start [m/s]
+  double spin = 0.0;                   ///< at the start, counter-clockwise [rad/s]
+};
+
+/// All planar rigid bodies of a system.
+template <>
+class CAROM_API RigidBodyKind<2> final : public BodyKind {
+public:
+  static constexpr int part_dimension() { return 2; }
+  static constexpr std::string_view part_label() { return "rigid body"; }
+
+  /// Checks and stores a body. Throws ModelError.
+  void add(const RigidBody<2>& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<BodyKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const override;
+  void remove(Index slot) override;
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return 2; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] Index q_size() const override { return 3; }
+  [[nodiscard]] Index v_size() const override { return 3; }
+  [[nodiscard]] bool has_orientation() const override { return true; }
+  [[nodiscard]] double mass(Index slot) const override { return parts_[slot].mass.mass; }
+  [[nodiscard]] double length_scale(Index slot, Index i) const override;
+  [[nodiscard]] bool has_contact_point(Index) const override { return false; }
+  [[nodiscard]] MaterialId material(Index) const override { return {}; }
+  void initial(Index slot, double* q, double* v) const override;
+  void rotations(Range slots, const double* q, double* rotation) const override;
+  void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
+  void apply_inverse_mass(Range slots, const double* f, double* a) const override;
+  void apply_mass(Range slots, const double* v, double* p) const override;
+  [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  std::vector<RigidBody<2>> parts_;
+};
+
+}  // namespace generic
+
+namespace planar {
+using RigidBody = generic::RigidBody<2>;
+}
+
+}  // namespace carom

@@ -1,0 +1,57 @@
+#pragma once
+
+/// \file
+/// Storage of planar shapes that touch a half-plane with rounded points.
+
+#include <carom/core/part.h>
+#include <carom/core/part_check.h>
+#include <carom/core/shape_kind.h>
+
+#include <vector>
+
+namespace carom::generic {
+
+/// All shapes of one description. `P` has body, material, label, check(PartCheck) and
+/// features(std::vector<RoundedPoint>&).
+template <class P>
+class FeatureShapeKind final : public ShapeKind {
+public:
+  static constexpr int part_dimension() { return P::dimension; }
+  static constexpr std::string_view part_label() { return P::label; }
+
+  /// Checks and stores a shape. Throws ModelError.
+  void add(const P& part, const PartCheck& check) {
+    check.oriented_body(part.body, "body");
+    check.material(part.material);
+    part.check(check);
+    parts_.push_back(part);
+  }
+
+  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override { return std::make_unique<FeatureShapeKind>(*this); }
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return P::dimension; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] BodyId body(Index slot) const override { return parts_[slot].body; }
+  [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  void rounded_points(Index slot, std::vector<RoundedPoint>& out) const override { parts_[slot].features(out); }
+  void fingerprint(Fingerprint& print) const override {
+    std::vector<RoundedPoint> points;
+    for (const P& part : parts_) {
+      print.add(std::uint64_t{part.body.serial});
+      print.add(std::uint64_t{part.material.serial});
+      points.clear();
+      part.features(points);
+      print.add(std::uint64_t{points.size()});
+      for (const RoundedPoint& point : points) {
+        print.add(point.centre);
+        print.add(point.radius);
+      }
+    }
+  }
+
+private:
+  std::vector<P> parts_;
+};
+
+}  // namespace carom::generic

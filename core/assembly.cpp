@@ -1,0 +1,214 @@
+#include <carom/core/assembly.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace carom {
+
+namespace {
+
+/// Sets of bodies that are joined, by serial number.
+class Unions {
+public:
+  explicit Unions(Index size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// The smaller number becomes the representative, so that the order of joins does not matter.
+  void join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+private:
+  std::vector<Index> parent_;
+};
+
+}  // namespace
+
+Assembly::Assembly(System system) : system_(std::move(system)) {
+  if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
+  order_bodies();
+  order_elements();
+}
+
+void Assembly::order_bodies() {
+  const auto& registry = system_.body_kinds();
+  const std::vector<Index> serials = registry.serials();
+  Unions unions(registry.next_serial());
+  std::vector<BodyId> ends;
+  for (const auto& entry : system_.force_kinds().entries()) {
+    for (Index element = 0; element < entry.serials.size(); ++element) {
+      ends.clear();
+      entry.kind->ends(element, ends);
+      std::erase(ends, ground);
+      for (std::size_t i = 1; i < ends.size(); ++i) unions.join(ends[0].serial, ends[i].serial);
+    }
+  }
+
+  // Islands by their first body, then kinds, then order of insertion.
+  struct Key {
+    Index island, kind, serial;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<Key> keys;
+  keys.reserve(serials.size());
+  for (const Index serial : serials) keys.push_back({unions.find(serial), registry.place(serial).entry, serial});
+  std::sort(keys.begin(), keys.end());
+
+  const auto kinds = static_cast<Index>(registry.entries().size());
+  std::vector<std::vector<Index>> order(kinds);
+  std::vector<BodySlot> slots;
+  slots.reserve(keys.size());
+  island_of_body_.assign(registry.next_serial(), none);
+  Index q = 0, v = 0, rotation = 0, root = none;
+  for (const Key& key : keys) {
+    const BodyKind& kind = *registry.entries()[key.kind].kind;
+    const auto body = static_cast<Index>(slots.size());
+    if (key.island != root) {
+      root = key.island;
+      islands_.push_back({{body, body}, {q, q}, {v, v}});
+      for (Index k = 0; k < kinds; ++k) {
+        const auto first = static_cast<Index>(order[k].size());
+        body_slots_.push_back({first, first});
+      }
+    }
+    BodySlot slot{key.serial, q, v, kind.q_size(), kind.v_size(), none, key.kind,
+                  static_cast<Index>(order[key.kind].size())};
+    if (kind.has_orientation()) {
+      slot.rotation = rotation;
+      rotation += kind.dimension() == 2 ? 2U : 9U;
+    }
+    slots.push_back(slot);
+    q += slot.q_size;
+    v += slot.v_size;
+    order[key.kind].push_back(registry.place(key.serial).slot);
+    Island& island = islands_.back();
+    island.bodies.end = body + 1;
+    island.q.end = q;
+    island.v.end = v;
+    ++body_slots_[(islands_.size() - 1) * kinds + key.kind].end;
+    island_of_body_[key.serial] = static_cast<Index>(islands_.size() - 1);
+  }
+  for (Index k = 0; k < kinds; ++k) body_kinds_.push_back(registry.entries()[k].kind->arranged(order[k]));
+
+  layout_ = std::make_shared<const Layout>(system_.dimension(), system_.token(), std::move(slots));
+  masses_.reserve(keys.size());
+  length_scales_.reserve(layout_->v_size());
+  for (const BodySlot& slot : layout_->bodies()) {
+    masses_.push_back(body_kinds_[slot.kind]->mass(slot.slot));
+    for (Index i = 0; i < slot.v_size; ++i) {
+      length_scales_.push_back(body_kinds_[slot.kind]->length_scale(slot.slot, i));
+    }
+  }
+}
+
+void Assembly::order_elements() {
+  const auto& entries = system_.force_kinds().entries();
+  const auto kinds = static_cast<Index>(entries.size());
+  element_slots_.assign(islands_.size() * kinds, {});
+  std::vector<BodyId> ends;
+  for (Index k = 0; k < kinds; ++k) {
+    const ForceKind& kind = *entries[k].kind;
+    std::vector<std::pair<Index, Index>> keys;  // (island, slot)
+    for (Index slot = 0; slot < kind.size(); ++slot) {
+      ends.clear();
+      kind.ends(slot, ends);
+      std::erase(ends, ground);
+      keys.emplace_back(ends.empty() ? 0 : island_of_body_[ends[0].serial], slot);
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<Index> order, serials;
+    for (const auto& [island, slot] : keys) {
+      Range& range = element_slots_[island * kinds + k];
+      if (range.empty()) range.begin = range.end = static_cast<Index>(order.size());
+      ++range.end;
+      order.push_back(slot);
+      serials.push_back(entries[k].serials[slot]);
+    }
+    if (kind.is_field()) {
+      for (Index island = 0; island < islands_.size(); ++island) element_slots_[island * kinds + k] = {0, kind.size()};
+    }
+    force_kinds_.push_back(kind.arranged(order, *layout_));
+    element_serials_.push_back(std::move(serials));
+  }
+}
+
+State Assembly::initial_state() const {
+  State state(layout_);
+  for (const BodySlot& slot : layout_->bodies()) {
+    body_kinds_[slot.kind]->initial(slot.slot, state.q.data() + slot.q, state.v.data() + slot.v);
+  }
+  return state;
+}
+
+Evaluation make_evaluation(const Assembly& assembly) {
+  Evaluation evaluation;
+  evaluation.rotation.assign(assembly.layout()->rotation_size(), 0.0);
+  evaluation.force.assign(assembly.layout()->v_size(), 0.0);
+  return evaluation;
+}
+
+void evaluate_positions(const Assembly& assembly, Index island, const StateView& state, Evaluation& out) {
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
+    if (kind.has_orientation()) kind.rotations(slots, state.q + q, out.rotation.data() + rotation);
+  });
+}
+
+void evaluate_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
+                    const Loads& loads) {
+  const Island& range = assembly.islands()[island];
+  for (double* array : {loads.conservative, loads.dissipative, loads.external}) {
+    std::fill(array + range.v.begin, array + range.v.end, 0.0);
+  }
+  const EvaluationContext at{assembly, state, evaluation, range.bodies};
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const Range elements = assembly.elements(island, kind);
+    if (!elements.empty()) assembly.force_kinds()[kind]->evaluate(at, elements, loads);
+  }
+}
+
+void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out) {
+  evaluate_positions(assembly, island, state, out);
+  double* const force = out.force.data();
+  evaluate_loads(assembly, island, state, out, {force, force, force});
+}
+
+void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
+                         const Evaluation& evaluation, StoredEnergies& out) {
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
+  });
+  const EvaluationContext at{assembly, state, evaluation, assembly.islands()[island].bodies};
+  for (Index k = 0; k < assembly.force_kinds().size(); ++k) {
+    const Range elements = assembly.elements(island, k);
+    const ForceKind& kind = *assembly.force_kinds()[k];
+    if (!elements.empty()) out[kind.stored_as()] += kind.potential(at, elements);
+  }
+}
+
+void check_state(const Assembly& assembly, const State& state) {
+  const Layout& layout = *assembly.layout();
+  const PartCheck check("state", assembly.system());
+  check.finite(state.time, "time", "s");
+  if (state.q.size() != layout.q_size() || state.v.size() != layout.v_size()) {
+    check.refuse("number of coordinates", std::to_string(state.q.size()) + " + " + std::to_string(state.v.size()),
+                 std::to_string(layout.q_size()) + " + " + std::to_string(layout.v_size()));
+  }
+  for (Index body = 0; body < layout.bodies().size(); ++body) {
+    const BodySlot& slot = layout.bodies()[body];
+    const auto all_finite = [](const double* numbers, Index count) {
+      return std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); });
+    };
+    if (all_finite(state.q.data() + slot.q, slot.q_size) && all_finite(state.v.data() + slot.v, slot.v_size)) continue;
+    const PartCheck body_check("state of " + assembly.system().name(layout.id(body)), assembly.system());
+    body_check.finite({state.q.data() + slot.q, slot.q_size}, "coordinate", "");
+    body_check.finite({state.v.data() + slot.v, slot.v_size}, "velocity", "");
+  }
+}
+
+}  // namespace carom

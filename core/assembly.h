@@ -1,0 +1,111 @@
+#pragma once
+
+/// \file
+/// A system made ready to run: bodies and elements ordered so that every island is a range of every array.
+
+#include <carom/core/export.h>
+#include <carom/core/force_kind.h>
+#include <carom/core/layout.h>
+#include <carom/core/state.h>
+#include <carom/core/system.h>
+
+#include <memory>
+#include <vector>
+
+namespace carom {
+
+/// Bodies joined by couplings. Ground, obstacles and fields join nothing.
+struct Island {
+  Range bodies;  ///< in the order of assembly
+  Range q;       ///< coordinates
+  Range v;       ///< velocities
+};
+
+/// Constant once made.
+class CAROM_API Assembly {
+public:
+  /// Orders, checks and counts. Throws ModelError for a system without bodies.
+  explicit Assembly(System system);
+
+  /// The model.
+  [[nodiscard]] const System& system() const { return system_; }
+  /// Places of bodies.
+  [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
+  /// Islands, in the order of assembly.
+  [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
+  /// Masses of the bodies, in the order of assembly [kg].
+  [[nodiscard]] const std::vector<double>& masses() const { return masses_; }
+  /// Lengths by which changes of the velocity coordinates are weighed (BodyKind::length_scale).
+  [[nodiscard]] const std::vector<double>& length_scales() const { return length_scales_; }
+
+  /// Kinds of bodies, arranged.
+  [[nodiscard]] const std::vector<std::unique_ptr<BodyKind>>& body_kinds() const { return body_kinds_; }
+  /// Slots of a kind that belong to an island.
+  [[nodiscard]] Range body_slots(Index island, Index kind) const {
+    return body_slots_[island * body_kinds_.size() + kind];
+  }
+  /// Kinds of force elements, arranged.
+  [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
+  /// Elements of a kind that act in an island.
+  [[nodiscard]] Range elements(Index island, Index kind) const {
+    return element_slots_[island * force_kinds_.size() + kind];
+  }
+  /// Identity of an arranged element.
+  [[nodiscard]] ElementId element_id(Index kind, Index slot) const {
+    return {element_serials_[kind][slot], system_.token()};
+  }
+
+  /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of an island, kind by kind.
+  template <class F>
+  void for_bodies(Index island, F&& f) const {
+    Index body = islands_[island].bodies.begin;
+    for (Index kind = 0; kind < body_kinds_.size(); ++kind) {
+      const Range slots = body_slots(island, kind);
+      if (slots.empty()) continue;
+      const BodySlot& first = layout_->bodies()[body];
+      f(*body_kinds_[kind], slots, first.q, first.v, first.rotation);
+      body += slots.size();
+    }
+  }
+
+  /// The state described by the system, at time 0.
+  [[nodiscard]] State initial_state() const;
+
+private:
+  void order_bodies();
+  void order_elements();
+
+  System system_;
+  std::shared_ptr<const Layout> layout_;
+  std::vector<Island> islands_;
+  std::vector<Index> island_of_body_;
+  std::vector<double> masses_, length_scales_;
+  std::vector<std::unique_ptr<BodyKind>> body_kinds_;
+  std::vector<Range> body_slots_;
+  std::vector<std::unique_ptr<ForceKind>> force_kinds_;
+  std::vector<Range> element_slots_;
+  std::vector<std::vector<Index>> element_serials_;
+};
+
+/// Fills the position group of `out` for one island.
+CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
+
+/// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
+/// `evaluation` must be up to date. Arrays may coincide.
+CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
+                              const Evaluation& evaluation, const Loads& loads);
+
+/// Position group and the sum of all loads (Evaluation::force) of one island.
+CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
+
+/// Adds the stored energies of one island. The position group of `evaluation` must be up to date.
+CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
+                                   const Evaluation& evaluation, StoredEnergies& out);
+
+/// Sizes a workspace for an assembly.
+[[nodiscard]] CAROM_API Evaluation make_evaluation(const Assembly& assembly);
+
+/// Demands a state of this layout with finite numbers. Throws ModelError naming the body and the value.
+CAROM_API void check_state(const Assembly& assembly, const State& state);
+
+}  // namespace carom

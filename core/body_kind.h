@@ -1,0 +1,68 @@
+#pragma once
+
+/// \file
+/// What a kind of body tells the rest of the library. Bodies of one kind are stored together; every call is
+/// for a range of them.
+
+#include <carom/core/export.h>
+#include <carom/core/fingerprint.h>
+#include <carom/core/ids.h>
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace carom {
+
+/// All bodies of one kind. Slots are the places of bodies within the kind; `q` and `v` point at the numbers
+/// of the first body of a range, bodies of a range being consecutive in every array.
+class CAROM_API BodyKind {
+public:
+  virtual ~BodyKind() = default;
+
+  /// A copy.
+  [[nodiscard]] virtual std::unique_ptr<BodyKind> clone() const = 0;
+  /// A copy with the bodies named by `order`, in that order.
+  [[nodiscard]] virtual std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const = 0;
+  /// Removes the body at a slot; later ones move up.
+  virtual void remove(Index slot) = 0;
+
+  /// Name used in messages, e.g. "particle".
+  [[nodiscard]] virtual std::string_view label() const = 0;
+  /// 2 or 3.
+  [[nodiscard]] virtual int dimension() const = 0;
+  /// Number of bodies.
+  [[nodiscard]] virtual Index size() const = 0;
+  /// Coordinates of one body.
+  [[nodiscard]] virtual Index q_size() const = 0;
+  /// Velocities of one body.
+  [[nodiscard]] virtual Index v_size() const = 0;
+  /// True if coordinates include an orientation.
+  [[nodiscard]] virtual bool has_orientation() const = 0;
+  /// Mass [kg].
+  [[nodiscard]] virtual double mass(Index slot) const = 0;
+  /// Length by which a change of velocity coordinate `i` is weighed: 1 for translations, the radius of
+  /// gyration [m] for rotations.
+  [[nodiscard]] virtual double length_scale(Index slot, Index i) const = 0;
+  /// True if the body touches obstacles at its centre (a particle unless told otherwise).
+  [[nodiscard]] virtual bool has_contact_point(Index slot) const = 0;
+  /// Material of that contact point.
+  [[nodiscard]] virtual MaterialId material(Index slot) const = 0;
+
+  /// Writes coordinates and velocities as described.
+  virtual void initial(Index slot, double* q, double* v) const = 0;
+  /// Writes the rotations of a range (nothing for bodies without orientation).
+  virtual void rotations(Range slots, const double* q, double* rotation) const = 0;
+  /// q1 = q0 advanced along the motion whose velocity times time is `delta`.
+  virtual void advance(Range slots, const double* q0, const double* delta, double* q1) const = 0;
+  /// a = M^-1 f.
+  virtual void apply_inverse_mass(Range slots, const double* f, double* a) const = 0;
+  /// p = M v.
+  virtual void apply_mass(Range slots, const double* v, double* p) const = 0;
+  /// Kinetic energy of a range [J].
+  [[nodiscard]] virtual double kinetic_energy(Range slots, const double* v) const = 0;
+  /// Adds all that distinguishes this kind's bodies.
+  virtual void fingerprint(Fingerprint& print) const = 0;
+};
+
+}  // namespace carom

@@ -1,0 +1,146 @@
+#include <carom/core/assembly.h>
+#include <carom/core/dot.h>
+#include <carom/core/part_check.h>
+#include <carom/core/system.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+/// Text as a quoted string. Graphviz reads backslashes and entities in labels, so both are escaped.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    switch (letter) {
+      case '"':
+        result += "\\\"";
+        break;
+      case '\\':
+        result += "\\\\";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '\n':
+        result += "\\n";
+        break;
+      default:
+        // Other control characters may not stand in an SVG file.
+        result += static_cast<unsigned char>(letter) < 0x20 ? ' ' : letter;
+    }
+  }
+  return result + "\"";
+}
+
+std::string node(BodyId id) { return id == ground ? "ground" : "body" + std::to_string(id.serial); }
+std::string node(ElementId id) { return "element" + std::to_string(id.serial); }
+std::string node(ShapeId id) { return "shape" + std::to_string(id.serial); }
+std::string node(ObstacleId id) { return "obstacle" + std::to_string(id.serial); }
+
+/// Writes the picture of one system, statement by statement.
+class Picture {
+public:
+  explicit Picture(const System& system) : system_(system) {}
+
+  std::string draw() {
+    text_ =
+        "graph carom {\n  node [fontname=\"sans-serif\"];\n  edge [fontname=\"sans-serif\", fontsize=10];\n";
+    draw_islands();
+    draw_elements();
+    draw_obstacles();
+    if (ground_used_) text_ += "  ground [label=\"ground\", shape=box, style=filled, fillcolor=lightgrey];\n";
+    return text_ + "}\n";
+  }
+
+private:
+  void draw_islands() {
+    if (system_.bodies().empty()) return;
+    const Assembly assembly(system_);
+    for (std::size_t i = 0; i < assembly.islands().size(); ++i) {
+      const Range bodies = assembly.islands()[i].bodies;
+      const std::string number = std::to_string(i);
+      text_ += "  subgraph cluster_" + number + " {\n    label=\"island " + number + "\"; color=lightgrey;\n";
+      std::vector<BodyId> ids;
+      for (Index body = bodies.begin; body < bodies.end; ++body) ids.push_back(assembly.layout()->id(body));
+      std::sort(ids.begin(), ids.end());  // the order in which they came
+      for (const BodyId id : ids) draw_body(id);
+      text_ += "  }\n";
+    }
+  }
+
+  void draw_body(BodyId id) {
+    const auto place = system_.body_kinds().place(id.serial);
+    const BodyKind& kind = system_.body_kinds().kind_of(id.serial);
+    text_ += "    " + node(id) +
+             " [label=" + quoted(system_.name(id) + "\n" + to_text(kind.mass(place.slot)) + " kg") +
+             (kind.has_orientation() ? ", shape=box, style=rounded];\n" : ", shape=ellipse];\n");
+    for (const ShapeId shape : system_.shapes()) {
+      const auto shape_place = system_.shape_kinds().place(shape.serial);
+      if (system_.shape_kinds().kind_of(shape.serial).body(shape_place.slot) != id) continue;
+      text_ += "    " + node(shape) + " [label=" + quoted(system_.name(shape)) + ", shape=hexagon];\n";
+      text_ += "    " + node(id) + " -- " + node(shape) + " [style=dotted];\n";
+    }
+  }
+
+  void draw_elements() {
+    std::vector<BodyId> ends;
+    for (const ElementId id : system_.elements()) {
+      const ForceKind& kind = system_.force_kinds().kind_of(id.serial);
+      const std::string label = " [label=" + quoted(system_.name(id));
+      ends.clear();
+      kind.ends(system_.force_kinds().place(id.serial).slot, ends);
+      ground_used_ = ground_used_ || std::find(ends.begin(), ends.end(), ground) != ends.end();
+      if (kind.is_field()) {
+        text_ += "  " + node(id) + label + ", shape=note];\n";
+      } else if (ends.size() == 2) {
+        text_ += "  " + node(ends[0]) + " -- " + node(ends[1]) + label + "];\n";
+      } else {
+        text_ +=
+            "  " + node(id) + label + (ends.size() == 1 ? ", shape=plaintext];\n" : ", shape=diamond];\n");
+        for (const BodyId end : ends) text_ += "  " + node(id) + " -- " + node(end) + ";\n";
+      }
+    }
+  }
+
+  void draw_obstacles() {
+    for (const ObstacleId obstacle : system_.obstacles()) {
+      text_ += "  " + node(obstacle) + " [label=" + quoted(system_.name(obstacle)) +
+               ", shape=box, style=filled, fillcolor=lightgrey];\n";
+      for (const BodyId body : system_.bodies()) {
+        const Index slot = system_.body_kinds().place(body.serial).slot;
+        const BodyKind& kind = system_.body_kinds().kind_of(body.serial);
+        if (kind.has_contact_point(slot)) draw_contact(node(body), kind.material(slot), obstacle);
+      }
+      for (const ShapeId shape : system_.shapes()) {
+        const Index slot = system_.shape_kinds().place(shape.serial).slot;
+        draw_contact(node(shape), system_.shape_kinds().kind_of(shape.serial).material(slot), obstacle);
+      }
+    }
+  }
+
+  void draw_contact(const std::string& from, MaterialId material, ObstacleId obstacle) {
+    const std::optional<Surface> law = system_.law(material, obstacle);
+    text_ += "  " + from + " -- " + node(obstacle) + " [style=dashed, label=";
+    if (law) {
+      text_ += quoted("mu " + to_text(law->friction) + ", e_n " + to_text(law->normal_restitution) +
+                      ", e_t " + to_text(law->tangential_restitution)) +
+               "];\n";
+    } else {
+      text_ += "\"no law\", color=red, fontcolor=red];\n";
+    }
+  }
+
+  const System& system_;
+  std::string text_;
+  bool ground_used_ = false;
+};
+
+}  // namespace
+
+std::string to_dot(const System& system) { return Picture(system).draw(); }
+
+}  // namespace carom

@@ -1,0 +1,61 @@
+#pragma once
+
+/// \file
+/// The energy account. It is fed by what acted (impulses and forces), never by differences of the total, so
+/// that its residual checks the library's bookkeeping.
+
+#include <carom/core/compensated_sum.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+
+#include <array>
+#include <iosfwd>
+
+namespace carom {
+
+/// Stored energies now, and what flowed since the start:
+///     stored = initial + sum of gains - sum of losses + residual.
+class CAROM_API EnergyLedger {
+public:
+  /// Opens the account.
+  void open(const StoredEnergies& stored);
+  /// Books a step: what flowed, and what is stored after it.
+  void book(const EnergyFlows& flows, const StoredEnergies& stored);
+
+  /// Stored energy of one form now [J].
+  [[nodiscard]] double stored(StoredEnergy term) const { return stored_[term]; }
+  /// All stored energies [J].
+  [[nodiscard]] const StoredEnergies& stored() const { return stored_; }
+  /// Kinetic energy [J].
+  [[nodiscard]] double kinetic() const { return stored_[StoredEnergy::kinetic]; }
+  /// Potential energy of all kinds [J].
+  [[nodiscard]] double potential() const { return stored_.potential(); }
+  /// Kinetic and potential energy [J].
+  [[nodiscard]] double total() const { return stored_.total(); }
+  /// Total when the account was opened [J].
+  [[nodiscard]] double initial() const { return initial_; }
+  /// What flowed by one way since the start [J].
+  [[nodiscard]] double flow(EnergyFlow term) const { return flows_[static_cast<std::size_t>(term)].value(); }
+  /// Sum of the losses since the start [J].
+  [[nodiscard]] double lost() const;
+  /// What the account cannot explain [J]: zero but for rounding if the bookkeeping is right.
+  [[nodiscard]] double residual() const;
+  /// The largest term that entered so far [J], by which the residual is judged.
+  [[nodiscard]] double scale() const { return scale_; }
+
+  /// Everything needed to go on bit for bit, in a fixed order.
+  static constexpr std::size_t saved_size = stored_energy_count + 2 + 2 * energy_flow_count;
+  [[nodiscard]] std::array<double, saved_size> save() const;
+  void load(const std::array<double, saved_size>& numbers);
+
+private:
+  StoredEnergies stored_;
+  double initial_ = 0.0;
+  double scale_ = 0.0;
+  std::array<CompensatedSum, energy_flow_count> flows_{};
+};
+
+/// Writes the account as a table of terms that are not zero.
+CAROM_API std::ostream& operator<<(std::ostream& out, const EnergyLedger& ledger);
+
+}  // namespace carom

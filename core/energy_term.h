@@ -1,0 +1,80 @@
+#pragma once
+
+/// \file
+/// The terms of the energy account.
+
+#include <carom/core/export.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace carom {
+
+/// Forms in which energy is stored.
+enum class StoredEnergy : std::uint8_t { kinetic, gravity, elastic, potential };
+/// Number of forms of stored energy.
+inline constexpr std::size_t stored_energy_count = 4;
+
+/// Ways by which energy enters or leaves the store. All but `external` and `intervention` are counted as
+/// losses: positive where energy is lost.
+enum class EnergyFlow : std::uint8_t {
+  external,                 ///< work of prescribed loads, drivers and moving obstacles (a gain)
+  intervention,             ///< brought in by edits of the model or of the state (a gain)
+  dashpot,                  ///< lost in dashpots
+  impact_normal,            ///< lost in the normal direction of impacts
+  impact_tangential,        ///< lost in the tangential direction of impacts
+  contact_normal,           ///< normal work of lasting contact
+  sliding,                  ///< tangential work of lasting contact
+  joint_friction,           ///< lost in dry friction of joints
+  rolling,                  ///< lost in rolling resistance
+  accumulation,             ///< thrown away where an accumulation of impacts is closed
+  projection,               ///< taken out by moving bodies back onto constraints
+  mode_switch,              ///< taken out when the mode of integration is changed
+  coupling_discretisation,  ///< -(change of potential energy + work of the couplings over the steps)
+};
+/// Number of ways.
+inline constexpr std::size_t energy_flow_count = 13;
+
+/// Name of a term, as used in tables and files: "kinetic", "impact_normal", ...
+[[nodiscard]] CAROM_API std::string_view to_string(StoredEnergy term);
+[[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);
+
+/// True for the flows that are counted as gains.
+[[nodiscard]] constexpr bool is_gain(EnergyFlow flow) {
+  return flow == EnergyFlow::external || flow == EnergyFlow::intervention;
+}
+
+/// Energies stored, by form [J].
+struct StoredEnergies {
+  std::array<double, stored_energy_count> values{};
+
+  [[nodiscard]] double& operator[](StoredEnergy term) { return values[static_cast<std::size_t>(term)]; }
+  [[nodiscard]] double operator[](StoredEnergy term) const { return values[static_cast<std::size_t>(term)]; }
+  /// Sum of all forms.
+  [[nodiscard]] double total() const {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return sum;
+  }
+  /// Sum of all forms but the kinetic energy.
+  [[nodiscard]] double potential() const {
+    // Not the total less the kinetic energy: that would round at the size of the kinetic energy.
+    double sum = 0.0;
+    for (std::size_t i = 0; i < stored_energy_count; ++i) {
+      if (static_cast<StoredEnergy>(i) != StoredEnergy::kinetic) sum += values[i];
+    }
+    return sum;
+  }
+};
+
+/// Energies that flowed during a step, by way [J].
+struct EnergyFlows {
+  std::array<double, energy_flow_count> values{};
+
+  [[nodiscard]] double& operator[](EnergyFlow term) { return values[static_cast<std::size_t>(term)]; }
+  [[nodiscard]] double operator[](EnergyFlow term) const { return values[static_cast<std::size_t>(term)]; }
+};
+
+}  // namespace carom

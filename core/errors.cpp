@@ -1,0 +1,15 @@
+#include <carom/core/errors.h>
+
+#include <utility>
+
+namespace carom {
+
+SolverError::SolverError(const std::string& message, SolverFailure failure)
+    : Error(message), failure_(std::move(failure)) {}
+
+const ContactProblem& SolverError::problem() const {
+  if (!has_problem()) throw std::logic_error("SolverError::problem: no contact problem is attached");
+  return *failure_.problem;
+}
+
+}  // namespace carom

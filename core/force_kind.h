@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// What a kind of coupling or load tells the rest of the library. Elements of one kind are stored together;
+/// every call is for the elements of one island.
+
+#include <carom/core/energy_term.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/export.h>
+#include <carom/core/fingerprint.h>
+#include <carom/core/ids.h>
+#include <carom/core/state.h>
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+class Assembly;
+
+/// Where elements are evaluated.
+struct EvaluationContext {
+  const Assembly& assembly;        ///< the model
+  StateView state;                 ///< the state
+  const Evaluation& evaluation;    ///< its derived quantities; those of position are up to date
+  Range bodies;                    ///< bodies of the island, in the order of assembly
+};
+
+/// One entry of the derivative of the loads of an element. Entries at the same place add up.
+struct LoadDerivative {
+  Index row = 0;             ///< velocity coordinate the load acts on
+  Index column = 0;          ///< velocity coordinate along which position or velocity changes
+  double by_position = 0.0;  ///< d load / d position along that coordinate
+  double by_velocity = 0.0;  ///< d load / d velocity
+};
+
+/// All elements of one kind.
+class CAROM_API ForceKind {
+public:
+  virtual ~ForceKind() = default;
+
+  /// A copy.
+  [[nodiscard]] virtual std::unique_ptr<ForceKind> clone() const = 0;
+  /// A copy with the elements named by `order`, in that order, and their ends looked up in `layout`.
+  [[nodiscard]] virtual std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
+                                                            const Layout& layout) const = 0;
+  /// Removes an element; later ones move up.
+  virtual void remove(Index slot) = 0;
+
+  /// Name used in messages, e.g. "spring-damper".
+  [[nodiscard]] virtual std::string_view label() const = 0;
+  /// 2 or 3, 0 if it fits both.
+  [[nodiscard]] virtual int dimension() const = 0;
+  /// Number of elements.
+  [[nodiscard]] virtual Index size() const = 0;
+  /// True if each element acts on every body (gravity); such elements join no islands.
+  [[nodiscard]] virtual bool is_field() const { return false; }
+  /// Appends the bodies an element acts on (ground included, nothing for a field).
+  virtual void ends(Index element, std::vector<BodyId>& out) const = 0;
+  /// Form of energy that potential() counts as.
+  [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
+
+  /// Adds the loads of a range of elements on the bodies of one island.
+  virtual void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const = 0;
+  /// Potential energy of a range of elements [J].
+  [[nodiscard]] virtual double potential(const EvaluationContext& at, Range elements) const = 0;
+  /// True if derivatives() is overridden by closed forms.
+  [[nodiscard]] virtual bool has_derivatives() const { return false; }
+  /// Appends the derivatives of the loads of one element. By central differences unless overridden; for many
+  /// elements DifferenceDerivatives is cheaper.
+  virtual void derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const;
+  /// Adds all that distinguishes this kind's elements (functions cannot).
+  virtual void fingerprint(Fingerprint& print) const = 0;
+};
+
+}  // namespace carom

@@ -1,0 +1,76 @@
+#pragma once
+
+/// \file
+/// What makes a struct a part of a system: it names its role, and its kind where it has one of its own.
+
+#include <carom/core/body_kind.h>
+#include <carom/core/force_kind.h>
+#include <carom/core/ids.h>
+#include <carom/core/obstacle_kind.h>
+#include <carom/core/part_check.h>
+#include <carom/core/shape_kind.h>
+
+#include <concepts>
+#include <cstdint>
+
+namespace carom {
+
+/// What a part is in the graph of a system.
+enum class Role : std::uint8_t {
+  body,      ///< a node
+  force,     ///< an edge that pushes, or a load
+  shape,     ///< geometry fixed to a body
+  obstacle,  ///< geometry fixed to the ground
+};
+
+/// Interface and identity that belong to a role.
+template <Role R>
+struct RoleTraits;
+template <>
+struct RoleTraits<Role::body> {
+  using Interface = BodyKind;
+  using Identity = BodyId;
+};
+template <>
+struct RoleTraits<Role::force> {
+  using Interface = ForceKind;
+  using Identity = ElementId;
+};
+template <>
+struct RoleTraits<Role::shape> {
+  using Interface = ShapeKind;
+  using Identity = ShapeId;
+};
+template <>
+struct RoleTraits<Role::obstacle> {
+  using Interface = ObstacleKind;
+  using Identity = ObstacleId;
+};
+
+template <class P>
+class ForceElementKind;
+
+/// The kind that stores a part: its own `P::Kind`, or for force elements without one a kind that calls the
+/// element's own functions (core/force_element.h).
+template <class P>
+struct KindOf {
+  using type = typename P::Kind;
+};
+template <class P>
+  requires(P::role == Role::force && !requires { typename P::Kind; })
+struct KindOf<P> {
+  using type = ForceElementKind<P>;
+};
+
+/// A part: has a role and a kind that takes it.
+template <class P>
+concept Part = requires {
+  { P::role } -> std::convertible_to<Role>;
+  typename KindOf<P>::type;
+} && requires(typename KindOf<P>::type& kind, const P& part, const PartCheck& check) { kind.add(part, check); };
+
+/// Identity that a system gives to a part.
+template <class P>
+using IdOf = typename RoleTraits<P::role>::Identity;
+
+}  // namespace carom

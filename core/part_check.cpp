@@ -1,0 +1,92 @@
+#include <carom/core/part_check.h>
+
+#include <carom/core/errors.h>
+#include <carom/core/surface.h>
+#include <carom/core/system.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace carom {
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+namespace {
+
+std::string with_unit(double value, std::string_view unit) {
+  std::string text = to_text(value);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
+}
+
+}  // namespace
+
+void PartCheck::refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const {
+  std::string message = part_;
+  message.append(": ").append(quantity).append(" is ").append(value).append("; allowed: ").append(allowed);
+  throw ModelError(message);
+}
+
+void PartCheck::finite(double value, std::string_view quantity, std::string_view unit) const {
+  if (!std::isfinite(value)) refuse(quantity, with_unit(value, unit), "a finite number");
+}
+
+void PartCheck::finite(std::span<const double> values, std::string_view quantity, std::string_view unit) const {
+  for (const double value : values) finite(value, quantity, unit);
+}
+
+void PartCheck::positive(double value, std::string_view quantity, std::string_view unit) const {
+  if (!(std::isfinite(value) && value > 0.0)) refuse(quantity, with_unit(value, unit), "finite and > 0");
+}
+
+void PartCheck::non_negative(double value, std::string_view quantity, std::string_view unit) const {
+  if (!(std::isfinite(value) && value >= 0.0)) refuse(quantity, with_unit(value, unit), "finite and >= 0");
+}
+
+void PartCheck::between(double value, double lower, double upper, std::string_view quantity) const {
+  if (value >= lower && value <= upper) return;
+  refuse(quantity, to_text(value), "in [" + to_text(lower) + ", " + to_text(upper) + "]");
+}
+
+void PartCheck::surface(const Surface& surface) const {
+  non_negative(surface.friction, "friction", "");
+  between(surface.normal_restitution, 0.0, 1.0, "normal_restitution");
+  between(surface.tangential_restitution, 0.0, 1.0, "tangential_restitution");
+}
+
+void PartCheck::body(BodyId id, std::string_view quantity, bool may_be_ground) const {
+  if (id == ground) {
+    if (!may_be_ground) refuse(quantity, "ground", "a body of this system");
+    return;
+  }
+  if (!id.valid()) refuse(quantity, "not given", "a body of this system");
+  if (id.token != system_->token()) refuse(quantity, "a body of another system", "a body of this system");
+  if (!system_->contains(id)) refuse(quantity, "a body that was removed", "a body of this system");
+}
+
+void PartCheck::oriented_body(BodyId id, std::string_view quantity) const {
+  body(id, quantity, false);
+  if (!system_->has_orientation(id)) {
+    refuse(quantity, system_->name(id), "a rigid body (a particle has no orientation)");
+  }
+}
+
+void PartCheck::different_ends(BodyId from, BodyId to) const {
+  if (from == to) {
+    refuse("to", from == ground ? "ground, as from" : system_->name(to) + ", as from", "another body than from");
+  }
+}
+
+void PartCheck::material(MaterialId id) const {
+  if (!id.valid()) return;
+  if (id.token != system_->token() || !system_->contains(id)) {
+    refuse("material", "unknown", "a material of this system");
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,60 @@
+#pragma once
+
+/// \file
+/// Checks of a part as it enters a system. A failed check throws a ModelError that names the part, the
+/// quantity, its value and what is allowed.
+
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace carom {
+
+class System;
+struct Surface;
+
+/// A number as a reader wants it: the shortest text that reads back to the same double.
+[[nodiscard]] CAROM_API std::string to_text(double value);
+
+/// Checks one part. `part` is the text by which messages name it, e.g. "particle 'upper'".
+class CAROM_API PartCheck {
+public:
+  PartCheck(std::string part, const System& system) : part_(std::move(part)), system_(&system) {}
+
+  /// Name of the part in messages.
+  [[nodiscard]] const std::string& part() const { return part_; }
+
+  /// Throws the ModelError "<part>: <quantity> is <value>; allowed: <allowed>".
+  [[noreturn]] void refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const;
+
+  /// Demands a finite number.
+  void finite(double value, std::string_view quantity, std::string_view unit) const;
+  /// Demands finite numbers.
+  void finite(std::span<const double> values, std::string_view quantity, std::string_view unit) const;
+  /// Demands a finite number > 0.
+  void positive(double value, std::string_view quantity, std::string_view unit) const;
+  /// Demands a finite number >= 0.
+  void non_negative(double value, std::string_view quantity, std::string_view unit) const;
+  /// Demands a number in [lower, upper].
+  void between(double value, double lower, double upper, std::string_view quantity) const;
+  /// Demands coefficients of a contact law that are possible.
+  void surface(const Surface& surface) const;
+  /// Demands a body of this system (or `ground` where `may_be_ground`).
+  void body(BodyId id, std::string_view quantity, bool may_be_ground) const;
+  /// Demands a body of this system that has an orientation.
+  void oriented_body(BodyId id, std::string_view quantity) const;
+  /// Demands two ends that are not on one body and not both on the ground.
+  void different_ends(BodyId from, BodyId to) const;
+  /// Demands a material of this system, or none.
+  void material(MaterialId id) const;
+
+private:
+  std::string part_;
+  const System* system_;
+};
+
+}  // namespace carom

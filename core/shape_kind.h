@@ -1,0 +1,41 @@
+#pragma once
+
+/// \file
+/// What a kind of shape tells the rest of the library.
+
+#include <carom/core/export.h>
+#include <carom/core/fingerprint.h>
+#include <carom/core/ids.h>
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// A point fixed to a body with a radius around it: what a half-plane can touch of a convex shape.
+struct RoundedPoint {
+  std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
+  double radius = 0.0;             ///< [m]
+};
+
+/// All shapes of one kind.
+class CAROM_API ShapeKind {
+public:
+  virtual ~ShapeKind() = default;
+  [[nodiscard]] virtual std::unique_ptr<ShapeKind> clone() const = 0;  ///< a copy
+  virtual void remove(Index slot) = 0;                                 ///< removes a shape; later ones move up
+
+  [[nodiscard]] virtual std::string_view label() const = 0;        ///< name used in messages
+  [[nodiscard]] virtual int dimension() const = 0;                 ///< 2 or 3
+  [[nodiscard]] virtual Index size() const = 0;                    ///< number of shapes
+  [[nodiscard]] virtual BodyId body(Index slot) const = 0;         ///< the body it is fixed to
+  [[nodiscard]] virtual MaterialId material(Index slot) const = 0; ///< its material
+  /// Appends the features that may touch a half-plane, in a fixed order (their places are feature numbers).
+  virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;
+  /// Adds all that distinguishes this kind's shapes.
+  virtual void fingerprint(Fingerprint& print) const = 0;
+};
+
+}  // namespace carom

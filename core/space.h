@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// What truly differs between the plane and space: rotation, spin, lever, tangents. Everything else in the
+/// library is written once.
+///
+/// Coordinates of a body begin with the position of its centre of mass (D numbers), its velocities with the
+/// velocity of the centre of mass; a body with an orientation appends orientation and spin.
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+/// Small vector without alignment demands, so that it may cross the library's boundary.
+template <int D>
+using Vec = Eigen::Matrix<double, D, 1, Eigen::DontAlign>;
+
+/// Small matrix without alignment demands.
+template <int Rows, int Columns = Rows>
+using Mat = Eigen::Matrix<double, Rows, Columns, Eigen::DontAlign>;
+
+template <int D>
+struct Space;
+
+/// The plane. Angles in radians, counter-clockwise positive.
+template <>
+struct Space<2> {
+  static constexpr int dimension = 2;
+  static constexpr bool has_orientation = true;  ///< bodies may have an orientation
+  static constexpr int orientation_size = 1;  ///< the angle
+  static constexpr int spin_size = 1;         ///< the angular velocity
+  static constexpr int rotation_size = 2;     ///< cosine and sine of the angle
+  static constexpr int tangents = 1;
+
+  /// Writes cosine and sine of the angle.
+  static void rotation(const double* orientation, double* out) {
+    out[0] = std::cos(orientation[0]);
+    out[1] = std::sin(orientation[0]);
+  }
+  /// Vector fixed to the body, seen from the fixed frame.
+  static Vec<2> rotate(const double* rotation, const Vec<2>& local) {
+    return {rotation[0] * local[0] - rotation[1] * local[1], rotation[1] * local[0] + rotation[0] * local[1]};
+  }
+  /// Velocity omega x r of the end of the lever r.
+  static Vec<2> lever_velocity(const double* spin, const Vec<2>& r) { return {-spin[0] * r[1], spin[0] * r[0]}; }
+  /// Adds the torque r x f.
+  static void add_torque(const Vec<2>& r, const Vec<2>& f, double* torque) { torque[0] += r[0] * f[1] - r[1] * f[0]; }
+  /// Orientation after the rotation vector `delta` (spin times time).
+  static void advance_orientation(const double* from, const double* delta, double* to) { to[0] = from[0] + delta[0]; }
+  /// Tangent of a contact: the normal turned clockwise by 90 degrees (Johansson 1999, figure 1).
+  static std::array<Vec<2>, 1> tangent_frame(const Vec<2>& n) { return {Vec<2>(n[1], -n[0])}; }
+  /// Row of a contact velocity a.(v + omega x r) with respect to the spin.
+  static Vec<1> spin_row(const Vec<2>& a, const Vec<2>& r) { return Vec<1>(r[0] * a[1] - r[1] * a[0]); }
+};
+
+/// Space, as far as particles need it.
+template <>
+struct Space<3> {
+  static constexpr int dimension = 3;
+  static constexpr bool has_orientation = false;  ///< rigid bodies in space are not there yet
+  static constexpr int tangents = 2;
+
+  /// Two tangents of a contact that form a right-handed frame (t1, t2, n); the first lies along the axis
+  /// least aligned with the normal.
+  static std::array<Vec<3>, 2> tangent_frame(const Vec<3>& n) {
+    int axis = 0;
+    n.cwiseAbs().minCoeff(&axis);
+    Vec<3> first = Vec<3>::Unit(axis) - n[axis] * n;
+    first.normalize();
+    return {first, Vec<3>(n[1] * first[2] - n[2] * first[1], n[2] * first[0] - n[0] * first[2],
+                          n[0] * first[1] - n[1] * first[0])};
+  }
+};
+
+}  // namespace carom

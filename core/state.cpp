@@ -1,0 +1,39 @@
+#include <carom/core/state.h>
+
+#include <carom/core/errors.h>
+
+#include <string>
+#include <utility>
+
+namespace carom {
+
+State::State(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {
+  q.assign(layout_->q_size(), 0.0);
+  v.assign(layout_->v_size(), 0.0);
+}
+
+const BodySlot& State::slot(BodyId body) const {
+  if (!layout_) throw ModelError("state of a body: the state belongs to no model; allowed: a state of a simulation");
+  return layout_->slot(body);
+}
+
+ConstVectorMap State::position(BodyId body) const { return {q.data() + slot(body).q, layout_->dimension()}; }
+VectorMap State::position(BodyId body) { return {q.data() + slot(body).q, layout_->dimension()}; }
+ConstVectorMap State::velocity(BodyId body) const { return {v.data() + slot(body).v, layout_->dimension()}; }
+VectorMap State::velocity(BodyId body) { return {v.data() + slot(body).v, layout_->dimension()}; }
+
+Index State::angle_index(BodyId body) const {
+  const BodySlot& at = slot(body);
+  if (at.rotation == none || layout_->dimension() != 2) {
+    throw ModelError("angle or spin of body #" + std::to_string(body.serial) +
+                     ": it has none; allowed: a planar rigid body");
+  }
+  return at.q + 2;
+}
+
+Index State::spin_index(BodyId body) const {
+  (void)angle_index(body);
+  return slot(body).v + 2;
+}
+
+}  // namespace carom

@@ -1,0 +1,68 @@
+#pragma once
+
+/// \file
+/// The state of a model: a value.
+
+#include <carom/core/export.h>
+#include <carom/core/layout.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+namespace carom {
+
+/// A window on somebody's numbers (unaligned, so that any caller's vectorisation fits).
+using VectorMap = Eigen::Map<Eigen::VectorXd>;
+/// A window on somebody's constant numbers.
+using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+
+/// Time and numbers over any memory; what evaluations read. Arrays are those of the whole model.
+struct StateView {
+  double time = 0.0;          ///< [s]
+  const double* q = nullptr;  ///< coordinates [m, rad]
+  const double* v = nullptr;  ///< velocities [m/s, rad/s]
+  const double* z = nullptr;  ///< internal variables of elements
+};
+
+/// Time, coordinates q, velocities v and internal variables z of a model. Copy it, keep it, compare it.
+class CAROM_API State {
+public:
+  /// A state of no model.
+  State() = default;
+  /// All numbers zero.
+  explicit State(std::shared_ptr<const Layout> layout);
+
+  double time = 0.0;              ///< [s]
+  std::vector<double> q;          ///< coordinates, bodies in the order of assembly [m, rad]
+  std::vector<double> v;          ///< velocities [m/s, rad/s]
+  std::vector<double> z;          ///< internal variables of elements
+
+  /// Position of the centre of mass [m], 2 or 3 numbers. Throws ModelError for a foreign identity.
+  [[nodiscard]] ConstVectorMap position(BodyId body) const;
+  [[nodiscard]] VectorMap position(BodyId body);
+  /// Velocity of the centre of mass [m/s]. Throws as position().
+  [[nodiscard]] ConstVectorMap velocity(BodyId body) const;
+  [[nodiscard]] VectorMap velocity(BodyId body);
+  /// Angle of a planar rigid body [rad]. Throws ModelError if the body has none.
+  [[nodiscard]] double angle(BodyId body) const { return q[angle_index(body)]; }
+  [[nodiscard]] double& angle(BodyId body) { return q[angle_index(body)]; }
+  /// Spin of a planar rigid body [rad/s]. Throws as angle().
+  [[nodiscard]] double spin(BodyId body) const { return v[spin_index(body)]; }
+  [[nodiscard]] double& spin(BodyId body) { return v[spin_index(body)]; }
+
+  /// The map from identities to places. Null for a state of no model.
+  [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
+  /// The numbers, to evaluate.
+  [[nodiscard]] StateView view() const { return {time, q.data(), v.data(), z.data()}; }
+
+private:
+  [[nodiscard]] const BodySlot& slot(BodyId body) const;
+  [[nodiscard]] Index angle_index(BodyId body) const;
+  [[nodiscard]] Index spin_index(BodyId body) const;
+
+  std::shared_ptr<const Layout> layout_;
+};
+
+}  // namespace carom

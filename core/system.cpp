@@ -1,0 +1,193 @@
+#include <carom/core/system.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace carom {
+
+namespace {
+
+Index next_token() {
+  // The one global: tells systems apart so that a foreign identity is refused. No result depends on it.
+  static std::atomic<Index> counter{1};
+  return counter.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+System::System() : token_(next_token()) {}
+
+std::string System::describe(std::string_view label, const std::string& name, Index serial) {
+  std::string text(label);
+  return name.empty() ? text + " #" + std::to_string(serial) : text + " '" + name + "'";
+}
+
+void System::take_dimension(int dimension, std::string_view label) const {
+  if (dimension == 0 || dimension_ == 0 || dimension == dimension_) return;
+  throw ModelError(std::string(label) + ": dimension is " + std::to_string(dimension) + "; allowed: " +
+                   std::to_string(dimension_) + ", as the other parts of the system");
+}
+
+void System::check_name(Role role, const std::string& name, std::string_view label) const {
+  if (name.empty()) return;
+  const auto names = serials_by_name_.find(role);
+  if (names == serials_by_name_.end() || !names->second.contains(name)) return;
+  throw ModelError(std::string(label) + " '" + name + "': name is taken; allowed: a name no other part of its role has");
+}
+
+void System::added(Role role, int dimension, Index serial, std::string name) {
+  if (dimension_ == 0) dimension_ = dimension;
+  if (name.empty()) return;
+  serials_by_name_[role].emplace(name, serial);
+  names_[role].emplace(serial, std::move(name));
+}
+
+template <class Identity, class K>
+std::string System::name_in(Role role, const Registry<K>& registry, Identity id) const {
+  if (!id.valid()) return "part that was never given";
+  if (id.token != token_) return "part of another system";
+  if (!registry.contains(id.serial)) return "removed part #" + std::to_string(id.serial);
+  const auto names = names_.find(role);
+  std::string given;
+  if (names != names_.end()) {
+    if (const auto found = names->second.find(id.serial); found != names->second.end()) given = found->second;
+  }
+  return describe(registry.kind_of(id.serial).label(), given, id.serial);
+}
+
+std::string System::name(BodyId id) const { return id == ground ? "ground" : name_in(Role::body, bodies_, id); }
+std::string System::name(ElementId id) const { return name_in(Role::force, forces_, id); }
+std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_, id); }
+std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, obstacles_, id); }
+
+std::string System::given_name(BodyId id) const {
+  const auto names = names_.find(Role::body);
+  if (names == names_.end()) return {};
+  const auto found = names->second.find(id.serial);
+  return found == names->second.end() ? std::string{} : found->second;
+}
+
+Index System::by_name(Role role, std::string_view name, std::string_view what) const {
+  if (const auto names = serials_by_name_.find(role); names != serials_by_name_.end()) {
+    if (const auto found = names->second.find(name); found != names->second.end()) return found->second;
+  }
+  throw ModelError(std::string(what) + " '" + std::string(name) + "': there is none; allowed: the name of a " +
+                   std::string(what) + " of this system");
+}
+
+BodyId System::body(std::string_view name) const { return {by_name(Role::body, name, "body"), token_}; }
+ElementId System::element(std::string_view name) const { return {by_name(Role::force, name, "element"), token_}; }
+ShapeId System::shape(std::string_view name) const { return {by_name(Role::shape, name, "shape"), token_}; }
+ObstacleId System::obstacle(std::string_view name) const {
+  return {by_name(Role::obstacle, name, "obstacle"), token_};
+}
+
+bool System::has_orientation(BodyId id) const {
+  return contains(id) && bodies_.kind_of(id.serial).has_orientation();
+}
+
+template <class Identity, class K>
+void System::remove_from(Role role, Registry<K>& registry, Identity id, std::string_view what) {
+  if (id.token != token_ || !registry.contains(id.serial)) {
+    const std::string number = id.valid() ? " #" + std::to_string(id.serial) : " that was never given";
+    throw ModelError("removal of " + std::string(what) + number +
+                     ": it is not in this system; allowed: a part of this system");
+  }
+  registry.remove(id.serial);
+  if (const auto found = names_[role].find(id.serial); found != names_[role].end()) {
+    serials_by_name_[role].erase(found->second);
+    names_[role].erase(found);
+  }
+}
+
+void System::remove(BodyId id) {
+  if (id == ground) throw ModelError("ground: cannot be removed; allowed: a body of this system");
+  std::vector<BodyId> ends;
+  for (const auto& entry : forces_.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      ends.clear();
+      entry.kind->ends(slot, ends);
+      if (std::find(ends.begin(), ends.end(), id) == ends.end()) continue;
+      throw ModelError(name(id) + ": cannot be removed, " + name(ElementId{entry.serials[slot], token_}) +
+                       " acts on it; allowed: a body without couplings");
+    }
+  }
+  for (const auto& entry : shapes_.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (entry.kind->body(slot) != id) continue;
+      throw ModelError(name(id) + ": cannot be removed, " + name(ShapeId{entry.serials[slot], token_}) +
+                       " is fixed to it; allowed: a body without shapes");
+    }
+  }
+  remove_from(Role::body, bodies_, id, "body");
+}
+void System::remove(ElementId id) { remove_from(Role::force, forces_, id, "element"); }
+void System::remove(ShapeId id) { remove_from(Role::shape, shapes_, id, "shape"); }
+void System::remove(ObstacleId id) {
+  remove_from(Role::obstacle, obstacles_, id, "obstacle");
+  surfaces_.erase(id.serial);
+}
+
+MaterialId System::material(std::string_view name) {
+  if (name.empty()) throw ModelError("material: name is empty; allowed: a name");
+  const auto found = std::find(materials_.begin(), materials_.end(), name);
+  const auto serial = static_cast<Index>(found - materials_.begin());
+  if (found == materials_.end()) materials_.emplace_back(name);
+  return {serial, token_};
+}
+
+void System::between(MaterialId a, MaterialId b, const Surface& surface) {
+  for (const MaterialId id : {a, b}) {
+    if (!contains(id)) throw ModelError("surface: material is unknown; allowed: a material of this system");
+  }
+  PartCheck("surface between '" + materials_[a.serial] + "' and '" + materials_[b.serial] + "'", *this)
+      .surface(surface);
+  laws_[std::minmax(a.serial, b.serial)] = surface;
+}
+
+std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
+  if (!contains(obstacle)) throw ModelError("law of contact: obstacle is " + name(obstacle) + "; allowed: one of this system");
+  PartCheck("law of contact", *this).material(a);
+  const auto place = obstacles_.place(obstacle.serial);
+  const MaterialId b = obstacles_.entries()[place.entry].kind->material(place.slot);
+  if (a.valid() && b.valid()) {
+    if (const auto found = laws_.find(std::minmax(a.serial, b.serial)); found != laws_.end()) return found->second;
+  }
+  if (const auto found = surfaces_.find(obstacle.serial); found != surfaces_.end()) return found->second;
+  return std::nullopt;
+}
+
+std::uint64_t System::fingerprint() const {
+  Fingerprint print;
+  print.add(static_cast<std::uint64_t>(dimension_));
+  const auto add_kinds = [&print](const auto& registry) {
+    for (const auto& entry : registry.entries()) {
+      if (entry.serials.empty()) continue;  // all its parts were removed
+      print.add(entry.kind->label());
+      print.add(std::uint64_t{entry.serials.size()});
+      for (const Index serial : entry.serials) print.add(std::uint64_t{serial});
+      entry.kind->fingerprint(print);
+    }
+  };
+  add_kinds(bodies_);
+  add_kinds(forces_);
+  add_kinds(shapes_);
+  add_kinds(obstacles_);
+  const auto add_surface = [&print](const Surface& surface) {
+    print.add(surface.friction);
+    print.add(surface.normal_restitution);
+    print.add(surface.tangential_restitution);
+  };
+  for (const auto& [pair, surface] : laws_) {
+    print.add(std::uint64_t{pair.first});
+    print.add(std::uint64_t{pair.second});
+    add_surface(surface);
+  }
+  for (const auto& [serial, surface] : surfaces_) {
+    print.add(std::uint64_t{serial});
+    add_surface(surface);
+  }
+  return print.value();
+}
+
+}  // namespace carom

@@ -1,0 +1,159 @@
+#pragma once
+
+/// \file
+/// The model: a graph of bodies (nodes), couplings and loads (edges), shapes and obstacles.
+
+#include <carom/core/errors.h>
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+#include <carom/core/part.h>
+#include <carom/core/registry.h>
+#include <carom/core/surface.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Says what exists; holds no state. Parts are checked as they are added. Copies are independent and keep
+/// the identities of their parts.
+class CAROM_API System {
+public:
+  System();
+
+  /// Adds a part: a body, coupling, load, shape or obstacle, the library's or a user's own.
+  /// \param name optional, unique among the parts of its role
+  /// \return its identity
+  /// Throws ModelError (naming the part, the value and what is allowed) if the part cannot be.
+  template <Part P>
+  IdOf<P> add(const P& part, std::string name = {}) {
+    using Kind = typename KindOf<P>::type;
+    auto& registry = registry_of<P::role>();
+    const Index serial = registry.next_serial();
+    take_dimension(Kind::part_dimension(), Kind::part_label());
+    check_name(P::role, name, Kind::part_label());
+    registry.template add<Kind>(part, PartCheck(describe(Kind::part_label(), name, serial), *this));
+    added(P::role, Kind::part_dimension(), serial, std::move(name));
+    return {serial, token_};
+  }
+
+  /// Adds an obstacle with one surface against everything that has no more special law (see between()).
+  template <Part P>
+    requires(P::role == Role::obstacle)
+  ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
+    using Kind = typename KindOf<P>::type;
+    const Index serial = registry_of<Role::obstacle>().next_serial();
+    PartCheck(describe(Kind::part_label(), name, serial), *this).surface(surface);
+    const ObstacleId id = add(part, std::move(name));
+    surfaces_.emplace(id.serial, surface);
+    return id;
+  }
+
+  /// Removes a part. A body must have lost its couplings and shapes first, otherwise ModelError names one.
+  void remove(BodyId id);
+  void remove(ElementId id);
+  void remove(ShapeId id);
+  void remove(ObstacleId id);
+
+  /// The material of that name, made if it is new. Throws ModelError for an empty name.
+  MaterialId material(std::string_view name);
+  /// Sets the contact law between two materials. Throws ModelError for impossible coefficients.
+  void between(MaterialId a, MaterialId b, const Surface& surface);
+  /// Law of contact between something of material `a` and an obstacle: what between() says of their
+  /// materials, else the surface the obstacle was added with, else nothing. `a` may be no material. Throws
+  /// ModelError for a material or an obstacle that is not of this system.
+  [[nodiscard]] std::optional<Surface> law(MaterialId a, ObstacleId obstacle) const;
+
+  /// The part of that name. Throws ModelError if there is none.
+  [[nodiscard]] BodyId body(std::string_view name) const;
+  [[nodiscard]] ElementId element(std::string_view name) const;
+  [[nodiscard]] ShapeId shape(std::string_view name) const;
+  [[nodiscard]] ObstacleId obstacle(std::string_view name) const;
+
+  /// Text by which messages call a part: "particle 'lower'" or "particle #3"; "ground".
+  [[nodiscard]] std::string name(BodyId id) const;
+  [[nodiscard]] std::string name(ElementId id) const;
+  [[nodiscard]] std::string name(ShapeId id) const;
+  [[nodiscard]] std::string name(ObstacleId id) const;
+  /// The name a body was given, empty if none.
+  [[nodiscard]] std::string given_name(BodyId id) const;
+
+  /// True if the part is of this system and was not removed.
+  [[nodiscard]] bool contains(BodyId id) const { return id.token == token_ && bodies_.contains(id.serial); }
+  [[nodiscard]] bool contains(ElementId id) const { return id.token == token_ && forces_.contains(id.serial); }
+  [[nodiscard]] bool contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
+  [[nodiscard]] bool contains(ObstacleId id) const { return id.token == token_ && obstacles_.contains(id.serial); }
+  [[nodiscard]] bool contains(MaterialId id) const { return id.token == token_ && id.serial < materials_.size(); }
+  /// True if the body has an orientation.
+  [[nodiscard]] bool has_orientation(BodyId id) const;
+
+  /// Parts, in the order in which they came.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return identities<BodyId>(bodies_); }
+  [[nodiscard]] std::vector<ElementId> elements() const { return identities<ElementId>(forces_); }
+  [[nodiscard]] std::vector<ShapeId> shapes() const { return identities<ShapeId>(shapes_); }
+  [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(obstacles_); }
+
+  /// 2 or 3; 0 while the system has no part that tells.
+  [[nodiscard]] int dimension() const { return dimension_; }
+  /// Token in the identities of this system and its copies.
+  [[nodiscard]] Index token() const { return token_; }
+  /// Fingerprint of what a run depends on beside its state: everything but names, initial positions and
+  /// velocities, functions given by users, and what a user's element does not report.
+  [[nodiscard]] std::uint64_t fingerprint() const;
+
+  /// Parts by kind, for assembly.
+  [[nodiscard]] const Registry<BodyKind>& body_kinds() const { return bodies_; }
+  [[nodiscard]] const Registry<ForceKind>& force_kinds() const { return forces_; }
+  [[nodiscard]] const Registry<ShapeKind>& shape_kinds() const { return shapes_; }
+  [[nodiscard]] const Registry<ObstacleKind>& obstacle_kinds() const { return obstacles_; }
+
+private:
+  template <Role R>
+  auto& registry_of() {
+    if constexpr (R == Role::body) {
+      return bodies_;
+    } else if constexpr (R == Role::force) {
+      return forces_;
+    } else if constexpr (R == Role::shape) {
+      return shapes_;
+    } else {
+      return obstacles_;
+    }
+  }
+  template <class Identity, class K>
+  [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const {
+    std::vector<Identity> all;
+    for (const Index serial : registry.serials()) all.push_back({serial, token_});
+    return all;
+  }
+
+  using Names = std::map<Index, std::string>;
+
+  void take_dimension(int dimension, std::string_view label) const;
+  void check_name(Role role, const std::string& name, std::string_view label) const;
+  [[nodiscard]] static std::string describe(std::string_view label, const std::string& name, Index serial);
+  void added(Role role, int dimension, Index serial, std::string name);
+  [[nodiscard]] Index by_name(Role role, std::string_view name, std::string_view what) const;
+  template <class Identity, class K>
+  [[nodiscard]] std::string name_in(Role role, const Registry<K>& registry, Identity id) const;
+  template <class Identity, class K>
+  void remove_from(Role role, Registry<K>& registry, Identity id, std::string_view what);
+
+  Index token_;
+  int dimension_ = 0;
+  Registry<BodyKind> bodies_;
+  Registry<ForceKind> forces_;
+  Registry<ShapeKind> shapes_;
+  Registry<ObstacleKind> obstacles_;
+  std::map<Role, Names> names_;
+  std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name_;
+  std::vector<std::string> materials_;
+  std::map<std::pair<Index, Index>, Surface> laws_;
+  std::map<Index, Surface> surfaces_;
+};
+
+}  // namespace carom
