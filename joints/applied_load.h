@@ -1,0 +1,77 @@
+#pragma once
+
+/// \file
+/// Prescribed forces and torques, functions of time.
+
+#include <carom/core/force_element.h>
+
+#include <cmath>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+/// A force at an end, a given function of time, in the fixed frame. Its work is external work.
+template <int D>
+struct AppliedForce {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = D;
+  static constexpr std::string_view label = "applied force";
+
+  End<D> on{};                                  ///< body, or body and point (required)
+  std::function<Vec<D>(double time)> force{};   ///< [N] (required)
+
+  /// The body it acts on.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
+  /// Throws ModelError for an end or a function that cannot be.
+  void check(const PartCheck& check) const {
+    check_end(check, on, "on");
+    if (!force) check.refuse("force", "not given", "a function of time");
+    const Vec<D> start = force(0.0);
+    check.finite({start.data(), static_cast<std::size_t>(D)}, "force at time 0", "N");
+  }
+  /// Books the load.
+  void loads(const ElementView<D>& at, ElementLoads<D>& out) const { out.external(on, force(at.time())); }
+  /// Adds the end (a function cannot be hashed).
+  void fingerprint(Fingerprint& print) const { add_to(print, on); }
+};
+
+}  // namespace generic
+
+namespace planar {
+
+using AppliedForce = generic::AppliedForce<2>;
+
+/// A torque on a rigid body, a given function of time. Its work is external work.
+struct AppliedTorque {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = 2;
+  static constexpr std::string_view label = "applied torque";
+
+  BodyId on{};                                  ///< a rigid body (required)
+  std::function<double(double time)> torque{};  ///< counter-clockwise [N m] (required)
+
+  /// The body it acts on.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {on}; }
+  /// Throws ModelError for a body or a function that cannot be.
+  void check(const PartCheck& check) const {
+    check.oriented_body(on, "on");
+    if (!torque) check.refuse("torque", "not given", "a function of time");
+    check.finite(torque(0.0), "torque at time 0", "N m");
+  }
+  /// Books the load.
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const { out.external_torque(on, torque(at.time())); }
+  /// Adds nothing that the body's identity does not tell (a function cannot be hashed).
+  void fingerprint(Fingerprint&) const {}
+};
+
+}  // namespace planar
+
+namespace spatial {
+using AppliedForce = generic::AppliedForce<3>;
+}
+
+}  // namespace carom

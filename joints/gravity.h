@@ -1,0 +1,72 @@
+#pragma once
+
+/// \file
+/// Uniform gravity.
+
+#include <carom/core/force_kind.h>
+#include <carom/core/part.h>
+#include <carom/core/part_check.h>
+#include <carom/core/space.h>
+
+#include <limits>
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+template <int D>
+class GravityKind;
+
+/// Uniform gravity on every body. Potential energy -m g.x, zero at the origin.
+template <int D>
+struct Gravity {
+  static constexpr Role role = Role::force;
+  using Kind = GravityKind<D>;
+
+  Vec<D> acceleration = Vec<D>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< g [m/s^2]
+};
+
+/// All uniform fields of a system.
+template <int D>
+class CAROM_API GravityKind final : public ForceKind {
+public:
+  static constexpr int part_dimension() { return D; }
+  static constexpr std::string_view part_label() { return "gravity"; }
+
+  /// Checks and stores a field. Throws ModelError.
+  void add(const Gravity<D>& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order, const Layout& layout) const override;
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return D; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] bool is_field() const override { return true; }
+  void ends(Index, std::vector<BodyId>&) const override {}
+  [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::gravity; }
+  void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
+  [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
+  /// Nothing: the load does not depend on position or velocity.
+  void derivatives(const EvaluationContext&, Index, std::vector<LoadDerivative>&) const override {}
+  [[nodiscard]] bool has_derivatives() const override { return true; }
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  std::vector<Gravity<D>> parts_;
+};
+
+extern template class GravityKind<2>;
+extern template class GravityKind<3>;
+
+}  // namespace generic
+
+namespace planar {
+using Gravity = generic::Gravity<2>;
+}
+namespace spatial {
+using Gravity = generic::Gravity<3>;
+}
+
+}  // namespace carom

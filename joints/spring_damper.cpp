@@ -1,0 +1,214 @@
+#include <carom/core/assembly.h>
+#include <carom/core/compensated_sum.h>
+#include <carom/joints/spring_damper.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom::generic {
+
+template <int D>
+void SpringDamperKind<D>::add(const SpringDamper<D>& part, const PartCheck& check) {
+  check_end(check, part.from, "from");
+  check_end(check, part.to, "to");
+  check.different_ends(part.from.body, part.to.body);
+  check.non_negative(part.stiffness, "stiffness", "N/m");
+  check.non_negative(part.damping, "damping", "N s/m");
+  check.non_negative(part.free_length, "free_length", "m");
+  parts_.push_back(part);
+}
+
+template <int D>
+std::unique_ptr<ForceKind> SpringDamperKind<D>::clone() const {
+  return std::make_unique<SpringDamperKind>(*this);
+}
+
+template <int D>
+std::unique_ptr<ForceKind> SpringDamperKind<D>::arranged(std::span<const Index> order, const Layout& layout) const {
+  auto copy = std::make_unique<SpringDamperKind>();
+  copy->parts_.reserve(order.size());
+  copy->springs_.reserve(order.size());
+  for (const Index slot : order) {
+    const SpringDamper<D>& part = parts_[slot];
+    const Attachment<D> from(part.from, layout);
+    const Attachment<D> to(part.to, layout);
+    Spring spring{part.stiffness, part.damping, part.free_length, from.q, from.v, to.q, to.v, none};
+    const auto at_centre = [](const Attachment<D>& end) { return end.q != none && end.rotation == none; };
+    if (!at_centre(from) || !at_centre(to)) {
+      spring.ends = static_cast<Index>(copy->side_table_.size());
+      copy->side_table_.push_back({from, to});
+    }
+    copy->parts_.push_back(part);
+    copy->springs_.push_back(spring);
+  }
+  return copy;
+}
+
+template <int D>
+void SpringDamperKind<D>::ends(Index element, std::vector<BodyId>& out) const {
+  out.push_back(parts_[element].from.body);
+  out.push_back(parts_[element].to.body);
+}
+
+template <int D>
+typename SpringDamperKind<D>::Ends SpringDamperKind<D>::ends_of(const Spring& spring) const {
+  if (spring.ends != none) return side_table_[spring.ends];
+  Ends ends;
+  ends.from.q = spring.from_q;
+  ends.from.v = spring.from_v;
+  ends.to.q = spring.to_q;
+  ends.to.v = spring.to_v;
+  return ends;
+}
+
+namespace {
+
+/// Factors a, b of the force -(a + b) d on `to`: a of the spring, b of the dashpot.
+struct Factors {
+  double spring = 0.0;
+  double dashpot = 0.0;
+};
+
+template <int D>
+Factors factors(double stiffness, double damping, double free_length, const Vec<D>& d, const Vec<D>& rate) {
+  const double square = d.squaredNorm();
+  if (square == 0.0) return {};
+  const double length = std::sqrt(square);
+  return {stiffness * (length - free_length) / length, damping * d.dot(rate) / square};
+}
+
+}  // namespace
+
+template <int D>
+void SpringDamperKind<D>::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
+  using Map = Eigen::Map<Vec<D>>;
+  using ConstMap = Eigen::Map<const Vec<D>>;
+  const bool together = loads.conservative == loads.dissipative;
+  for (Index i = elements.begin; i < elements.end; ++i) {
+    const Spring& spring = springs_[i];
+    if (spring.ends == none) {
+      const Vec<D> d = ConstMap(at.state.q + spring.to_q) - ConstMap(at.state.q + spring.from_q);
+      const Vec<D> rate = ConstMap(at.state.v + spring.to_v) - ConstMap(at.state.v + spring.from_v);
+      const Factors f = factors<D>(spring.stiffness, spring.damping, spring.free_length, d, rate);
+      if (together) {
+        const Vec<D> force = (f.spring + f.dashpot) * d;
+        Map(loads.conservative + spring.from_v) += force;
+        Map(loads.conservative + spring.to_v) -= force;
+      } else {
+        const Vec<D> elastic = f.spring * d;
+        Map(loads.conservative + spring.from_v) += elastic;
+        Map(loads.conservative + spring.to_v) -= elastic;
+        const Vec<D> viscous = f.dashpot * d;
+        Map(loads.dissipative + spring.from_v) += viscous;
+        Map(loads.dissipative + spring.to_v) -= viscous;
+      }
+      continue;
+    }
+    const Ends& ends = side_table_[spring.ends];
+    const Vec<D> from = ends.from.lever(at.evaluation);
+    const Vec<D> to = ends.to.lever(at.evaluation);
+    const Vec<D> d = ends.to.position(at.state, to) - ends.from.position(at.state, from);
+    const Vec<D> rate = ends.to.velocity(at.state, to) - ends.from.velocity(at.state, from);
+    const Factors f = factors<D>(spring.stiffness, spring.damping, spring.free_length, d, rate);
+    ends.from.add_force(loads.conservative, from, f.spring * d);
+    ends.to.add_force(loads.conservative, to, -f.spring * d);
+    ends.from.add_force(loads.dissipative, from, f.dashpot * d);
+    ends.to.add_force(loads.dissipative, to, -f.dashpot * d);
+  }
+}
+
+template <int D>
+double SpringDamperKind<D>::potential(const EvaluationContext& at, Range elements) const {
+  CompensatedSum sum;
+  for (Index i = elements.begin; i < elements.end; ++i) {
+    const Ends ends = ends_of(springs_[i]);
+    const Vec<D> d = ends.to.position(at.state, ends.to.lever(at.evaluation)) -
+                     ends.from.position(at.state, ends.from.lever(at.evaluation));
+    const double stretch = d.norm() - springs_[i].free_length;
+    sum.add(0.5 * springs_[i].stiffness * stretch * stretch);
+  }
+  return sum.value();
+}
+
+template <int D>
+void SpringDamperKind<D>::derivatives(const EvaluationContext& at, Index element,
+                                      std::vector<LoadDerivative>& out) const {
+  const Spring& spring = springs_[element];
+  const Ends ends = ends_of(spring);
+  const Vec<D> from = ends.from.lever(at.evaluation);
+  const Vec<D> to = ends.to.lever(at.evaluation);
+  const Vec<D> d = ends.to.position(at.state, to) - ends.from.position(at.state, from);
+  const Vec<D> rate = ends.to.velocity(at.state, to) - ends.from.velocity(at.state, from);
+  const double length = d.norm();
+
+  // Derivatives of the force on `to` by d and by its rate.
+  Mat<D> by_d = Mat<D>::Zero();
+  Mat<D> by_rate = Mat<D>::Zero();
+  Vec<D> force = Vec<D>::Zero();
+  if (length == 0.0) {
+    if (spring.free_length == 0.0) by_d = -spring.stiffness * Mat<D>::Identity();
+  } else {
+    const Vec<D> u = d / length;
+    const Mat<D> across = (Mat<D>::Identity() - u * u.transpose()) / length;  // d u / d d
+    const double length_rate = u.dot(rate);
+    const double tension = spring.stiffness * (length - spring.free_length) + spring.damping * length_rate;
+    force = -tension * u;
+    by_d = -spring.stiffness * u * u.transpose() - spring.damping * u * (across * rate).transpose() - tension * across;
+    by_rate = -spring.damping * u * u.transpose();
+  }
+
+  // Columns: translations and spin of both bodies. `motion` is d(end)/d(column), `turn` the change of the
+  // end's velocity with the angle.
+  struct Column {
+    Index v;
+    Vec<D> motion, turn;
+    double sign;
+  };
+  std::vector<Column> columns;
+  const auto add_columns = [&](const Attachment<D>& end, const Vec<D>& lever, double sign) {
+    if (end.q == none) return;
+    for (int i = 0; i < D; ++i) {
+      columns.push_back({end.v + static_cast<Index>(i), Vec<D>::Unit(i), Vec<D>::Zero(), sign});
+    }
+    if constexpr (Space<D>::has_orientation) {
+      if (end.rotation == none) return;
+      const double one = 1.0;
+      const double spin = at.state.v[end.v + D];
+      columns.push_back({end.v + D, Space<D>::lever_velocity(&one, lever), -spin * lever, sign});
+    }
+  };
+  add_columns(ends.from, from, -1.0);
+  add_columns(ends.to, to, 1.0);
+  for (const Column& row : columns) {
+    for (const Column& column : columns) {
+      const Vec<D> change = column.sign * (by_d * column.motion + by_rate * column.turn);
+      out.push_back({row.v, column.v, row.sign * row.motion.dot(change),
+                     row.sign * column.sign * row.motion.dot(by_rate * column.motion)});
+    }
+  }
+  if constexpr (Space<D>::has_orientation) {
+    // The lever arm of the torque turns with the body: d(r x f)/d(angle) at constant f is -r.f.
+    const auto add_turning_lever = [&](const Attachment<D>& end, const Vec<D>& lever, double sign) {
+      if (end.q == none || end.rotation == none) return;
+      out.push_back({end.v + D, end.v + D, -sign * lever.dot(force), 0.0});
+    };
+    add_turning_lever(ends.from, from, -1.0);
+    add_turning_lever(ends.to, to, 1.0);
+  }
+}
+
+template <int D>
+void SpringDamperKind<D>::fingerprint(Fingerprint& print) const {
+  for (const SpringDamper<D>& part : parts_) {
+    add_to(print, part.from);
+    add_to(print, part.to);
+    print.add(part.stiffness);
+    print.add(part.damping);
+    print.add(part.free_length);
+  }
+}
+
+template class SpringDamperKind<2>;
+template class SpringDamperKind<3>;
+
+}  // namespace carom::generic
