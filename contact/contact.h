@@ -1,0 +1,59 @@
+#pragma once
+
+/// \file
+/// A contact: which features meet, how deep, and the map from body velocities to contact velocities.
+
+#include <carom/core/ids.h>
+#include <carom/core/surface.h>
+
+#include <array>
+#include <compare>
+#include <cstdint>
+
+namespace carom {
+
+/// One feature of something that can touch.
+struct FeatureKey {
+  /// What the feature belongs to.
+  enum class Owner : std::uint8_t { body, shape, obstacle };
+
+  Owner owner = Owner::body;
+  Index serial = none;  ///< serial number of the owner
+  Index feature = 0;    ///< number of the feature within its owner
+  friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
+};
+
+/// Identity of a contact: it keys reports, modes and warm starts and survives edits and checkpoints.
+struct ContactKey {
+  FeatureKey of;       ///< feature of the body or shape
+  FeatureKey against;  ///< feature of the obstacle
+  friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
+};
+
+/// A contact of a body with a fixed obstacle, at one configuration. Row 0 is the normal direction (from the
+/// obstacle into free space), the others are tangential (in the plane: the normal turned clockwise).
+struct Contact {
+  static constexpr int max_rows = 3;
+  static constexpr int max_columns = 6;
+
+  ContactKey key;
+  Index body = none;    ///< in the order of assembly
+  Index v = 0;          ///< first velocity of the body
+  int columns = 0;      ///< velocities of the body
+  int rows = 0;         ///< 2 in the plane, 3 in space
+  double gap = 0.0;     ///< negative where violated [m]
+  Surface law;          ///< coefficients
+  std::array<double, static_cast<std::size_t>(max_rows* max_columns)> jacobian{};  ///< row-major, stride max_columns
+
+  /// Row of the map from the body's velocities to the contact velocity.
+  [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
+  [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }
+  /// Contact velocity along row i. \param velocities the arrays of all velocities
+  [[nodiscard]] double velocity(int i, const double* velocities) const {
+    double sum = 0.0;
+    for (int c = 0; c < columns; ++c) sum += row(i)[c] * velocities[v + static_cast<Index>(c)];
+    return sum;
+  }
+};
+
+}  // namespace carom

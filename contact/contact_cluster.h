@@ -1,0 +1,56 @@
+#pragma once
+
+/// \file
+/// Contacts that share bodies are one problem. This makes that problem from the contacts and the velocities
+/// before and without impulses, and applies its answer:
+///     W = H M^-1 H^T,   b = H v_free + E H v^-,   v^+ = v_free + M^-1 H^T P.
+
+#include <carom/contact/contact.h>
+#include <carom/contact/contact_problem.h>
+#include <carom/contact/solver_chain.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// One contact problem with its way back to the bodies. Reuse it: its memory is kept.
+class CAROM_API ContactCluster {
+public:
+  /// Takes contacts that share bodies, and the velocities v^- before the step or impact (all velocities).
+  void build(const Assembly& assembly, std::span<const Contact> contacts, const double* velocity_before);
+  /// Makes b from the velocities that the step would end with if no contact acted.
+  void set_free_velocity(const double* velocity_free);
+  /// Solves. The report says whether impulses() may be used.
+  [[nodiscard]] const ContactReport& solve(SolverChain& chain);
+  /// Adds M^-1 H^T P to the velocities.
+  void apply(double* velocity) const;
+
+  /// The problem.
+  [[nodiscard]] const ContactProblem& problem() const { return problem_; }
+  /// The contacts, in the order of build().
+  [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+  /// Velocities gamma^- of all rows [m/s].
+  [[nodiscard]] std::span<const double> before() const { return before_; }
+  /// Impulses of all rows [N s].
+  [[nodiscard]] std::span<const double> impulses() const { return impulse_; }
+  /// Modes of the contacts.
+  [[nodiscard]] std::span<const ContactMode> modes() const { return modes_; }
+  /// Report of the last solution.
+  [[nodiscard]] const ContactReport& report() const { return report_; }
+  /// First row of a contact.
+  [[nodiscard]] int first_row(std::size_t contact) const { return first_row_[contact]; }
+
+private:
+  std::span<const Contact> contacts_;
+  ContactProblem problem_;
+  std::vector<int> first_row_;
+  std::vector<double> before_, restitution_, impulse_;
+  std::vector<double> response_;  // M^-1 H^T, one row of max_columns numbers per contact row
+  std::vector<ContactMode> modes_;
+  ContactReport report_;
+};
+
+}  // namespace carom

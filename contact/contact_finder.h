@@ -1,0 +1,61 @@
+#pragma once
+
+/// \file
+/// Finds the contacts of bodies with obstacles: all pairs of a rounded point and an obstacle whose gap is
+/// closed (Johansson 1999, section 4: violated contacts take part in a step).
+
+#include <carom/contact/contact.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Features of the bodies of an assembly and the laws they obey.
+class CAROM_API ContactFinder {
+public:
+  /// Throws ModelError where a feature and an obstacle have no contact law.
+  explicit ContactFinder(const Assembly& assembly);
+
+  /// Appends the contacts of one island whose gap is <= `margin` [m], ordered by body, then feature, then
+  /// obstacle. The position group of `evaluation` must be up to date.
+  void find(Index island, const StateView& state, const Evaluation& evaluation, double margin,
+            std::vector<Contact>& out) const;
+
+  /// "particle 'lower' on half-plane #0".
+  [[nodiscard]] std::string name(const ContactKey& key) const;
+
+private:
+  struct Feature {
+    Index body;              // in the order of assembly
+    Index material;          // row of the law table
+    FeatureKey key;
+    std::array<double, 3> centre;
+    double radius;
+  };
+  struct Obstacle {
+    const ObstacleKind* kind;
+    Index slot;
+    Index serial;
+  };
+
+  void collect_obstacles();
+  void collect_features();
+  void add_feature(Index body, const FeatureKey& key, const RoundedPoint& point, MaterialId material);
+  void make_law_table();
+  template <int D>
+  void find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
+               std::vector<Contact>& out) const;
+
+  const Assembly* assembly_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Feature> features_;       // ordered by body
+  std::vector<Range> of_island_;        // features of each island
+  std::vector<MaterialId> materials_;   // rows of the law table
+  std::vector<Surface> laws_;           // row-major: material, obstacle
+};
+
+}  // namespace carom

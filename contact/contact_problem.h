@@ -1,0 +1,74 @@
+#pragma once
+
+/// \file
+/// The contact problem: matrix, vector and one set per row, nothing else (theory: section 3 of
+/// docs/architecture.md; Johansson 1999, equations 4 to 13).
+///
+/// Find impulses P with scaled mean velocities  xi = W P + b  such that for every row set C
+///     P in C(P),   -xi in the normal cone of C(P) at P.
+/// Restitution is in b:  b = gamma_f + E gamma^-,  gamma_f the velocity without contact impulses,
+/// E = diag(e). The end velocities are  gamma^+ = gamma_f + W P = xi - E gamma^-.
+
+#include <carom/core/export.h>
+#include <carom/core/row_set.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Consecutive rows that are judged together: a normal row with its friction rows, or one lone row.
+struct RowGroup {
+  int first = 0;  ///< first row (the normal row of a contact)
+  int size = 1;   ///< number of rows
+};
+
+/// Symmetric positive semidefinite matrix W (dense, row-major), vector b and row sets.
+///
+/// Rows of one contact are consecutive: the normal row (half_line) first, then its friction rows, whose
+/// `bound` is the normal row. Reset and refill to reuse the memory.
+class CAROM_API ContactProblem {
+public:
+  /// Empties the problem and sizes it for `rows` rows, all entries zero, all sets P >= 0.
+  void reset(int rows);
+
+  /// Number of rows.
+  [[nodiscard]] int rows() const { return rows_; }
+
+  /// Entry of W [1/kg, 1/(kg m), ...: velocity per impulse].
+  [[nodiscard]] double w(int row, int column) const { return w_[index(row, column)]; }
+  [[nodiscard]] double& w(int row, int column) { return w_[index(row, column)]; }
+
+  /// W, row-major, rows() x rows().
+  [[nodiscard]] std::span<const double> matrix() const { return w_; }
+
+  /// b = gamma_f + E gamma^- [m/s].
+  [[nodiscard]] std::span<const double> vector() const { return b_; }
+  [[nodiscard]] std::span<double> vector() { return b_; }
+
+  /// Set of each row.
+  [[nodiscard]] std::span<const RowSet> sets() const { return sets_; }
+  [[nodiscard]] std::span<RowSet> sets() { return sets_; }
+
+  /// Groups of rows judged together, derived from the sets; call after the sets are filled.
+  /// Throws std::invalid_argument when friction rows do not follow their normal row.
+  void group();
+
+  /// Groups found by group().
+  [[nodiscard]] std::span<const RowGroup> groups() const { return groups_; }
+
+  /// xi = W P + b.
+  void velocities(std::span<const double> impulse, std::span<double> xi) const;
+
+private:
+  [[nodiscard]] std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(column);
+  }
+
+  int rows_ = 0;
+  std::vector<double> w_, b_;
+  std::vector<RowSet> sets_;
+  std::vector<RowGroup> groups_;
+};
+
+}  // namespace carom

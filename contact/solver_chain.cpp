@@ -1,0 +1,207 @@
+// Problem: get impulses that are right, know how right, and know who found them.
+
+#include <carom/contact/solver_chain.h>
+
+#include <carom/contact/newton_polish.h>
+#include <carom/contact/pivoting_solvers.h>
+#include <carom/contact/projection_solver.h>
+#include <carom/contact/single_contact.h>
+#include <carom/contact/solution_list.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+// Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
+constexpr double polish_from = 1e-14;
+constexpr int polish_steps = 4;
+
+constexpr std::string_view not_applicable = "not applicable";
+
+}  // namespace
+
+std::string_view to_string(SolverId solver) {
+  switch (solver) {
+    case SolverId::single_contact: return "single contact";
+    case SolverId::principal_pivoting: return "principal pivoting";
+    case SolverId::lemke: return "Lemke";
+    case SolverId::projection: return "projection";
+    case SolverId::enumeration: return "enumeration";
+  }
+  return "unknown solver";
+}
+
+struct SolverChain::Workspace {
+  SingleContactSolver single;
+  PrincipalPivotingSolver pivoting;
+  LemkeSolver lemke;
+  ProjectionSolver projection;
+  SolutionList list;
+  NewtonPolish polish;
+  ChainStatistics statistics;
+  std::vector<double> trial, trial_xi, xi;
+  std::vector<ContactMode> modes;
+
+  // What the solvers tried so far have brought.
+  struct Attempt {
+    ContactReport report;   // of the best answer
+    SolverId best = SolverId::single_contact;
+    bool proved_unsolvable = false;
+    int applicable = 0;     // solvers that could be tried
+  };
+
+  bool attempt(const ContactProblem& problem, SolverId id, ContactSolver& solver, std::span<double> impulse,
+               Attempt& state);
+  void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
+            Attempt& state);
+  void enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
+  void count(const Attempt& state);
+};
+
+// Takes the trial as the best answer so far if it is.
+void SolverChain::Workspace::keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate,
+                                  std::span<double> impulse, Attempt& state) {
+  ContactReport& report = state.report;
+  if (found.value < report.residual || report.worst_group < 0) {
+    report.residual = found.value;
+    report.worst_group = found.group;
+    report.degenerate = degenerate;
+    // Whether a solver was sure of itself is not asked: the residual judges.
+    const bool named = outcome == Outcome::several_solutions || outcome == Outcome::forces_not_unique;
+    report.outcome = named ? outcome : Outcome::solved;
+    report.solver = to_string(id);
+    state.best = id;
+    std::copy(trial.begin(), trial.end(), impulse.begin());
+    std::copy(trial_xi.begin(), trial_xi.end(), xi.begin());
+  }
+}
+
+// Tries one solver; returns whether the search is over: an accepted answer, or a proof that there is none.
+bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id, ContactSolver& solver,
+                                     std::span<double> impulse, Attempt& state) {
+  const SolverAnswer answer = solver.solve(problem, trial);
+  ContactReport& report = state.report;
+  report.iterations += answer.iterations;
+  if (answer.outcome == Outcome::not_solved) {
+    report.reason = answer.reason;
+    if (answer.reason == not_applicable) return false;
+  }
+  ++state.applicable;
+  report.tried = static_cast<std::uint8_t>(report.tried | 1u << static_cast<unsigned>(id));
+  ++statistics.tried[static_cast<std::size_t>(id)];
+  if (answer.outcome == Outcome::no_solution) {
+    report.reason = answer.reason;
+    state.proved_unsolvable = true;
+    return true;
+  }
+  problem.velocities(trial, trial_xi);
+  Residual found = residual(problem, trial, trial_xi);
+  bool degenerate = answer.degenerate;
+  if (id != SolverId::single_contact) {
+    if (found.value > polish_from) {
+      found = polish.improve(problem, trial, polish_steps);
+      problem.velocities(trial, trial_xi);
+    }
+    degenerate = degenerate || at_mode_boundary(problem, trial, trial_xi);
+  }
+  keep(found, id, answer.outcome, degenerate, impulse, state);
+  return report.residual <= accepted_residual;
+}
+
+void SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<double> impulse,
+                                       Attempt& state) {
+  if (problem.groups().size() > static_cast<std::size_t>(enumeration_groups)) return;
+  const Outcome outcome = list.enumerate(problem);
+  if (outcome == Outcome::not_solved && list.size() == 0) return;
+  state.report.tried =
+      static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
+  ++statistics.tried[static_cast<std::size_t>(SolverId::enumeration)];
+  state.proved_unsolvable = outcome == Outcome::no_solution;
+  if (list.size() == 0) return;
+  std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
+  problem.velocities(trial, trial_xi);
+  keep(residual(problem, trial, trial_xi), SolverId::enumeration, outcome,
+       at_mode_boundary(problem, trial, trial_xi), impulse, state);
+}
+
+void SolverChain::Workspace::count(const Attempt& state) {
+  const ContactReport& report = state.report;
+  ++statistics.problems;
+  if (report.usable()) {
+    ++statistics.accepted[static_cast<std::size_t>(state.best)];
+    statistics.worst_residual = std::max(statistics.worst_residual, report.residual);
+    if (report.residual > accepted_residual) ++statistics.tolerated;
+  }
+  if (state.applicable > 1) ++statistics.fall_backs;
+  if (report.degenerate) ++statistics.degenerate;
+  switch (report.outcome) {
+    case Outcome::solved: break;
+    case Outcome::several_solutions: ++statistics.several_solutions; break;
+    case Outcome::forces_not_unique: ++statistics.forces_not_unique; break;
+    case Outcome::no_solution: ++statistics.no_solution; break;
+    case Outcome::not_solved: ++statistics.not_solved; break;
+  }
+}
+
+SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
+SolverChain::~SolverChain() = default;
+SolverChain::SolverChain(SolverChain&&) noexcept = default;
+SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
+
+ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
+  const auto n = static_cast<std::size_t>(problem.rows());
+  if (impulse.size() != n) throw std::invalid_argument("contact solver: one impulse for each row");
+  if (n > 0 && problem.groups().empty()) throw std::invalid_argument("contact solver: the problem is not grouped");
+  Workspace& work = *work_;
+  work.trial.resize(n);
+  work.trial_xi.resize(n);
+  work.xi.resize(n);
+
+  Workspace::Attempt attempt;
+  if (n == 0) {
+    work.modes.clear();
+    attempt.report.outcome = Outcome::solved;
+    attempt.report.residual = 0.0;
+    return attempt.report;
+  }
+  ContactSolver& first = problem.groups().size() == 1 ? static_cast<ContactSolver&>(work.single) : work.pivoting;
+  const SolverId first_id =
+      problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
+  const bool done = work.attempt(problem, first_id, first, impulse, attempt) ||
+                    work.attempt(problem, SolverId::lemke, work.lemke, impulse, attempt) ||
+                    work.attempt(problem, SolverId::projection, work.projection, impulse, attempt);
+  ContactReport& report = attempt.report;
+  if (!done && !(report.residual <= tolerated_residual)) work.enumerate(problem, impulse, attempt);
+
+  if (report.residual <= tolerated_residual) {
+    report.reason = {};
+  } else {
+    report.outcome = attempt.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
+    report.solver = {};
+    if (report.reason.empty()) report.reason = "residual too large";
+    if (attempt.proved_unsolvable) report.reason = "no mode is possible";
+    if (report.worst_group < 0) {
+      // Proved before any answer came: nothing acts.
+      std::fill(impulse.begin(), impulse.end(), 0.0);
+      problem.velocities(impulse, work.xi);
+    }
+  }
+  work.count(attempt);
+
+  work.modes.resize(problem.groups().size());
+  for (std::size_t g = 0; g < work.modes.size(); ++g) {
+    work.modes[g] = contact_mode(problem, problem.groups()[g], impulse, work.xi);
+  }
+  return report;
+}
+
+std::span<const double> SolverChain::velocities() const { return work_->xi; }
+std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }
+const ChainStatistics& SolverChain::statistics() const { return work_->statistics; }
+void SolverChain::reset_statistics() { work_->statistics = {}; }
+
+}  // namespace carom

@@ -1,0 +1,218 @@
+#include <carom/core/errors.h>
+#include <carom/core/fingerprint.h>
+#include <carom/integrators/checkpoint.h>
+
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+constexpr std::string_view mark = "carom checkpoint 1\n";
+
+/// Numbers as bytes, lowest first, whatever the machine.
+class Writer {
+public:
+  void add(std::uint64_t number) {
+    for (unsigned shift = 0; shift < 64; shift += 8) bytes_.push_back(static_cast<char>((number >> shift) & 0xffU));
+  }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
+  void add(int number) { add(std::int64_t{number}); }
+  void add(const std::vector<double>& numbers) {
+    add(std::uint64_t{numbers.size()});
+    for (const double number : numbers) add(number);
+  }
+  [[nodiscard]] const std::vector<char>& bytes() const { return bytes_; }
+
+private:
+  std::vector<char> bytes_;
+};
+
+class Reader {
+public:
+  Reader(std::string path, std::string_view bytes) : path_(std::move(path)), bytes_(bytes) {}
+
+  void get(std::uint64_t& number) {
+    if (bytes_.size() < 8) damaged("ends too early");
+    number = 0;
+    for (unsigned i = 0; i < 8; ++i) number |= std::uint64_t{static_cast<unsigned char>(bytes_[i])} << (8 * i);
+    bytes_.remove_prefix(8);
+  }
+  void get(double& number) {
+    std::uint64_t bits = 0;
+    get(bits);
+    number = std::bit_cast<double>(bits);
+  }
+  void get(std::int64_t& number) {
+    std::uint64_t bits = 0;
+    get(bits);
+    number = static_cast<std::int64_t>(bits);
+  }
+  void get(int& number) {
+    std::int64_t wide = 0;
+    get(wide);
+    number = static_cast<int>(wide);
+  }
+  /// A count of things of at least 8 bytes each, which must fit into what is left.
+  std::size_t count() {
+    std::uint64_t number = 0;
+    get(number);
+    if (number > bytes_.size() / 8) damaged("a count does not fit");
+    return static_cast<std::size_t>(number);
+  }
+  void get(std::vector<double>& numbers) {
+    numbers.resize(count());
+    for (double& number : numbers) get(number);
+  }
+  void finish() const {
+    if (!bytes_.empty()) damaged("goes on after its end");
+  }
+  [[noreturn]] void damaged(const std::string& how) const {
+    throw FileError("checkpoint '" + path_ + "': is damaged: " + how);
+  }
+
+private:
+  std::string path_;
+  std::string_view bytes_;
+};
+
+/// The numbers of Statistics, in the order in which they are saved.
+template <class S, class F>
+void for_statistics(S& s, F&& f) {
+  f(s.steps);
+  f(s.sweeps);
+  f(s.most_sweeps);
+  f(s.largest_contraction);
+  f(s.impacts);
+  f(s.contact_steps);
+  f(s.several_solutions);
+  f(s.forces_not_unique);
+  f(s.energy_gains);
+  f(s.energy_gained);
+  f(s.deepest_gap);
+  f(s.worst_residual);
+}
+
+void add(Writer& out, const FeatureKey& key) {
+  out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
+  out.add(std::uint64_t{key.serial});
+  out.add(std::uint64_t{key.feature});
+}
+
+void get(Reader& in, FeatureKey& key) {
+  std::uint64_t owner = 0, serial = 0, feature = 0;
+  in.get(owner);
+  in.get(serial);
+  in.get(feature);
+  if (owner > 2) in.damaged("a contact has an unknown owner");
+  key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
+}
+
+std::uint64_t checksum(std::string_view bytes) {
+  Fingerprint print;
+  print.add(bytes);
+  return print.value();
+}
+
+}  // namespace
+
+void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const State& state,
+                     const Companion& companion) {
+  Writer out;
+  out.add(fingerprint);
+  out.add(state.time);
+  out.add(state.q);
+  out.add(state.v);
+  out.add(state.z);
+  for (const double number : companion.ledger.save()) out.add(number);
+  for_statistics(companion.statistics, [&out](const auto& number) { out.add(number); });
+  out.add(companion.rounding);
+  out.add(companion.grid_start);
+  out.add(companion.grid_steps);
+  out.add(std::uint64_t{companion.modes.size()});
+  for (const auto& [key, mode] : companion.modes) {
+    add(out, key.of);
+    add(out, key.against);
+    out.add(std::uint64_t{static_cast<std::uint8_t>(mode)});
+  }
+  out.add(std::uint64_t{companion.fired.size()});
+  for (const std::int64_t count : companion.fired) out.add(count);
+  const std::string_view body(out.bytes().data(), out.bytes().size());
+  Writer end;
+  end.add(checksum(body));
+
+  const std::string unfinished = path + ".unfinished";
+  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+  file << mark << body << std::string_view(end.bytes().data(), end.bytes().size());
+  file.close();
+  if (!file || std::rename(unfinished.c_str(), path.c_str()) != 0) {
+    std::remove(unfinished.c_str());
+    throw FileError("checkpoint '" + path + "': cannot be written");
+  }
+}
+
+void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError("checkpoint '" + path + "': cannot be read");
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string_view text(bytes.data(), bytes.size());
+  if (!text.starts_with(mark)) throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
+  text.remove_prefix(mark.size());
+  constexpr std::size_t checksum_size = 8;
+  if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
+  const std::string_view body = text.substr(0, text.size() - checksum_size);
+  Reader end(path, text.substr(body.size()));
+  std::uint64_t expected = 0;
+  end.get(expected);
+  if (expected != checksum(body)) end.damaged("its checksum does not fit");
+
+  Reader in(path, body);
+  std::uint64_t found = 0;
+  in.get(found);
+  if (found != fingerprint) throw FileError("checkpoint '" + path + "': is of another model");
+  State read = state;
+  Companion other;
+  in.get(read.time);
+  in.get(read.q);
+  in.get(read.v);
+  in.get(read.z);
+  if (read.q.size() != state.q.size() || read.v.size() != state.v.size() || read.z.size() != state.z.size()) {
+    in.damaged("its sizes do not fit the model");
+  }
+  std::array<double, EnergyLedger::saved_size> ledger{};
+  for (double& number : ledger) in.get(number);
+  other.ledger.load(ledger);
+  for_statistics(other.statistics, [&in](auto& number) { in.get(number); });
+  in.get(other.rounding);
+  if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
+  in.get(other.grid_start);
+  in.get(other.grid_steps);
+  other.modes.resize(in.count());
+  for (auto& [key, mode] : other.modes) {
+    get(in, key.of);
+    get(in, key.against);
+    std::uint64_t number = 0;
+    in.get(number);
+    if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");
+    mode = static_cast<ContactMode>(number);
+  }
+  other.fired.resize(in.count());
+  for (std::int64_t& count : other.fired) in.get(count);
+  in.finish();
+  if (other.fired.size() != companion.fired.size()) {
+    throw FileError("checkpoint '" + path + "': has " + std::to_string(other.fired.size()) +
+                    " periodic events, the simulation " + std::to_string(companion.fired.size()));
+  }
+  state = std::move(read);
+  companion = std::move(other);
+}
+
+}  // namespace carom

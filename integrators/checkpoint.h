@@ -1,0 +1,25 @@
+#pragma once
+
+/// \file
+/// Saved states. A file holds a format mark, a fingerprint of the model, the state and the companion, all
+/// numbers bit for bit.
+
+#include <carom/core/export.h>
+#include <carom/core/state.h>
+#include <carom/integrators/companion.h>
+
+#include <cstdint>
+#include <string>
+
+namespace carom {
+
+/// Writes a checkpoint; an existing file is replaced only when the new one is complete. Throws FileError.
+CAROM_API void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const State& state,
+                               const Companion& companion);
+
+/// Reads a checkpoint into a state and companion of the same model. Throws FileError, changing neither, for a
+/// file that cannot be read, is damaged, or has another fingerprint.
+CAROM_API void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state,
+                               Companion& companion);
+
+}  // namespace carom

@@ -1,0 +1,126 @@
+#include <carom/core/errors.h>
+#include <carom/core/part_check.h>
+#include <carom/integrators/csv_recorder.h>
+#include <carom/integrators/simulation.h>
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+namespace carom {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+
+/// A name as a field of a CSV header: quoted where it needs to be.
+std::string field(const std::string& name) {
+  if (name.find_first_of(",\"\n") == std::string::npos) return name;
+  std::string quoted = "\"";
+  for (const char letter : name) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+struct CsvRecorder::Impl {
+  Impl(const std::string& file_path, const Options& chosen) : path(file_path), options(chosen), file(file_path) {}
+
+  void write_header(const Simulation& simulation);
+  void write_row(const Simulation& simulation);
+  void add(double number) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+    line.append(text.data(), end).push_back(',');
+  }
+  void end_line() {
+    line.back() = '\n';
+    file << line;
+    line.clear();
+    demand_written();
+  }
+  void demand_written() const {
+    if (!file) throw FileError("recorder: '" + path + "' cannot be written");
+  }
+
+  std::string path;
+  Options options;
+  std::ofstream file;
+  std::string line;
+  long rows = 0;
+  long steps = 0;
+};
+
+void CsvRecorder::Impl::write_header(const Simulation& simulation) {
+  const Layout& layout = *simulation.state().layout();
+  const auto dimension = static_cast<std::size_t>(layout.dimension());
+  line = "time [s],";
+  for (const BodyId body : options.bodies) {
+    std::string name = simulation.system().given_name(body);
+    if (name.empty()) name = simulation.system().name(body);
+    const bool oriented = layout.slot(body).rotation != none;
+    const auto column = [&](const std::string& quantity) { line += field(name + "." + quantity) + ","; };
+    for (std::size_t i = 0; i < dimension; ++i) column(std::string(axes[i]) + " [m]");
+    if (oriented) column("angle [rad]");
+    for (std::size_t i = 0; i < dimension; ++i) column("v" + std::string(axes[i]) + " [m/s]");
+    if (oriented) column("spin [rad/s]");
+  }
+  if (options.energies) {
+    const auto column = [&](std::string_view name) { line.append(name).append(" [J],"); };
+    for (std::size_t i = 0; i < stored_energy_count; ++i) column(to_string(static_cast<StoredEnergy>(i)));
+    column("total");
+    for (std::size_t i = 0; i < energy_flow_count; ++i) column(to_string(static_cast<EnergyFlow>(i)));
+    column("residual");
+  }
+  end_line();
+}
+
+void CsvRecorder::Impl::write_row(const Simulation& simulation) {
+  const State& state = simulation.state();
+  const Layout& layout = *state.layout();
+  add(state.time);
+  for (const BodyId body : options.bodies) {
+    const BodySlot& slot = layout.slot(body);
+    for (Index i = 0; i < slot.q_size; ++i) add(state.q[slot.q + i]);
+    for (Index i = 0; i < slot.v_size; ++i) add(state.v[slot.v + i]);
+  }
+  if (options.energies) {
+    const EnergyLedger& energy = simulation.energy();
+    for (std::size_t i = 0; i < stored_energy_count; ++i) add(energy.stored(static_cast<StoredEnergy>(i)));
+    add(energy.total());
+    for (std::size_t i = 0; i < energy_flow_count; ++i) add(energy.flow(static_cast<EnergyFlow>(i)));
+    add(energy.residual());
+  }
+  end_line();
+  ++rows;
+}
+
+CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path) : CsvRecorder(simulation, path, Options{}) {}
+
+CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const Options& options) {
+  if (options.every_steps < 1) {
+    throw ModelError("recorder: every_steps is " + std::to_string(options.every_steps) + "; allowed: at least 1");
+  }
+  for (const BodyId body : options.bodies) (void)simulation.state().layout()->index(body);
+  impl_ = std::make_shared<Impl>(path, options);
+  impl_->demand_written();
+  if (impl_->options.bodies.empty()) impl_->options.bodies = simulation.system().bodies();
+  impl_->write_header(simulation);
+  impl_->write_row(simulation);
+  simulation.observe([impl = impl_](const Simulation& run) {
+    if (++impl->steps % impl->options.every_steps == 0) impl->write_row(run);
+  });
+}
+
+void CsvRecorder::flush() {
+  impl_->file.flush();
+  impl_->demand_written();
+}
+
+long CsvRecorder::rows() const { return impl_->rows; }
+
+}  // namespace carom

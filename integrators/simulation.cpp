@@ -1,0 +1,268 @@
+#include <carom/integrators/checkpoint.h>
+#include <carom/integrators/progress_bar.h>
+#include <carom/integrators/simulation.h>
+#include <carom/integrators/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// An end of a step this close to a wanted time, relative to the step, is that time.
+constexpr double snap = 1e-9;
+
+StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
+  Evaluation evaluation = make_evaluation(assembly);
+  StoredEnergies stored;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    add_stored_energies(assembly, island, state.view(), evaluation, stored);
+  }
+  return stored;
+}
+
+/// A periodic event. Times are start + k interval, so that rounding does not add up.
+struct Periodic {
+  double start;
+  double interval;
+  Simulation::Action action;
+};
+
+}  // namespace
+
+struct Simulation::Impl {
+  // Everything made from the model, so that an edit can replace it as a whole.
+  struct Model {
+    Model(System system, const Mode& mode)
+        : assembly(std::move(system)), stepper(assembly, std::get<TimeStepping>(mode)) {}
+
+    Assembly assembly;
+    TimeStepper stepper;
+  };
+
+  Impl(System system, Mode chosen) : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
+    state = model->assembly.initial_state();
+    forget_history();
+    companion.ledger.open(stored_energies(model->assembly, state));
+  }
+
+  [[nodiscard]] double due(std::size_t i) const {
+    return periodic[i].start + static_cast<double>(companion.fired[i] + 1) * periodic[i].interval;
+  }
+  [[nodiscard]] double next_due() const {
+    double next = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < periodic.size(); ++i) next = std::min(next, due(i));
+    return next;
+  }
+  void book_intervention() {
+    const StoredEnergies stored = stored_energies(model->assembly, state);
+    EnergyFlows flows;
+    flows[EnergyFlow::intervention] = stored.total() - companion.ledger.total();
+    companion.ledger.book(flows, stored);
+  }
+  /// What a run carries from step to step is void after the state was changed from outside.
+  void forget_history() {
+    companion.modes.clear();
+    companion.rounding.assign(state.v.size(), 0.0);
+  }
+  void restart_grid() {
+    companion.grid_start = state.time;
+    companion.grid_steps = 0;
+  }
+  void demand_outside(const char* what) const {
+    if (!in_callback) return;
+    throw ModelError(std::string("simulation: ") + what +
+                     " was called by its own observer or action; allowed: from outside");
+  }
+  void step(Simulation& simulation, double limit);
+  void advance(double limit);
+  void write_news();
+  [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
+    return std::make_unique<Model>(std::move(system), mode);
+  }
+
+  Mode mode;
+  std::unique_ptr<Model> model;
+  State state;
+  Companion companion;
+  StepReport report;
+  std::vector<Periodic> periodic;
+  std::vector<Observer> observers;
+  Log log;
+  bool progress = false;
+  bool in_callback = false;
+};
+
+/// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
+void Simulation::Impl::step(Simulation& simulation, double limit) {
+  const double close = snap * std::get<TimeStepping>(mode).step;
+  if (limit - state.time <= close) {
+    state.time = limit;
+    return;
+  }
+  advance(std::min(limit, next_due()));
+  write_news();
+
+  struct Guard {
+    bool& flag;
+    explicit Guard(bool& f) : flag(f) { flag = true; }
+    ~Guard() { flag = false; }
+    Guard(const Guard&) = delete;
+    Guard& operator=(const Guard&) = delete;
+  } guard(in_callback);
+  for (const Observer& observer : observers) observer(simulation);
+  for (std::size_t i = 0; i < periodic.size(); ++i) {
+    if (due(i) > state.time + close) continue;
+    ++companion.fired[i];
+    const Action action = periodic[i].action;  // a copy: the action may add further ones
+    action(simulation);
+  }
+}
+
+void Simulation::Impl::advance(double limit) {
+  const double full = std::get<TimeStepping>(mode).step;
+  const double grid_end = companion.grid_start + static_cast<double>(companion.grid_steps + 1) * full;
+  if (limit < grid_end - snap * full) {
+    // Cut short: the grid starts anew from there.
+    model->stepper.step(state, companion, limit - state.time, limit, report);
+    restart_grid();
+  } else {
+    const bool snapped = limit <= grid_end + snap * full;
+    model->stepper.step(state, companion, full, snapped ? limit : grid_end, report);
+    ++companion.grid_steps;
+  }
+}
+
+void Simulation::Impl::write_news() {
+  if (!log.enabled(LogLevel::warning)) return;
+  const std::string when = "t = " + to_text(report.time) + " s: ";
+  if (report.energy_gain > 0.0) {
+    log.write(LogLevel::warning, when + "impact adds " + to_text(report.energy_gain) + " J");
+  }
+  for (const ContactRecord& contact : report.contacts) {
+    if (contact.outcome != Outcome::several_solutions) continue;
+    log.write(LogLevel::warning, when + "contact of " + model->stepper.finder().name(contact.key) +
+                                     " has several solutions; the one with the smallest impulse was taken");
+  }
+}
+
+Simulation::Simulation(System system, Mode mode) : impl_(std::make_unique<Impl>(std::move(system), std::move(mode))) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+const StepReport& Simulation::step() {
+  impl_->demand_outside("step");
+  impl_->step(*this, std::numeric_limits<double>::infinity());
+  return impl_->report;
+}
+
+void Simulation::run_until(double time) {
+  Impl& self = *impl_;
+  const auto refuse = [&](const std::string& allowed) {
+    throw ModelError("run_until: time is " + to_text(time) + " s; allowed: " + allowed);
+  };
+  if (!std::isfinite(time)) refuse("a finite time");
+  if (time < self.state.time) refuse("not before the present, " + to_text(self.state.time) + " s");
+  self.demand_outside("run_until");
+
+  std::optional<ProgressBar> bar;
+  if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
+  while (self.state.time < time) {
+    self.step(*this, time);
+    if (bar) bar->update(self.state.time);
+  }
+}
+
+void Simulation::observe(Observer observer) {
+  if (!observer) throw ModelError("observe: observer is empty; allowed: a function");
+  impl_->observers.push_back(std::move(observer));
+}
+
+void Simulation::every(double interval, Action action) {
+  if (!(std::isfinite(interval) && interval > 0.0)) {
+    throw ModelError("every: interval is " + to_text(interval) + " s; allowed: finite and > 0");
+  }
+  if (!action) throw ModelError("every: action is empty; allowed: a function");
+  impl_->periodic.push_back({impl_->state.time, interval, std::move(action)});
+  impl_->companion.fired.push_back(0);
+}
+
+void Simulation::edit(const std::function<void(System&)>& change) {
+  Impl& self = *impl_;
+  System system = self.model->assembly.system();
+  change(system);
+  std::unique_ptr<Impl::Model> edited = self.assembled(std::move(system));
+
+  State state = edited->assembly.initial_state();
+  state.time = self.state.time;
+  const Layout& from = *self.state.layout();
+  for (const BodySlot& slot : state.layout()->bodies()) {
+    const BodyId id{slot.serial, edited->assembly.system().token()};
+    if (!from.contains(id)) continue;
+    const BodySlot& old = from.slot(id);
+    std::copy_n(self.state.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
+    std::copy_n(self.state.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
+  }
+  self.model = std::move(edited);
+  self.state = std::move(state);
+  self.forget_history();
+  self.book_intervention();
+}
+
+void Simulation::set_state(const State& state) {
+  Impl& self = *impl_;
+  check_state(self.model->assembly, state);
+  if (state.layout() != self.state.layout()) {
+    throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
+  }
+  const bool moved_in_time = state.time != self.state.time;
+  if (moved_in_time) {
+    for (std::size_t i = 0; i < self.periodic.size(); ++i) {
+      // Periodic events keep their rhythm: those that the jump skips are not made up for.
+      const double passed = std::floor((state.time - self.periodic[i].start) / self.periodic[i].interval);
+      self.companion.fired[i] = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
+    }
+  }
+  self.state = state;
+  if (moved_in_time) self.restart_grid();
+  self.forget_history();
+  self.book_intervention();
+}
+
+void Simulation::switch_to(Mode mode) {
+  Impl& self = *impl_;
+  check_options(std::get<TimeStepping>(mode));
+  self.mode = std::move(mode);
+  self.model->stepper = TimeStepper(self.model->assembly, std::get<TimeStepping>(self.mode));
+  self.restart_grid();
+}
+
+const System& Simulation::system() const { return impl_->model->assembly.system(); }
+const Assembly& Simulation::assembly() const { return impl_->model->assembly; }
+const State& Simulation::state() const { return impl_->state; }
+double Simulation::time() const { return impl_->state.time; }
+const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
+const StepReport& Simulation::report() const { return impl_->report; }
+const Statistics& Simulation::statistics() const { return impl_->companion.statistics; }
+const Companion& Simulation::companion() const { return impl_->companion; }
+const Mode& Simulation::mode() const { return impl_->mode; }
+std::string Simulation::name(const ContactKey& key) const { return impl_->model->stepper.finder().name(key); }
+Log& Simulation::log() { return impl_->log; }
+void Simulation::show_progress(bool on) { impl_->progress = on; }
+
+void Simulation::save(const std::string& path) const {
+  save_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
+}
+
+void Simulation::load(const std::string& path) {
+  load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
+}
+
+}  // namespace carom

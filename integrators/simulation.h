@@ -1,0 +1,92 @@
+#pragma once
+
+/// \file
+/// A model that runs: state, companion, and the mode that advances them.
+
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/log.h>
+#include <carom/core/state.h>
+#include <carom/core/system.h>
+#include <carom/integrators/companion.h>
+#include <carom/integrators/step_report.h>
+#include <carom/integrators/time_stepping.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace carom {
+
+/// The modes of integration, as values.
+using Mode = std::variant<TimeStepping>;
+
+/// Takes a copy of a system and runs it. Every advance works on a trial and commits it when accepted: after
+/// an error the simulation stands at the last good state and can be saved, inspected and continued.
+class CAROM_API Simulation {
+public:
+  using Observer = std::function<void(const Simulation&)>;
+  using Action = std::function<void(Simulation&)>;
+
+  /// Assembles `system`, with its described positions and velocities, at time 0.
+  /// Throws ModelError for a model or options that cannot be.
+  Simulation(System system, Mode mode);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Makes one step of the mode's length (shorter where a periodic event is due before its end).
+  /// Throws SolverError; the simulation then stands where it stood.
+  const StepReport& step();
+  /// Runs until exactly `time` [s]. Throws ModelError for a time that is not finite or in the past,
+  /// SolverError as step(): the simulation then stands at the last good state.
+  void run_until(double time);
+
+  /// Calls `observer` after every accepted step. Observers cannot change the run.
+  void observe(Observer observer);
+  /// Calls `action` when `interval` [s], twice `interval`, ... have passed from now; steps end exactly there.
+  /// Actions may change the state or edit the model. Throws ModelError for an interval that is not > 0.
+  void every(double interval, Action action);
+
+  /// Changes a copy of the model, assembles it and maps the state by identity; new bodies start as described.
+  /// An error changes nothing. Energy brought in or taken out is booked as `intervention`.
+  void edit(const std::function<void(System&)>& change);
+  /// Replaces the state (time included). Throws ModelError naming the body for numbers that are not finite.
+  /// Energy brought in or taken out is booked as `intervention`.
+  void set_state(const State& state);
+  /// Goes on in another mode, or with other options, from the same state.
+  void switch_to(Mode mode);
+
+  [[nodiscard]] const System& system() const;          ///< the model
+  [[nodiscard]] const Assembly& assembly() const;      ///< the model, made ready to run
+  [[nodiscard]] const State& state() const;            ///< the state
+  [[nodiscard]] double time() const;                   ///< [s]
+  [[nodiscard]] const EnergyLedger& energy() const;    ///< the energy account
+  [[nodiscard]] const StepReport& report() const;      ///< what happened in the last step
+  [[nodiscard]] const Statistics& statistics() const;  ///< counts since the start
+  [[nodiscard]] const Companion& companion() const;    ///< all that can influence a later step
+  [[nodiscard]] const Mode& mode() const;              ///< the mode and its options
+
+  /// "particle 'lower' on half-plane #0".
+  [[nodiscard]] std::string name(const ContactKey& key) const;
+
+  /// Where worthwhile news is written; quiet until given a sink.
+  [[nodiscard]] Log& log();
+  /// Draws a progress bar during run_until() where the standard error is a terminal and the run is long.
+  void show_progress(bool on);
+
+  /// Saves state and companion with a fingerprint of the model. Throws FileError.
+  void save(const std::string& path) const;
+  /// Loads what save() wrote; a time-stepping run then continues bit for bit. Periodic events must have been
+  /// set up as they were. Throws FileError for a file that cannot be read or is of another model; the
+  /// simulation then stands where it stood.
+  void load(const std::string& path);
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace carom

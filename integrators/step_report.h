@@ -1,0 +1,64 @@
+#pragma once
+
+/// \file
+/// What happened in a step, and in all steps so far.
+
+#include <carom/contact/contact.h>
+#include <carom/contact/contact_solver.h>
+#include <carom/contact/solver_chain.h>
+#include <carom/core/ids.h>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// One contact that took part in a step. Directions: normal first, then tangential (one in the plane).
+struct ContactRecord {
+  ContactKey key;                           ///< identity
+  BodyId body;                              ///< the body
+  ObstacleId obstacle;                      ///< what it met
+  int directions = 2;                       ///< 2 in the plane, 3 in space
+  double gap = 0.0;                         ///< when the contact was found [m]
+  std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
+  std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
+  std::array<double, 3> impulse{};          ///< P [N s]
+  std::array<double, 3> work{};             ///< P (gamma^- + gamma^+)/2, by direction [J]
+  ContactMode mode = ContactMode::open;     ///< of the mean velocities
+  bool impact = false;                      ///< closed faster than the capture speed
+  Outcome outcome = Outcome::not_solved;    ///< what is known of the solutions of its problem
+  double residual = 0.0;                    ///< certificate of its problem
+  std::string_view solver{};                ///< solver whose answer was used
+};
+
+/// What happened in the last accepted step.
+struct StepReport {
+  double time = 0.0;                ///< at its end [s]
+  double step = 0.0;                ///< its length [s]
+  int sweeps = 0;                   ///< of the fixed-point iteration, the most over all islands
+  double contraction = 0.0;         ///< ratio of successive changes, the largest over islands (0: none seen)
+  ElementId worst_coupling{};       ///< coupling that limits the contraction most, invalid if there is none
+  double worst_coupling_rate = 0.0; ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
+  double energy_gain = 0.0;         ///< energy that contact added, summed over problems that gained [J]
+  std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
+};
+
+/// Counts and extremes since the start.
+struct Statistics {
+  std::int64_t steps = 0;           ///< accepted steps
+  std::int64_t sweeps = 0;          ///< sum over steps of StepReport::sweeps
+  int most_sweeps = 0;              ///< the most in one step
+  double largest_contraction = 0.0; ///< the largest StepReport::contraction
+  std::int64_t impacts = 0;         ///< contacts that closed faster than the capture speed
+  std::int64_t contact_steps = 0;   ///< contacts that took part in steps
+  std::int64_t several_solutions = 0;  ///< of contact problems with more than one end velocity
+  std::int64_t forces_not_unique = 0;  ///< contact problems with more than one set of impulses
+  std::int64_t energy_gains = 0;    ///< steps in which contact added energy
+  double energy_gained = 0.0;       ///< sum of those gains [J]
+  double deepest_gap = 0.0;         ///< the most negative gap found [m]
+  double worst_residual = 0.0;      ///< the largest certificate of a contact problem
+};
+
+}  // namespace carom

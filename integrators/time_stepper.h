@@ -1,0 +1,92 @@
+#pragma once
+
+/// \file
+/// The machine of the time-stepping mode. One step from t_j to t_{j+1} (Johansson 1999, section 4):
+///
+///   contacts     those with gap <= 0 at t_j
+///   guess        F_{j+1} = F_j
+///   repeat       v_free = v_j + M^-1 h (F_j + F_{j+1})/2
+///                v_{j+1} = v_free + M^-1 H^T P,  P from the contact problem
+///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2
+///                F_{j+1} = F(q_{j+1}, v_{j+1}, t_{j+1})
+///   until        positions and h times velocities no longer change.
+
+#include <carom/contact/contact_cluster.h>
+#include <carom/contact/contact_finder.h>
+#include <carom/contact/solver_chain.h>
+#include <carom/core/assembly.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/integrators/companion.h>
+#include <carom/integrators/coupling_rating.h>
+#include <carom/integrators/fixed_point.h>
+#include <carom/integrators/step_report.h>
+#include <carom/integrators/time_stepping.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Demands options that can be. Throws ModelError naming the option.
+CAROM_API void check_options(const TimeStepping& options);
+
+/// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion, options.
+class CAROM_API TimeStepper {
+public:
+  /// Throws ModelError for impossible options or a contact without a law.
+  TimeStepper(const Assembly& assembly, const TimeStepping& options);
+
+  /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
+  /// those at its end and `report` tells what happened; on SolverError none of the three has changed.
+  void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
+
+  /// Names of contacts.
+  [[nodiscard]] const ContactFinder& finder() const { return finder_; }
+
+private:
+  /// One split of the loads by cause, arrays over all velocities.
+  struct SplitLoads {
+    std::vector<double> conservative, dissipative, external;
+
+    void resize(std::size_t size);
+    [[nodiscard]] Loads view() { return {conservative.data(), dissipative.data(), external.data()}; }
+  };
+
+  void advance_island(Index island, const State& state, const Companion& companion, double step);
+  void find_contacts(Index island, const State& state);
+  void solve_velocities(Index island, const State& state, const Companion& companion, double step);
+  void advance_positions(Index island, const State& state, double step);
+  [[nodiscard]] FixedPointJudge::Verdict compare(Index island, double step, FixedPointJudge& judge) const;
+  void book_couplings(Index island, const State& state, double step);
+  void book_contacts();
+  void record(const ContactCluster& cluster, std::size_t contact);
+  void rate(Index island, const State& state, double step, double contraction);
+  [[noreturn]] void fail_contraction(Index island, const State& state, double step, const FixedPointJudge& judge);
+  [[noreturn]] void fail_contact(const ContactCluster& cluster, const State& state, double step) const;
+  void commit(State& state, Companion& companion, double end_time, StepReport& report);
+
+  const Assembly* assembly_;
+  TimeStepping options_;
+  ContactFinder finder_;
+  SolverChain chain_;
+
+  State trial_;                  // q_{j+1}, v_{j+1} of the sweep at hand
+  std::vector<double> used_q_, used_v_;  // iterate at which the forces of that sweep were evaluated
+  Evaluation evaluation_;
+  SplitLoads start_, end_;       // loads by cause at t_j and at the used iterate
+  std::vector<double> start_force_, load_, delta_;
+  std::vector<double> change_;   // v_{j+1} - v_j before it is rounded
+  std::vector<double> rounding_; // what rounding cuts off v_{j+1}
+  std::vector<Contact> contacts_;
+  std::vector<ContactCluster> clusters_;
+  std::size_t clusters_in_use_ = 0;
+
+  EnergyFlows flows_;
+  StoredEnergies stored_;
+  StepReport report_;
+  std::vector<CouplingRating> ratings_;      // by island, of the last time it was rated
+  std::vector<double> rated_contraction_;    // contraction seen then, negative if never rated
+};
+
+}  // namespace carom
