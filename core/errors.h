@@ -33,8 +33,8 @@ struct SolverFailure {
   double step = 0.0;               ///< step that was tried [s]
   double suggested_step = 0.0;     ///< step expected to succeed [s], 0 if unknown
   double residual = 0.0;           ///< the residual that was too large, 0 if there is none
-  std::vector<std::string> parts;  ///< names of the parts involved, the worst first
-  std::shared_ptr<const ContactProblem> problem;  ///< contact problem that failed, may be null
+  std::vector<std::string> parts{};  ///< names of the parts involved, the worst first
+  std::shared_ptr<const ContactProblem> problem{};  ///< contact problem that failed, may be null
 };
 
 /// A computation that did not succeed. The simulation stands at its last good state.

@@ -97,6 +97,9 @@ Log::Log(LogSink sink, LogLevel level) {
   logger_ = std::make_shared<Logger>(std::move(sink));
 }
 
-void Log::pass(LogLevel level, std::string_view text) const { logger_->write(level, text); }
+void Log::pass(LogLevel level, std::string_view text) const {
+  const std::shared_ptr<Logger> alive = logger_;  // a sink may replace the log that calls it
+  alive->write(level, text);
+}
 
 }  // namespace carom

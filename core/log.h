@@ -11,6 +11,7 @@
 #include <memory>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace carom {
 
@@ -35,6 +36,16 @@ public:
   /// \param sink takes the lines; an empty one makes a quiet log
   /// \param level the lowest level that passes
   explicit Log(LogSink sink, LogLevel level = LogLevel::info);
+  Log(const Log&) = default;
+  /// A log that was moved from is quiet.
+  Log(Log&& other) noexcept
+      : level_(std::exchange(other.level_, LogLevel::off)), logger_(std::move(other.logger_)) {}
+  Log& operator=(Log other) noexcept {
+    std::swap(level_, other.level_);
+    std::swap(logger_, other.logger_);
+    return *this;
+  }
+  ~Log() = default;
 
   /// The lowest level that passes; `off` for a quiet log.
   [[nodiscard]] LogLevel level() const { return level_; }

@@ -46,7 +46,7 @@ public:
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
     using Kind = typename KindOf<P>::type;
-    const Index serial = registry_of<Role::obstacle>().next_serial();
+    const Index serial = obstacles_.next_serial();
     PartCheck(describe(Kind::part_label(), name, serial), *this).surface(surface);
     const ObstacleId id = add(part, std::move(name));
     surfaces_.emplace(id.serial, surface);
