@@ -1,0 +1,44 @@
+# carom_add_build_flags(target): what every target of the project is compiled with. Nothing of it reaches
+# users: all options are private.
+function(carom_add_build_flags target)
+  set_target_properties(
+    ${target}
+    PROPERTIES CXX_EXTENSIONS OFF
+               CXX_VISIBILITY_PRESET hidden
+               VISIBILITY_INLINES_HIDDEN ON
+               POSITION_INDEPENDENT_CODE ON)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    return()
+  endif()
+
+  # Results must not depend on whether the compiler fuses a multiplication with an addition.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
+
+  target_compile_options(
+    ${target}
+    PRIVATE -Wall
+            -Wextra
+            -Wpedantic
+            -Wshadow
+            -Wconversion
+            -Wsign-conversion
+            -Wold-style-cast
+            -Wnon-virtual-dtor
+            -Woverloaded-virtual
+            -Wcast-qual
+            -Wformat=2
+            -Wimplicit-fallthrough
+            -Wextra-semi
+            -Wundef)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Not -Wnull-dereference: it misfires inside the standard library's stream buffers.
+    target_compile_options(${target} PRIVATE -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wsuggest-override)
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+      # "literal" + std::string misfires (GCC bug 105651).
+      target_compile_options(${target} PRIVATE -Wno-restrict)
+    endif()
+  endif()
+  if(CAROM_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()

@@ -1,0 +1,70 @@
+# Headers stand beside sources but are spelled <carom/folder/name.h> everywhere. The build stages
+# <build>/include/carom with links to the folders, so that the build tree, the installed tree and a
+# subdirectory user see one path.
+
+# carom_collect_sources(sources public private): source files, and headers relative to the project, public
+# ones apart from those that match carom_private_headers.
+function(carom_collect_sources sources_out public_out private_out)
+  set(sources "")
+  set(public "")
+  set(private "")
+  foreach(folder IN LISTS carom_folders)
+    file(GLOB folder_sources CONFIGURE_DEPENDS LIST_DIRECTORIES false "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+    file(
+      GLOB folder_headers CONFIGURE_DEPENDS LIST_DIRECTORIES false
+      RELATIVE "${PROJECT_SOURCE_DIR}"
+      "${PROJECT_SOURCE_DIR}/${folder}/*.h")
+    list(APPEND sources ${folder_sources})
+    foreach(header IN LISTS folder_headers)
+      set(is_private FALSE)
+      foreach(pattern IN LISTS carom_private_headers)
+        if(header MATCHES "^${pattern}$")
+          set(is_private TRUE)
+        endif()
+      endforeach()
+      if(is_private)
+        list(APPEND private "${header}")
+      else()
+        list(APPEND public "${header}")
+      endif()
+    endforeach()
+  endforeach()
+  set(${sources_out} "${sources}" PARENT_SCOPE)
+  set(${public_out} "${public}" PARENT_SCOPE)
+  set(${private_out} "${private}" PARENT_SCOPE)
+endfunction()
+
+# carom_stage_headers(target headers): links the folders, writes <carom/carom.h>, declares the file set.
+function(carom_stage_headers target headers)
+  set(include_root "${PROJECT_BINARY_DIR}/include")
+  file(MAKE_DIRECTORY "${include_root}/carom")
+
+  set(staged "${include_root}/carom/carom.h")
+  set(includes "")
+  set(folders "")
+  foreach(header IN LISTS headers)
+    list(APPEND staged "${include_root}/carom/${header}")
+    string(APPEND includes "#include <carom/${header}>\n")
+  endforeach()
+  foreach(folder IN LISTS carom_folders)
+    if(IS_DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}")
+      file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${include_root}/carom/${folder}" SYMBOLIC)
+    endif()
+  endforeach()
+  file(
+    CONFIGURE
+    OUTPUT "${include_root}/carom/carom.h"
+    CONTENT "#pragma once
+
+/// \\file
+/// Every public header of carom @PROJECT_VERSION@. Generated.
+
+${includes}"
+    @ONLY)
+
+  target_sources(
+    ${target}
+    PUBLIC FILE_SET HEADERS
+           BASE_DIRS "${include_root}"
+           FILES ${staged})
+endfunction()

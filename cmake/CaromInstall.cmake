@@ -1,0 +1,37 @@
+# Installs the library, its headers and a package for find_package(carom).
+include(CMakePackageConfigHelpers)
+
+if(CAROM_NATIVE)
+  install(CODE "message(FATAL_ERROR \"a build with CAROM_NATIVE=ON runs only here and is not installed\")")
+endif()
+
+set(carom_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/carom")
+
+install(
+  TARGETS carom
+  EXPORT carom-targets
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(
+  EXPORT carom-targets
+  NAMESPACE carom::
+  DESTINATION ${carom_package_dir})
+
+set(carom_static_dependencies "")
+if(carom_type STREQUAL "STATIC_LIBRARY")
+  set(carom_static_dependencies "${carom_private_packages}")
+endif()
+configure_package_config_file(
+  "${CMAKE_CURRENT_LIST_DIR}/carom-config.cmake.in" "${PROJECT_BINARY_DIR}/package/carom-config.cmake"
+  INSTALL_DESTINATION ${carom_package_dir}
+  NO_SET_AND_CHECK_MACRO)
+# Until 1.0 a minor version may break its users.
+write_basic_package_version_file(
+  "${PROJECT_BINARY_DIR}/package/carom-config-version.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(
+  FILES "${PROJECT_BINARY_DIR}/package/carom-config.cmake" "${PROJECT_BINARY_DIR}/package/carom-config-version.cmake"
+  DESTINATION ${carom_package_dir})
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/carom)

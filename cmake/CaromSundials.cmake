@@ -1,0 +1,22 @@
+# SUNDIALS serves the smooth flow of the event-driven mode. Only integrators/sundials*.cpp may include it;
+# without such a file it is not even looked for.
+file(GLOB carom_sundials_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/integrators/sundials*.cpp")
+if(NOT carom_sundials_sources)
+  return()
+endif()
+
+set(carom_sundials_components cvode arkode nvecserial sunlinsoldense sunmatrixdense)
+# Asked for without a version, since the package of 7.0 refuses a request for 6.4; checked afterwards.
+find_package(SUNDIALS REQUIRED COMPONENTS ${carom_sundials_components})
+if(SUNDIALS_VERSION VERSION_LESS 6.4 OR SUNDIALS_VERSION VERSION_GREATER_EQUAL 8)
+  message(FATAL_ERROR "carom needs SUNDIALS 6.4 or newer, below 8; found ${SUNDIALS_VERSION}")
+endif()
+
+list(TRANSFORM carom_sundials_components PREPEND "SUNDIALS::" OUTPUT_VARIABLE carom_sundials_targets)
+target_link_libraries(carom PRIVATE ${carom_sundials_targets})
+if(TARGET SUNDIALS::core) # what was "generic" before 7
+  target_link_libraries(carom PRIVATE SUNDIALS::core)
+endif()
+
+list(JOIN carom_sundials_components " " carom_sundials_list)
+string(APPEND carom_private_packages "find_dependency(SUNDIALS COMPONENTS ${carom_sundials_list})\n")

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Builds carom, runs the examples and draws their results into build/demo/figures.
+#   scripts/demo.sh                 leaves docs/ alone
+#   scripts/demo.sh --update-docs   also refreshes the pictures in docs/figures
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+update_docs=false
+case "${1:-}" in
+  "") ;;
+  --update-docs) update_docs=true ;;
+  *)
+    echo "usage: $0 [--update-docs]" >&2
+    exit 2
+    ;;
+esac
+
+build=build/demo
+data=$build/data
+figures=$build/figures
+
+scripts/setup.sh
+cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_BENCHMARKS=OFF
+cmake --build "$build" --parallel "$(nproc)"
+
+# The first python in PATH may know nothing of the system's packages.
+python=python3
+if /usr/bin/python3 -c 'import matplotlib' 2>/dev/null; then
+  python=/usr/bin/python3
+fi
+export MPLBACKEND=Agg
+
+# run_example <program> <plot script>: results in data/<program>, pictures of them in figures.
+run_example() {
+  local program=$1 plot=$2
+  mkdir -p "$data/$program" "$figures"
+  echo "== $program"
+  "$build/examples/$program" "$data/$program"
+  if [[ -f $plot ]]; then
+    "$python" "$plot" "$data/$program" "$figures"
+  fi
+}
+
+# Nothing of an earlier run may pass for a result of this one.
+rm -rf "$data" "$figures"
+run_example 01_bar_and_pair scripts/plot_incline.py
+run_example 02_ball_between_tables scripts/plot_tables.py
+
+if $update_docs; then
+  mkdir -p docs/figures
+  cp "$figures"/* docs/figures/
+fi
+echo "results: $data"
+echo "figures: $figures"

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Builds carom and runs its tests; the last line is "N passed, M failed".
+#   scripts/test.sh [preset]    release (default: every test), dev, sanitizers, clang (those labelled fast)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=${1:-release}
+jobs=$(nproc)
+log="build/$preset/tests.log"
+
+scripts/setup.sh
+cmake --preset "$preset"
+cmake --build --preset "$preset" --parallel "$jobs"
+
+# Tests that pass go to the log only.
+status=0
+ctest --preset "$preset" --parallel "$jobs" 2>&1 </dev/null |
+  tee "$log" | { grep -vE '^ +Start +[0-9]+:| Passed +[0-9.]+ sec$' || true; } || status=$?
+
+summary=$(grep -E '^[0-9]+% tests passed, [0-9]+ tests failed out of [0-9]+$' "$log" | tail -n 1 || true)
+if [[ -z $summary ]]; then
+  echo "test: the tests did not run, see $log" >&2
+  echo "0 passed, 1 failed"
+  exit 1
+fi
+read -r failed total <<<"$(sed -E 's/.*passed, ([0-9]+) tests failed out of ([0-9]+)/\1 \2/' <<<"$summary")"
+skipped=$(grep -cE '\(Skipped\)$' "$log" || true)
+passed=$((total - failed - skipped))
+
+if ((skipped > 0)); then
+  echo "$passed passed, $failed failed, $skipped skipped"
+else
+  echo "$passed passed, $failed failed"
+fi
+((status == 0 && failed == 0 && passed > 0))

@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# Builds and runs a user's program against carom in four ways: an installed shared copy, the same from a
+# program with wider vector instructions, an installed static copy, and a subdirectory.
+#   tests/consumer/run.sh <work dir> [<build dir of a shared carom>]
+set -euo pipefail
+
+if (($# < 1 || $# > 2)); then
+  echo "usage: $0 <work dir> [<build dir of a shared carom>]" >&2
+  exit 2
+fi
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source_dir=$(cd "$here/../.." && pwd)
+rm -rf "$1"
+mkdir -p "$1"
+work=$(cd "$1" && pwd)
+shared_build=${2:-}
+
+fail() {
+  echo "consumer: $*" >&2
+  exit 1
+}
+
+# configure_and_build <source> <build dir> <options>...
+configure_and_build() {
+  local from=$1 build=$2
+  shift 2
+  if ! {
+    cmake -G Ninja -S "$from" -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" &&
+      cmake --build "$build" --parallel 2
+  } >"$build.log" 2>&1; then
+    cat "$build.log" >&2
+    fail "cannot build $from $*"
+  fi
+}
+
+# install_copy <build dir> <prefix>: installs, then moves the copy, so that nothing may point back.
+install_copy() {
+  cmake --install "$1" --prefix "$2.first" >"$2.log" || fail "cannot install $1"
+  mv "$2.first" "$2"
+  if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector)' "$2/include"; then
+    fail "installed headers show a private dependency"
+  fi
+  if grep -rqF -e "$source_dir/" -e "$2.first" "$2/include" "$2"/lib*/cmake "$2"/lib/*/cmake 2>/dev/null; then
+    fail "the installed copy points back to where it was built"
+  fi
+}
+
+run() {
+  "$1" || fail "$1 failed"
+}
+
+library_options=(-DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF)
+
+# Users of a shared copy need none of its private dependencies.
+without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON)
+
+echo "consumer: installed shared copy"
+if [[ -z $shared_build ]]; then
+  shared_build=$work/shared-build
+  configure_and_build "$source_dir" "$shared_build" "${library_options[@]}"
+fi
+install_copy "$shared_build" "$work/shared"
+configure_and_build "$here/find_package" "$work/from-shared" \
+  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
+run "$work/from-shared/consumer"
+
+echo "consumer: installed shared copy, program compiled with -mavx2"
+if grep -qw avx2 /proc/cpuinfo; then
+  configure_and_build "$here/find_package" "$work/from-shared-avx2" \
+    -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCMAKE_CXX_FLAGS="-mavx2 -mfma"
+  run "$work/from-shared-avx2/consumer"
+else
+  echo "consumer: left out, this machine has no AVX2"
+fi
+
+echo "consumer: installed static copy"
+configure_and_build "$source_dir" "$work/static-build" -DBUILD_SHARED_LIBS=OFF "${library_options[@]}"
+install_copy "$work/static-build" "$work/static"
+configure_and_build "$here/find_package" "$work/from-static" -DCMAKE_PREFIX_PATH="$work/static"
+run "$work/from-static/consumer"
+
+echo "consumer: subdirectory"
+configure_and_build "$here/add_subdirectory" "$work/subdirectory" -DCAROM_SOURCE="$source_dir"
+run "$work/subdirectory/consumer"
+
+echo "consumer: all good"
