@@ -2,6 +2,8 @@
 
 #include <carom/contact/contact_mode.h>
 
+#include <carom/contact/planar_certificate.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,10 +23,16 @@ ContactMode interval_mode(const RowSet& set, double impulse, double xi, double i
 
 }  // namespace
 
-ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group, std::span<const double> impulse,
-                         std::span<const double> xi) {
+ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
+                         std::span<const double> impulse, std::span<const double> xi) {
   double trace = 0.0, largest_impulse = 0.0, largest_b = 0.0, velocity_scale = 0.0;
   const auto first = static_cast<std::size_t>(group.first);
+  if (group.size == 2 && problem.sets()[first].kind == SetKind::half_line) {
+    const auto b = problem.vector();
+    return planar_mode({problem.w(group.first, group.first) + problem.w(group.first + 1, group.first + 1),
+                        b[first], b[first + 1], problem.sets()[first + 1].coefficient, impulse[first],
+                        impulse[first + 1], xi[first], xi[first + 1]});
+  }
   for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
     const int row = static_cast<int>(i);
     trace += problem.w(row, row);

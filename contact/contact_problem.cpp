@@ -2,6 +2,8 @@
 
 #include <carom/contact/contact_problem.h>
 
+#include <carom/contact/accurate_dot.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -77,12 +79,7 @@ void ContactProblem::group() {
 
 void ContactProblem::velocities(std::span<const double> impulse, std::span<double> xi) const {
   const auto n = static_cast<std::size_t>(rows_);
-  for (std::size_t i = 0; i < n; ++i) {
-    double sum = b_[i];
-    const double* row = w_.data() + i * n;
-    for (std::size_t j = 0; j < n; ++j) sum += row[j] * impulse[j];
-    xi[i] = sum;
-  }
+  for (std::size_t i = 0; i < n; ++i) xi[i] = accurate_dot(std::span(w_).subspan(i * n, n), impulse, b_[i]);
 }
 
 }  // namespace carom

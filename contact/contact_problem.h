@@ -57,7 +57,8 @@ public:
   /// Groups found by group().
   [[nodiscard]] std::span<const RowGroup> groups() const { return groups_; }
 
-  /// xi = W P + b.
+  /// xi = W P + b, each entry summed in twice the precision and rounded once: large impulses of contacts that
+  /// share a body cancel in it.
   void velocities(std::span<const double> impulse, std::span<double> xi) const;
 
 private:

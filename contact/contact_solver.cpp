@@ -6,22 +6,32 @@ namespace carom {
 
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::solved: return "solved";
-    case Outcome::several_solutions: return "several solutions";
-    case Outcome::forces_not_unique: return "forces not unique";
-    case Outcome::no_solution: return "no solution";
-    case Outcome::not_solved: return "not solved";
+    case Outcome::solved:
+      return "solved";
+    case Outcome::several_solutions:
+      return "several solutions";
+    case Outcome::forces_not_unique:
+      return "forces not unique";
+    case Outcome::no_solution:
+      return "no solution";
+    case Outcome::not_solved:
+      return "not solved";
   }
   return "unknown outcome";
 }
 
 std::string_view to_string(ContactMode mode) {
   switch (mode) {
-    case ContactMode::open: return "open";
-    case ContactMode::stick: return "stick";
-    case ContactMode::slip_positive: return "slip+";
-    case ContactMode::slip_negative: return "slip-";
-    case ContactMode::slip: return "slip";
+    case ContactMode::open:
+      return "open";
+    case ContactMode::stick:
+      return "stick";
+    case ContactMode::slip_positive:
+      return "slip+";
+    case ContactMode::slip_negative:
+      return "slip-";
+    case ContactMode::slip:
+      return "slip";
   }
   return "unknown mode";
 }

@@ -16,11 +16,16 @@ void Lcp::reset(int n) {
 
 std::string_view to_string(LcpStatus status) {
   switch (status) {
-    case LcpStatus::solved: return "solved";
-    case LcpStatus::secondary_ray: return "secondary ray";
-    case LcpStatus::pivot_bound: return "pivot bound";
-    case LcpStatus::vanishing_pivot: return "vanishing pivot";
-    case LcpStatus::inaccurate: return "inaccurate";
+    case LcpStatus::solved:
+      return "solved";
+    case LcpStatus::secondary_ray:
+      return "secondary ray";
+    case LcpStatus::pivot_bound:
+      return "pivot bound";
+    case LcpStatus::vanishing_pivot:
+      return "vanishing pivot";
+    case LcpStatus::inaccurate:
+      return "inaccurate";
   }
   return "unknown status";
 }
@@ -37,8 +42,8 @@ double lcp_residual(const Lcp& problem, std::span<const double> z) {
       w += problem.m[i * n + j] * z[j];
       w_scale = std::max(w_scale, std::abs(problem.m[i * n + j]) * z_scale);
     }
-    const double error = std::abs(
-        std::min(w_scale > 0.0 ? w / w_scale : w, z_scale > 0.0 ? z[i] / z_scale : z[i]));
+    const double error =
+        std::abs(std::min(w_scale > 0.0 ? w / w_scale : w, z_scale > 0.0 ? z[i] / z_scale : z[i]));
     if (!std::isfinite(error) || !std::isfinite(w) || !std::isfinite(z[i])) {
       return std::numeric_limits<double>::infinity();
     }

@@ -23,10 +23,12 @@ struct CAROM_API Lcp {
 
   /// Entry of M.
   [[nodiscard]] double& at(int row, int column) {
-    return m[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(column)];
+    return m[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
+             static_cast<std::size_t>(column)];
   }
   [[nodiscard]] double at(int row, int column) const {
-    return m[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(column)];
+    return m[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
+             static_cast<std::size_t>(column)];
   }
 };
 
@@ -48,8 +50,9 @@ struct LcpAnswer {
   int pivots = 0;
 };
 
-/// max_i |min(w_i / s_i, z_i / t)|, the natural residual, with t = max |z| and s_i = max(|q_i|, t max_j |M_ij|)
-/// the size that the terms of row i can have (1 where that is zero). Infinite where a number is not finite.
+/// max_i |min(w_i / s_i, z_i / t)|, the natural residual, with t = max |z| and s_i = max(|q_i|, t max_j
+/// |M_ij|) the size that the terms of row i can have (1 where that is zero). Infinite where a number is not
+/// finite.
 [[nodiscard]] CAROM_API double lcp_residual(const Lcp& problem, std::span<const double> z);
 
 /// An LCP answer whose residual is larger is `inaccurate`: basic solutions are refined to a few roundings.

@@ -15,8 +15,11 @@ bool CopositiveForm::classify(const ContactProblem& problem) {
     const RowSet& set = problem.sets()[i];
     Row& row = rows_[i];
     switch (set.kind) {
-      case SetKind::bounded_disc: return false;
-      case SetKind::half_line: row.plus = variables_++; break;
+      case SetKind::bounded_disc:
+        return false;
+      case SetKind::half_line:
+        row.plus = variables_++;
+        break;
       case SetKind::bounded_interval:
         if (!(set.coefficient > 0.0)) break;  // P = 0: no variable
         row.plus = variables_++;

@@ -40,7 +40,8 @@ bool PaperForm::classify(const ContactProblem& problem) {
     Row& row = rows_[i];
     const bool below = std::isfinite(set.lower), above = std::isfinite(set.upper);
     if (set.kind == SetKind::bounded_disc) return false;
-    row.eliminated = set.kind == SetKind::bounded_interval || (set.kind == SetKind::interval && below == above);
+    row.eliminated =
+        set.kind == SetKind::bounded_interval || (set.kind == SetKind::interval && below == above);
     row.place = row.eliminated ? eliminated_.size() : normal_.size();
     (row.eliminated ? eliminated_ : normal_).push_back(i);
     if (!row.eliminated) {
@@ -174,7 +175,8 @@ void PaperForm::fill_friction_rows(const ContactProblem& problem, Lcp& lcp) {
 bool PaperForm::build(const ContactProblem& problem, Lcp& lcp) {
   if (!classify(problem)) return false;
   for (const RowSet& set : problem.sets()) {
-    if (set.kind == SetKind::bounded_interval && rows_[static_cast<std::size_t>(set.bound)].eliminated) return false;
+    if (set.kind == SetKind::bounded_interval && rows_[static_cast<std::size_t>(set.bound)].eliminated)
+      return false;
   }
   if (!eliminate(problem)) return false;
   lcp.reset(variables_);
@@ -183,7 +185,8 @@ bool PaperForm::build(const ContactProblem& problem, Lcp& lcp) {
   return true;
 }
 
-void PaperForm::impulses(const ContactProblem& problem, std::span<const double> z, std::span<double> impulse) {
+void PaperForm::impulses(const ContactProblem& problem, std::span<const double> z,
+                         std::span<double> impulse) {
   const std::size_t t = eliminated_.size(), n = normal_.size();
   const auto value = [&](int variable) { return variable < 0 ? 0.0 : z[static_cast<std::size_t>(variable)]; };
   for (const std::size_t i : normal_) {

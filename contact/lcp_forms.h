@@ -41,7 +41,7 @@ public:
 private:
   struct Row {
     bool eliminated = false;
-    double sign = 1.0;      // P' = offset + sign z of a normal row
+    double sign = 1.0;  // P' = offset + sign z of a normal row
     double offset = 0.0;
     int normal = -1;        // variable of a normal row
     int upper = -1;         // chi1, complement of  hi - P
@@ -57,9 +57,9 @@ private:
   std::vector<Row> rows_;
   std::vector<std::size_t> normal_, eliminated_;  // rows of the problem
   std::vector<double> block_, rhs_;
-  std::vector<double> inverse_;     // W_TT^-1
-  std::vector<double> transfer_;    // W_TT^-1 W_TN, eliminated x normal
-  std::vector<double> shift_;       // W_TT^-1 (b_T + W_TN offset_N)
+  std::vector<double> inverse_;   // W_TT^-1
+  std::vector<double> transfer_;  // W_TT^-1 W_TN, eliminated x normal
+  std::vector<double> shift_;     // W_TT^-1 (b_T + W_TN offset_N)
   RankRevealingQr qr_;
   int variables_ = 0;
 };
@@ -68,8 +68,8 @@ private:
 ///
 ///     xi_n >= 0  _|_  P_n,    +-xi_t + sigma >= 0  _|_  beta+-,    mu P_n - beta+ - beta- >= 0  _|_  sigma.
 ///
-/// Copositive for W >= 0. A two-sided interval has P = lo + u with xi + s >= 0 _|_ u and hi - lo - u >= 0 _|_ s,
-/// a one-sided one a single variable, a free row P = u+ - u-. Exists for every problem without discs.
+/// Copositive for W >= 0. A two-sided interval has P = lo + u with xi + s >= 0 _|_ u and hi - lo - u >= 0 _|_
+/// s, a one-sided one a single variable, a free row P = u+ - u-. Exists for every problem without discs.
 class CAROM_API CopositiveForm {
 public:
   /// Fills `lcp`; false where the problem has a disc.
@@ -83,7 +83,7 @@ private:
     double offset = 0.0;  // P' = offset + z[plus] - z[minus]
     int plus = -1;
     int minus = -1;
-    int slack = -1;       // sigma, or the multiplier of the upper bound
+    int slack = -1;  // sigma, or the multiplier of the upper bound
   };
   bool classify(const ContactProblem& problem);
 

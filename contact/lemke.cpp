@@ -15,6 +15,9 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 // Pivots between two rebuilds of the tableau in the careful pass.
 constexpr int rebuild_interval = 4;
 
+// A first pass whose answer is worse than this is repeated with care.
+constexpr double doubtful_accuracy = 1e-13;
+
 // Pivots below this part of the largest one make a basis singular when it is solved anew.
 constexpr double basis_rank_tolerance = 1e-14;
 
@@ -202,7 +205,8 @@ void Lemke::read_solution(const Lcp& problem, std::span<double> z) {
   // Rows scaled by powers of two as in the tableau; columns are scaled by the factorisation.
   for (std::size_t i = 0; i < k; ++i) {
     const double factor = row_scale_[support_[i]];
-    for (std::size_t j = 0; j < k; ++j) system_[i * k + j] = factor * problem.m[support_[i] * n_ + support_[j]];
+    for (std::size_t j = 0; j < k; ++j)
+      system_[i * k + j] = factor * problem.m[support_[i] * n_ + support_[j]];
     rhs_[i] = -factor * problem.q[support_[i]];
   }
   if (k == 0) return;
@@ -212,17 +216,29 @@ void Lemke::read_solution(const Lcp& problem, std::span<double> z) {
 }
 
 LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots) {
-  LcpAnswer answer;
   if (most_pivots == 0) most_pivots = 100 + 30 * problem.size;
   scale(problem);
-  for (const bool rebuild : {false, true}) {
-    const LcpStatus status = run(rebuild, most_pivots, answer.pivots);
+  LcpAnswer answer;
+  const LcpStatus first = run(false, most_pivots, answer.pivots);
+  read_solution(problem, z);
+  double error = lcp_residual(problem, z);
+  LcpStatus status = first;
+  if (error > doubtful_accuracy && first != LcpStatus::pivot_bound) {
+    // The tableau has lost digits, or has pivoted on rounding: once more, with a tableau that has not.
+    best_.assign(z.begin(), z.end());
+    status = run(true, most_pivots, answer.pivots);
     read_solution(problem, z);
-    const bool good = lcp_residual(problem, z) <= lcp_accuracy;
-    // A path can also end where z0 is zero but for rounding: then it stands at a solution.
-    answer.status = good ? LcpStatus::solved : (status == LcpStatus::solved ? LcpStatus::inaccurate : status);
-    if (good || status == LcpStatus::pivot_bound) break;
+    const double careful = lcp_residual(problem, z);
+    if (careful < error) {
+      error = careful;
+    } else {
+      std::copy(best_.begin(), best_.end(), z.begin());
+      if (first == LcpStatus::solved) status = first;
+    }
   }
+  // A path can also end where z0 is zero but for rounding: then it stands at a solution.
+  const bool good = error <= lcp_accuracy;
+  answer.status = good ? LcpStatus::solved : (status == LcpStatus::solved ? LcpStatus::inaccurate : status);
   return answer;
 }
 

@@ -50,18 +50,20 @@ private:
 
   // Variables are numbered w: 0..n-1, z: n..2n-1, z0: 2n. Rows hold basic variables as affine functions
   // of the nonbasic ones:  basic = value + tableau * nonbasic.
-  [[nodiscard]] double& entry(std::size_t row, std::size_t column) { return tableau_[row * (n_ + 1) + column]; }
+  [[nodiscard]] double& entry(std::size_t row, std::size_t column) {
+    return tableau_[row * (n_ + 1) + column];
+  }
   [[nodiscard]] double entry(std::size_t row, std::size_t column) const {
     return tableau_[row * (n_ + 1) + column];
   }
 
   std::size_t n_ = 0;
-  std::vector<double> m_, q_, covering_;           // the scaled problem
+  std::vector<double> m_, q_, covering_;  // the scaled problem
   std::vector<double> row_scale_, column_scale_;
   std::vector<double> tableau_, value_;
-  std::vector<std::size_t> basic_, nonbasic_;      // variable in each row, in each column
-  std::vector<std::size_t> place_;                 // row of a basic variable, n + column of a nonbasic one
-  std::vector<double> system_, rhs_, unknown_;
+  std::vector<std::size_t> basic_, nonbasic_;  // variable in each row, in each column
+  std::vector<std::size_t> place_;             // row of a basic variable, n + column of a nonbasic one
+  std::vector<double> system_, rhs_, unknown_, best_;
   std::vector<std::size_t> support_;
   RankRevealingQr qr_;
 };

@@ -15,7 +15,7 @@ namespace {
 constexpr double rank_tolerance = 1e-12;
 
 // A residual at rounding: further steps only move noise.
-constexpr double round_off = 1e-15;
+constexpr double round_off = 1e-16;
 
 double group_rho(const ContactProblem& problem, const RowGroup& group) {
   double trace = 0.0;
@@ -26,10 +26,7 @@ double group_rho(const ContactProblem& problem, const RowGroup& group) {
 }  // namespace
 
 Residual NewtonPolish::judge(const ContactProblem& problem, std::span<const double> impulse) {
-  const std::size_t n = xi_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    xi_[i] = accurate_dot(problem.matrix().subspan(i * n, n), impulse, problem.vector()[i]);
-  }
+  problem.velocities(impulse, xi_);
   return residual(problem, impulse, xi_);
 }
 
@@ -112,8 +109,12 @@ void NewtonPolish::restore_sets(const ContactProblem& problem) {
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     const RowSet& set = problem.sets()[i];
     switch (set.kind) {
-      case SetKind::half_line: trial_[i] = std::max(trial_[i], 0.0); break;
-      case SetKind::interval: trial_[i] = std::clamp(trial_[i], set.lower, set.upper); break;
+      case SetKind::half_line:
+        trial_[i] = std::max(trial_[i], 0.0);
+        break;
+      case SetKind::interval:
+        trial_[i] = std::clamp(trial_[i], set.lower, set.upper);
+        break;
       case SetKind::bounded_interval: {
         const double limit = set.coefficient * std::max(trial_[static_cast<std::size_t>(set.bound)], 0.0);
         trial_[i] = std::clamp(trial_[i], -limit, limit);

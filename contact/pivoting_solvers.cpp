@@ -32,7 +32,8 @@ SolverAnswer LemkeSolver::solve(const ContactProblem& problem, std::span<double>
   form_.impulses(problem, z_, impulse);
   if (answer.status == LcpStatus::solved) return {Outcome::solved, false, answer.pivots, {}};
   const bool proved = answer.status == LcpStatus::secondary_ray && without_friction(problem);
-  return {proved ? Outcome::no_solution : Outcome::not_solved, false, answer.pivots, to_string(answer.status)};
+  return {proved ? Outcome::no_solution : Outcome::not_solved, false, answer.pivots,
+          to_string(answer.status)};
 }
 
 }  // namespace carom

@@ -28,7 +28,8 @@ constexpr int secular_steps = 50;
 // Minimises P^T W P / 2 + b^T P over |P| <= radius (2 x 2, W >= 0): Coulomb friction in the plane of contact
 // for a known normal impulse. (W + lambda I) P = -b with |P| = radius is solved for lambda by Newton's method
 // on 1 / |P|, which is nearly linear in lambda and converges from lambda = 0 without safeguards.
-void solve_disc(double w11, double w12, double w22, double b1, double b2, double radius, double& p1, double& p2) {
+void solve_disc(double w11, double w12, double w22, double b1, double b2, double radius, double& p1,
+                double& p2) {
   if (!(radius > 0.0)) {
     p1 = p2 = 0.0;
     return;
@@ -77,7 +78,11 @@ double ProjectionSolver::velocity(const ContactProblem& problem, std::size_t row
 
 void ProjectionSolver::visit_planar(const ContactProblem& problem, std::size_t row) {
   const int i = static_cast<int>(row);
-  PlanarContact c{problem.w(i, i), problem.w(i, i + 1), problem.w(i + 1, i + 1), 0.0, 0.0,
+  PlanarContact c{problem.w(i, i),
+                  problem.w(i, i + 1),
+                  problem.w(i + 1, i + 1),
+                  0.0,
+                  0.0,
                   problem.sets()[row + 1].coefficient};
   c.b_n = velocity(problem, row) - c.w_nn * impulse_[row] - c.w_nt * impulse_[row + 1];
   c.b_t = velocity(problem, row + 1) - c.w_nt * impulse_[row] - c.w_tt * impulse_[row + 1];
@@ -90,8 +95,8 @@ void ProjectionSolver::visit_planar(const ContactProblem& problem, std::size_t r
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(found.count); ++k) {
-    const double distance = std::hypot(found.list[k].normal - impulse_[row],
-                                       found.list[k].tangential - impulse_[row + 1]);
+    const double distance =
+        std::hypot(found.list[k].normal - impulse_[row], found.list[k].tangential - impulse_[row + 1]);
     if (distance < least) {
       least = distance;
       best = k;
@@ -111,7 +116,8 @@ void ProjectionSolver::visit_rows(const ContactProblem& problem, const RowGroup&
       const int r = static_cast<int>(i);
       const double xi = velocity(problem, i);
       if (set.kind == SetKind::half_line) {
-        impulse_[i] = clamp_step(impulse_[i], problem.w(r, r), xi, 0.0, std::numeric_limits<double>::infinity());
+        impulse_[i] =
+            clamp_step(impulse_[i], problem.w(r, r), xi, 0.0, std::numeric_limits<double>::infinity());
       } else if (set.kind == SetKind::interval) {
         impulse_[i] = clamp_step(impulse_[i], problem.w(r, r), xi, set.lower, set.upper);
       } else {

@@ -2,6 +2,8 @@
 
 #include <carom/contact/rank_revealing_qr.h>
 
+#include <carom/contact/accurate_dot.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,19 +23,6 @@ double norm(std::span<const double> v) {
 }
 
 }  // namespace
-
-double accurate_dot(std::span<const double> a, std::span<const double> b, double start) {
-  double sum = start, error = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double product = a[i] * b[i];
-    const double product_error = std::fma(a[i], b[i], -product);
-    const double next = sum + product;
-    const double part = next - sum;
-    error += ((sum - (next - part)) + (product - part)) + product_error;
-    sum = next;
-  }
-  return sum + error;
-}
 
 void RankRevealingQr::factor(std::span<const double> a, std::size_t rows, std::size_t columns,
                              double tolerance) {

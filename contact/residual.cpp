@@ -2,6 +2,8 @@
 
 #include <carom/contact/residual.h>
 
+#include <carom/contact/planar_certificate.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,7 +36,9 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
     const RowSet& set = problem.sets()[i];
     const double moved = impulse[i] - rho * xi[i];
     switch (set.kind) {
-      case SetKind::half_line: worst = larger(worst, impulse[i] - std::max(moved, 0.0)); break;
+      case SetKind::half_line:
+        worst = larger(worst, impulse[i] - std::max(moved, 0.0));
+        break;
       case SetKind::interval:
         worst = larger(worst, impulse[i] - std::min(std::max(moved, set.lower), set.upper));
         break;
@@ -60,7 +64,14 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
 
 }  // namespace
 
-Residual residual(const ContactProblem& problem, std::span<const double> impulse, std::span<const double> xi) {
+Residual residual(const ContactProblem& problem, std::span<const double> impulse,
+                  std::span<const double> xi) {
+  if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line) {
+    const auto b = problem.vector();
+    return {planar_residual({problem.w(0, 0) + problem.w(1, 1), b[0], b[1], problem.sets()[1].coefficient,
+                             impulse[0], impulse[1], xi[0], xi[1]}),
+            0};
+  }
   double largest_trace = 0.0;
   for (const RowGroup& group : problem.groups()) largest_trace = larger(largest_trace, trace(problem, group));
   const double least_trace = largest_trace * negligible_trace;

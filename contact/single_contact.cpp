@@ -2,38 +2,39 @@
 
 #include <carom/contact/single_contact.h>
 
+#include <carom/contact/planar_certificate.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace carom {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 // Solutions nearer than this part of their size are one: a mode boundary reached exactly from both sides.
 constexpr double merge_distance = 1e-13;
 
-// Coupling and anisotropy below this part of W count as rounding in the closed form of a sphere.
-constexpr double decoupled_threshold = 8.0 * epsilon;
-
-// a b - c d with an error of two roundings of the result (Kahan's algorithm).
+// a b - c d with an error of at most five half roundings of the result: plainly where little cancels, by
+// Kahan's algorithm (two roundings) where much does.
 double difference_of_products(double a, double b, double c, double d) {
-  const double cd = c * d;
+  const double ab = a * b, cd = c * d;
+  const double plain = ab - cd;
+  if (std::abs(plain) >= 0.5 * std::max(std::abs(ab), std::abs(cd))) return plain;
   const double error = std::fma(-c, d, cd);
   return std::fma(a, b, -cd) + error;
 }
 
 // The numbers that decide on the modes of a contact with friction.
 struct Predicates {
-  double p_plus, p_minus;    // W_nn -+ mu W_nt
-  double s_plus, s_minus;    // see solve_planar_contact
-  double p_scale, s_scale;   // what they are compared with
-  double determinant;        // 0 where singular
+  double p_plus, p_minus;   // W_nn -+ mu W_nt
+  double s_plus, s_minus;   // see solve_planar_contact
+  double p_scale, s_scale;  // what they are compared with
+  double determinant;       // 0 where singular
 };
 
-Predicates evaluate(const PlanarContact& c) {
+// Inlined by force: passing these numbers through memory costs more than computing them.
+[[gnu::always_inline]] inline Predicates evaluate(const PlanarContact& c) {
   Predicates v;
   const double coupling = c.friction * c.w_nt;
   const double lateral = c.friction * c.w_tt;
@@ -77,10 +78,17 @@ void add(PlanarSolutions& found, const PlanarImpulse& impulse) {
   found.list[static_cast<std::size_t>(found.count++)] = impulse;
 }
 
-// Smallest normal impulse first. The list is short and nearly always has one entry.
+// Smallest normal impulse first, equal ones in the order found. Insertion: at most four, and no memory asked
+// for.
 void order(PlanarSolutions& found) {
-  std::stable_sort(found.list.begin(), found.list.begin() + found.count,
-                   [](const PlanarImpulse& a, const PlanarImpulse& b) { return a.normal < b.normal; });
+  for (int i = 1; i < found.count; ++i) {
+    for (int j = i; j > 0; --j) {
+      PlanarImpulse& lower = found.list[static_cast<std::size_t>(j - 1)];
+      PlanarImpulse& upper = found.list[static_cast<std::size_t>(j)];
+      if (!(upper.normal < lower.normal)) break;
+      std::swap(lower, upper);
+    }
+  }
 }
 
 // No coupling to, or no effect of, the tangential direction: P_n = max(0, -b_n / W_nn), P_t = 0.
@@ -93,7 +101,7 @@ PlanarSolutions solve_frictionless(const PlanarContact& c) {
     return found;
   }
   if (!(c.w_nn > 0.0)) {
-    found.outcome = Outcome::no_solution;
+    found.outcome = std::isfinite(c.b_n) && c.w_nn == 0.0 ? Outcome::no_solution : Outcome::not_solved;
     return found;
   }
   const double normal = -c.b_n / c.w_nn;
@@ -170,12 +178,15 @@ PlanarSolutions list_modes(const PlanarContact& c, const Predicates& v) {
   found.outcome = found.count == 0   ? Outcome::no_solution
                   : found.count == 1 ? Outcome::solved
                                      : Outcome::several_solutions;
+  // A proof about numbers that are none is no proof.
+  if (found.count == 0 && !std::isfinite(terms + v.s_scale)) found.outcome = Outcome::not_solved;
   order(found);
   return found;
 }
 
 // The unique solution where mu |W_nt| < W_nn and W is regular, b_n not zero; false where one of these fails.
-bool solve_regular(const PlanarContact& c, const Predicates& v, PlanarImpulse& impulse, bool& degenerate) {
+[[gnu::always_inline]] inline bool solve_regular(const PlanarContact& c, const Predicates& v,
+                                                 PlanarImpulse& impulse, bool& degenerate) {
   if (!(v.p_plus > degenerate_margin * v.p_scale && v.p_minus > degenerate_margin * v.p_scale)) return false;
   const double normal_margin = std::abs(c.b_n);
   if (c.b_n > 0.0) {
@@ -187,19 +198,38 @@ bool solve_regular(const PlanarContact& c, const Predicates& v, PlanarImpulse& i
   const double margin = degenerate_margin * v.s_scale;
   if (v.s_plus >= 0.0 && v.s_minus >= 0.0) {
     impulse = stick(c, v.determinant);
-    degenerate = v.s_plus < margin || v.s_minus < margin ||
-                 v.determinant < degenerate_margin * c.w_nn * c.w_tt;
+    degenerate =
+        v.s_plus < margin || v.s_minus < margin || v.determinant < degenerate_margin * c.w_nn * c.w_tt;
     return true;
   }
   const bool positive = v.s_plus < v.s_minus;
   impulse = positive ? slip(c, v.p_plus, ContactMode::slip_positive)
                      : slip(c, v.p_minus, ContactMode::slip_negative);
-  degenerate = (positive ? -v.s_plus : -v.s_minus) < margin ||
-               normal_margin < degenerate_margin * std::abs(c.b_t);
+  degenerate =
+      (positive ? -v.s_plus : -v.s_minus) < margin || normal_margin < degenerate_margin * std::abs(c.b_t);
   return true;
 }
 
 }  // namespace
+
+CertifiedImpulse solve_regular_contact(const ContactProblem& problem) {
+  const double* w = problem.matrix().data();
+  const double* b = problem.vector().data();
+  const PlanarContact c{w[0], w[1], w[3], b[0], b[1], problem.sets()[1].coefficient};
+  CertifiedImpulse answer;
+  PlanarImpulse impulse;
+  if (!(c.friction > 0.0 && c.w_tt > 0.0)) return answer;
+  if (!solve_regular(c, evaluate(c), impulse, answer.degenerate)) return answer;
+  const double p_n = impulse.normal, p_t = impulse.tangential;
+  answer.impulse = impulse;
+  answer.xi_n = c.b_n + c.w_nn * p_n + c.w_nt * p_t;
+  answer.xi_t = c.b_t + c.w_nt * p_n + c.w_tt * p_t;
+  const PlanarAnswer numbers{c.w_nn + c.w_tt, c.b_n, c.b_t, c.friction, p_n, p_t, answer.xi_n, answer.xi_t};
+  answer.residual = planar_residual(numbers);
+  answer.mode = planar_mode(numbers);
+  answer.usable = true;
+  return answer;
+}
 
 PlanarSolutions solve_planar_contact(const PlanarContact& contact) {
   // Without friction, or where nothing moves the contact tangentially, only the normal direction is left;
@@ -220,82 +250,6 @@ PlanarSolutions solve_planar_contact(const PlanarContact& contact) {
     return found;
   }
   return list_modes(contact, v);
-}
-
-namespace {
-
-constexpr SolverAnswer not_applicable{Outcome::not_solved, false, 0, "not applicable"};
-
-SolverAnswer solve_planar(const ContactProblem& problem, std::span<double> impulse) {
-  const auto b = problem.vector();
-  const PlanarContact contact{problem.w(0, 0), problem.w(0, 1), problem.w(1, 1),
-                              b[0],            b[1],            problem.sets()[1].coefficient};
-  if (contact.friction > 0.0 && contact.w_tt > 0.0) {
-    const Predicates v = evaluate(contact);
-    PlanarImpulse found;
-    bool degenerate = false;
-    if (solve_regular(contact, v, found, degenerate)) {
-      impulse[0] = found.normal;
-      impulse[1] = found.tangential;
-      return {Outcome::solved, degenerate, 1, {}};
-    }
-  }
-  const PlanarSolutions found = solve_planar_contact(contact);
-  impulse[0] = found.list[0].normal;
-  impulse[1] = found.list[0].tangential;
-  return {found.outcome, found.degenerate, 1,
-          found.outcome == Outcome::no_solution ? "no mode is possible" : std::string_view{}};
-}
-
-SolverAnswer solve_lone_row(const ContactProblem& problem, std::span<double> impulse) {
-  const RowSet& set = problem.sets()[0];
-  const double w = problem.w(0, 0), b = problem.vector()[0];
-  const double lower = set.kind == SetKind::half_line ? 0.0 : set.lower;
-  const double upper = set.kind == SetKind::half_line ? std::numeric_limits<double>::infinity() : set.upper;
-  const double wanted = w > 0.0 ? -b / w : (b > 0.0 ? lower : (b < 0.0 ? upper : 0.0));
-  impulse[0] = std::clamp(wanted, lower, upper);
-  if (std::isfinite(impulse[0])) return {Outcome::solved, b == 0.0, 1, {}};
-  if (std::isnan(b) || std::isnan(w)) return {Outcome::not_solved, false, 1, "not a number"};
-  impulse[0] = 0.0;
-  return {Outcome::no_solution, false, 1, "an immovable row is driven against its bound"};
-}
-
-// A sphere or a particle in space (theory section 4, with the tangent a plane).
-SolverAnswer solve_decoupled_disc(const ContactProblem& problem, std::span<double> impulse) {
-  const auto b = problem.vector();
-  const double w_nn = problem.w(0, 0), w_tt = 0.5 * (problem.w(1, 1) + problem.w(2, 2));
-  const double coupling = std::max(std::abs(problem.w(0, 1)), std::abs(problem.w(0, 2)));
-  const double anisotropy = std::max(std::abs(problem.w(1, 2)), std::abs(problem.w(1, 1) - problem.w(2, 2)));
-  if (!(w_nn > 0.0 && w_tt > 0.0) || coupling > decoupled_threshold * std::min(w_nn, w_tt) ||
-      anisotropy > decoupled_threshold * w_tt) {
-    return not_applicable;
-  }
-  const double normal = std::max(-b[0] / w_nn, 0.0);
-  const double wanted = std::hypot(b[1], b[2]) / w_tt;
-  const double limit = problem.sets()[1].coefficient * normal;
-  const double shrink = wanted > limit ? limit / wanted : 1.0;
-  impulse[0] = normal;
-  impulse[1] = -shrink * b[1] / w_tt;
-  impulse[2] = -shrink * b[2] / w_tt;
-  const double scale = std::max({std::abs(b[0]), std::abs(b[1]), std::abs(b[2])});
-  const bool between = normal > 0.0 && limit > 0.0 && std::abs(wanted - limit) < degenerate_margin * (wanted + limit);
-  return {Outcome::solved, between || !(std::abs(b[0]) > degenerate_margin * scale), 1, {}};
-}
-
-}  // namespace
-
-SolverAnswer SingleContactSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
-  if (problem.groups().size() != 1) return not_applicable;
-  switch (problem.rows()) {
-    case 1: return solve_lone_row(problem, impulse);
-    case 2:
-      return problem.sets()[0].kind == SetKind::half_line ? solve_planar(problem, impulse) : not_applicable;
-    case 3:
-      return problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_disc
-                 ? solve_decoupled_disc(problem, impulse)
-                 : not_applicable;
-    default: return not_applicable;
-  }
 }
 
 }  // namespace carom

@@ -59,8 +59,8 @@ struct PlanarSolutions {
 ///     slip+    b_n <= 0, S+ <= 0 (p+ > 0);  b_n >= 0, S+ >= 0 (p+ < 0)     P_n = -b_n / p+, P_t = -mu P_n
 ///     slip-    the same with p-, S-                           P_n = -b_n / p-, P_t = +mu P_n
 /// All modes are judged by the same four numbers, so rounding cannot open a gap between two of them: for
-/// positive definite W a solution is always found. Stick is solved with twofold products (error of a few
-/// roundings whatever the condition of W).
+/// positive definite W a solution is always found. Stick is solved with twofold products where they
+/// cancel (error of a few roundings whatever the condition of W).
 ///
 /// Margins, all relative: b_n to max(|b_n|, |b_t|); p to W_nn + mu |W_nt|; S to |b_t| (W_nn + mu |W_nt|) +
 /// |b_n| (|W_nt| + mu W_tt); det W to W_nn W_tt (stick only). `degenerate` where one of those that decide on
@@ -69,6 +69,21 @@ struct PlanarSolutions {
 /// Singular W (by singular_determinant): the sticking impulse nearest to the origin is taken and reported as
 /// forces_not_unique; without any solution (jammed: theory section 3) the outcome is no_solution.
 [[nodiscard]] CAROM_API PlanarSolutions solve_planar_contact(const PlanarContact& contact);
+
+/// A solution of a planar contact together with its certificate.
+struct CertifiedImpulse {
+  PlanarImpulse impulse{};               ///< the solution; its mode is the one that was solved for
+  double xi_n = 0.0, xi_t = 0.0;         ///< xi = W P + b [m/s]
+  double residual = 0.0;                 ///< planar_residual (planar_certificate.h)
+  ContactMode mode = ContactMode::open;  ///< by the rule of contact_mode.h
+  bool degenerate = false;
+  bool usable = false;  ///< false: take the long way, solve_planar_contact()
+};
+
+/// The hot path: the solution where it is unique and regular (mu |W_nt| < W_nn, det W > 0, b_n not zero),
+/// which is nearly every impact, with its certificate; not `usable` otherwise. The problem has one group, of
+/// a normal and a friction row.
+[[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const ContactProblem& problem);
 
 /// Exact solver of problems with one contact: one lone row; one normal row with one friction row; a normal
 /// row with a disc where the normal does not couple with an isotropic tangential block (particle, sphere).

@@ -38,25 +38,25 @@ bool SolutionList::build_faces(const ContactProblem& problem) {
       const RowSet& friction = problem.sets()[static_cast<std::size_t>(group.first) + 1];
       if (own.kind != SetKind::half_line || friction.kind != SetKind::bounded_interval) return false;
       const double mu = friction.coefficient;
-      faces.push_back({});                          // open
+      faces.push_back({});  // open
       if (mu > 0.0) {
-        faces.push_back({0.0, 2, 0.0, 2, true});    // stick
-        faces.push_back({0.0, 1, -mu, 1, true});    // slip+
-        faces.push_back({0.0, 1, mu, 1, true});     // slip-
-        faces.push_back({0.0, 1, -mu, 2, false});   // friction exhausted without slip
+        faces.push_back({0.0, 2, 0.0, 2, true});   // stick
+        faces.push_back({0.0, 1, -mu, 1, true});   // slip+
+        faces.push_back({0.0, 1, mu, 1, true});    // slip-
+        faces.push_back({0.0, 1, -mu, 2, false});  // friction exhausted without slip
         faces.push_back({0.0, 1, mu, 2, false});
       } else {
         faces.push_back({0.0, 1, 0.0, 1, true});
       }
-      faces.push_back({0.0, 0, 0.0, 1, false});     // touching without impulse
+      faces.push_back({0.0, 0, 0.0, 1, false});  // touching without impulse
       continue;
     }
     const bool half_line = own.kind == SetKind::half_line;
-    faces.push_back({0.0, 1, 0.0, 1, true});        // no velocity
+    faces.push_back({0.0, 1, 0.0, 1, true});  // no velocity
     for (const double bound : {half_line ? 0.0 : own.lower, half_line ? own.lower : own.upper}) {
       if (!std::isfinite(bound) || (half_line && faces.size() > 1)) continue;
-      faces.push_back({bound, 0, 0.0, 0, true});    // at a bound, moving
-      faces.push_back({bound, 0, 0.0, 1, false});   // at a bound without velocity
+      faces.push_back({bound, 0, 0.0, 0, true});   // at a bound, moving
+      faces.push_back({bound, 0, 0.0, 1, false});  // at a bound without velocity
     }
   }
   return true;
@@ -69,9 +69,10 @@ void SolutionList::set_scales(const ContactProblem& problem) {
   for (const RowGroup& group : problem.groups()) largest = std::max(largest, group_trace(problem, group));
   for (const RowGroup& group : problem.groups()) {
     const double trace = group_trace(problem, group);
-    const double rho = trace > negligible_trace * largest ? 1.0 / trace : (largest > 0.0 ? 1.0 / largest : 1.0);
-    for (std::size_t i = static_cast<std::size_t>(group.first), k = 0; k < static_cast<std::size_t>(group.size);
-         ++i, ++k) {
+    const double rho =
+        trace > negligible_trace * largest ? 1.0 / trace : (largest > 0.0 ? 1.0 / largest : 1.0);
+    for (std::size_t i = static_cast<std::size_t>(group.first), k = 0;
+         k < static_cast<std::size_t>(group.size); ++i, ++k) {
       rho_[i] = rho;
       scale_ = std::max(scale_, rho * std::abs(problem.vector()[i]));
     }
@@ -250,16 +251,23 @@ Outcome SolutionList::conclude() {
     for (std::size_t i = 0; i < rows_; ++i) total += std::abs(impulses_[k * rows_ + i]);
     return total;
   };
-  std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return sum(a) < sum(b); });
+  std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+    const double of_a = sum(a), of_b = sum(b);
+    return of_a < of_b || (of_a == of_b && a < b);
+  });
   for (std::size_t k = 0; k < count_; ++k) {
     bool known = false;
     for (std::size_t j = 0; j < k && !known; ++j) {
-      known = same(std::span(impulses_).subspan(k * rows_, rows_), std::span(velocities_).subspan(k * rows_, rows_),
-                   j, true);
+      known = same(std::span(impulses_).subspan(k * rows_, rows_),
+                   std::span(velocities_).subspan(k * rows_, rows_), j, true);
     }
     if (!known) ++end_velocities_;
   }
-  if (count_ == 0) return least_residual_ > refuted_residual ? Outcome::no_solution : Outcome::not_solved;
+  if (count_ == 0) {
+    // Without a single finite candidate the data were no numbers.
+    const bool refuted = least_residual_ > refuted_residual && std::isfinite(least_residual_);
+    return refuted ? Outcome::no_solution : Outcome::not_solved;
+  }
   if (end_velocities_ > 1 || velocity_varies_) return Outcome::several_solutions;
   return count_ > 1 || unbounded_ ? Outcome::forces_not_unique : Outcome::solved;
 }

@@ -65,11 +65,11 @@ public:
 private:
   // One mode of one group, or a boundary of one: unknowns, equations, and what is given.
   struct Face {
-    double offset = 0.0;     // given impulse of the first row
-    int unknowns = 0;        // 0: none, 1: normal with P_t = slope P_n, 2: both
+    double offset = 0.0;  // given impulse of the first row
+    int unknowns = 0;     // 0: none, 1: normal with P_t = slope P_n, 2: both
     double slope = 0.0;
-    int equations = 0;       // 0: none, 1: xi of the first row, 2: of both rows
-    bool pure = true;        // a mode, not a boundary
+    int equations = 0;  // 0: none, 1: xi of the first row, 2: of both rows
+    bool pure = true;   // a mode, not a boundary
   };
   bool build_faces(const ContactProblem& problem);
   void visit(const ContactProblem& problem, std::span<const std::size_t> choice, bool rays);

@@ -9,6 +9,7 @@
 #include <carom/contact/solution_list.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -17,20 +18,36 @@ namespace carom {
 namespace {
 
 // Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
-constexpr double polish_from = 1e-14;
-constexpr int polish_steps = 4;
+constexpr double polish_from = 1e-16;
+constexpr int polish_steps = 3;
+
+// Steps where these leave the answer unacceptable: far from rounding, modes still change.
+constexpr int rescue_steps = 30;
 
 constexpr std::string_view not_applicable = "not applicable";
+constexpr std::string_view single_contact_name = "single contact";
+
+// A proof about numbers that are none is no proof.
+bool finite(const ContactProblem& problem) {
+  const auto good = [](double value) { return std::isfinite(value); };
+  return std::all_of(problem.matrix().begin(), problem.matrix().end(), good) &&
+         std::all_of(problem.vector().begin(), problem.vector().end(), good);
+}
 
 }  // namespace
 
 std::string_view to_string(SolverId solver) {
   switch (solver) {
-    case SolverId::single_contact: return "single contact";
-    case SolverId::principal_pivoting: return "principal pivoting";
-    case SolverId::lemke: return "Lemke";
-    case SolverId::projection: return "projection";
-    case SolverId::enumeration: return "enumeration";
+    case SolverId::single_contact:
+      return single_contact_name;
+    case SolverId::principal_pivoting:
+      return "principal pivoting";
+    case SolverId::lemke:
+      return "Lemke";
+    case SolverId::projection:
+      return "projection";
+    case SolverId::enumeration:
+      return "enumeration";
   }
   return "unknown solver";
 }
@@ -48,12 +65,13 @@ struct SolverChain::Workspace {
 
   // What the solvers tried so far have brought.
   struct Attempt {
-    ContactReport report;   // of the best answer
+    ContactReport& report;  // of the best answer
     SolverId best = SolverId::single_contact;
     bool proved_unsolvable = false;
-    int applicable = 0;     // solvers that could be tried
+    int applicable = 0;  // solvers that could be tried
   };
 
+  bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool attempt(const ContactProblem& problem, SolverId id, ContactSolver& solver, std::span<double> impulse,
                Attempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
@@ -61,6 +79,34 @@ struct SolverChain::Workspace {
   void enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
   void count(const Attempt& state);
 };
+
+// The hot path: one planar contact, regular and unique. False where the long way has to be gone.
+bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::span<double> impulse,
+                                           ContactReport& report) {
+  const CertifiedImpulse answer = solve_regular_contact(problem);
+  if (!answer.usable || !(answer.residual <= accepted_residual)) return false;
+  impulse[0] = answer.impulse.normal;
+  impulse[1] = answer.impulse.tangential;
+  if (xi.size() != 2) xi.resize(2);
+  xi[0] = answer.xi_n;
+  xi[1] = answer.xi_t;
+  if (modes.size() != 1) modes.resize(1);
+  modes[0] = answer.mode;
+  constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);
+  report.outcome = Outcome::solved;
+  report.degenerate = answer.degenerate;
+  report.residual = answer.residual;
+  report.worst_group = 0;
+  report.iterations = 1;
+  report.tried = 1u << id;
+  report.solver = single_contact_name;
+  ++statistics.problems;
+  ++statistics.tried[id];
+  ++statistics.accepted[id];
+  if (answer.degenerate) ++statistics.degenerate;
+  statistics.worst_residual = std::max(statistics.worst_residual, answer.residual);
+  return true;
+}
 
 // Takes the trial as the best answer so far if it is.
 void SolverChain::Workspace::keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate,
@@ -95,15 +141,18 @@ bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id,
   ++statistics.tried[static_cast<std::size_t>(id)];
   if (answer.outcome == Outcome::no_solution) {
     report.reason = answer.reason;
-    state.proved_unsolvable = true;
+    state.proved_unsolvable = finite(problem);
     return true;
   }
+  // Where the scan gives up it has no point to offer; the others end near one, and polishing may reach it.
+  if (answer.outcome == Outcome::not_solved && id == SolverId::principal_pivoting) return false;
   problem.velocities(trial, trial_xi);
   Residual found = residual(problem, trial, trial_xi);
   bool degenerate = answer.degenerate;
   if (id != SolverId::single_contact) {
     if (found.value > polish_from) {
       found = polish.improve(problem, trial, polish_steps);
+      if (found.value > accepted_residual) found = polish.improve(problem, trial, rescue_steps);
       problem.velocities(trial, trial_xi);
     }
     degenerate = degenerate || at_mode_boundary(problem, trial, trial_xi);
@@ -120,7 +169,7 @@ void SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<
   state.report.tried =
       static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
   ++statistics.tried[static_cast<std::size_t>(SolverId::enumeration)];
-  state.proved_unsolvable = outcome == Outcome::no_solution;
+  state.proved_unsolvable = outcome == Outcome::no_solution && finite(problem);
   if (list.size() == 0) return;
   std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
   problem.velocities(trial, trial_xi);
@@ -139,11 +188,20 @@ void SolverChain::Workspace::count(const Attempt& state) {
   if (state.applicable > 1) ++statistics.fall_backs;
   if (report.degenerate) ++statistics.degenerate;
   switch (report.outcome) {
-    case Outcome::solved: break;
-    case Outcome::several_solutions: ++statistics.several_solutions; break;
-    case Outcome::forces_not_unique: ++statistics.forces_not_unique; break;
-    case Outcome::no_solution: ++statistics.no_solution; break;
-    case Outcome::not_solved: ++statistics.not_solved; break;
+    case Outcome::solved:
+      break;
+    case Outcome::several_solutions:
+      ++statistics.several_solutions;
+      break;
+    case Outcome::forces_not_unique:
+      ++statistics.forces_not_unique;
+      break;
+    case Outcome::no_solution:
+      ++statistics.no_solution;
+      break;
+    case Outcome::not_solved:
+      ++statistics.not_solved;
+      break;
   }
 }
 
@@ -155,26 +213,33 @@ SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
 ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
   const auto n = static_cast<std::size_t>(problem.rows());
   if (impulse.size() != n) throw std::invalid_argument("contact solver: one impulse for each row");
-  if (n > 0 && problem.groups().empty()) throw std::invalid_argument("contact solver: the problem is not grouped");
+  if (n > 0 && problem.groups().empty())
+    throw std::invalid_argument("contact solver: the problem is not grouped");
   Workspace& work = *work_;
+  // One report, built where the caller reads it: copying it would cost as much as solving a contact.
+  ContactReport report;
+  if (n == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
+      work.solve_regular(problem, impulse, report)) {
+    return report;
+  }
   work.trial.resize(n);
   work.trial_xi.resize(n);
   work.xi.resize(n);
 
-  Workspace::Attempt attempt;
   if (n == 0) {
     work.modes.clear();
-    attempt.report.outcome = Outcome::solved;
-    attempt.report.residual = 0.0;
-    return attempt.report;
+    report.outcome = Outcome::solved;
+    report.residual = 0.0;
+    return report;
   }
-  ContactSolver& first = problem.groups().size() == 1 ? static_cast<ContactSolver&>(work.single) : work.pivoting;
+  Workspace::Attempt attempt{.report = report};
+  ContactSolver& first =
+      problem.groups().size() == 1 ? static_cast<ContactSolver&>(work.single) : work.pivoting;
   const SolverId first_id =
       problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
   const bool done = work.attempt(problem, first_id, first, impulse, attempt) ||
                     work.attempt(problem, SolverId::lemke, work.lemke, impulse, attempt) ||
                     work.attempt(problem, SolverId::projection, work.projection, impulse, attempt);
-  ContactReport& report = attempt.report;
   if (!done && !(report.residual <= tolerated_residual)) work.enumerate(problem, impulse, attempt);
 
   if (report.residual <= tolerated_residual) {

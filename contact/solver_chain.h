@@ -57,17 +57,17 @@ struct ContactReport {
 
 /// Counts since construction or reset.
 struct ChainStatistics {
-  std::int64_t problems = 0;                            ///< problems solved or not
-  std::array<std::int64_t, solver_count> accepted{};    ///< answers used, by solver
-  std::array<std::int64_t, solver_count> tried{};       ///< attempts, by solver
-  std::int64_t fall_backs = 0;                          ///< problems whose first solver was not accepted
-  std::int64_t tolerated = 0;                           ///< answers above accepted_residual that were used
-  std::int64_t several_solutions = 0;                   ///< outcomes by name
+  std::int64_t problems = 0;                          ///< problems solved or not
+  std::array<std::int64_t, solver_count> accepted{};  ///< answers used, by solver
+  std::array<std::int64_t, solver_count> tried{};     ///< attempts, by solver
+  std::int64_t fall_backs = 0;                        ///< problems whose first solver was not accepted
+  std::int64_t tolerated = 0;                         ///< answers above accepted_residual that were used
+  std::int64_t several_solutions = 0;                 ///< outcomes by name
   std::int64_t forces_not_unique = 0;
   std::int64_t degenerate = 0;
   std::int64_t no_solution = 0;
   std::int64_t not_solved = 0;
-  double worst_residual = 0.0;                          ///< largest residual of an answer that was used
+  double worst_residual = 0.0;  ///< largest residual of an answer that was used
 };
 
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
