@@ -49,6 +49,28 @@ void ParticleKind<D>::advance(Range slots, const double* q0, const double* delta
 }
 
 template <int D>
+void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
+  const double half = 0.5 * step;
+  SweepChange seen = change;
+  Index at = 0;
+  for (Index slot = slots.begin; slot < slots.end; ++slot) {
+    const double inverse = half / masses_[slot];
+    for (int i = 0; i < D; ++i, ++at) {
+      const double change_of_v =
+          inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
+      const double v = a.v0[at] + change_of_v;
+      const double q = a.q0[at] + half * (a.v0[at] + v);
+      a.cut[at] = change_of_v - (v - a.v0[at]);
+      seen.take((v - a.v1[at]) * step, v * step);
+      seen.take(q - a.q1[at], q);
+      a.v1[at] = v;
+      a.q1[at] = q;
+    }
+  }
+  change = seen;
+}
+
+template <int D>
 void ParticleKind<D>::apply_inverse_mass(Range slots, const double* f, double* a) const {
   for (Index slot = slots.begin; slot < slots.end; ++slot, f += D, a += D) {
     for (int i = 0; i < D; ++i) a[i] = f[i] / masses_[slot];

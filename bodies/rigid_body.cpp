@@ -60,6 +60,27 @@ void RigidBodyKind<2>::advance(Range slots, const double* q0, const double* delt
   }
 }
 
+void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
+  const double half = 0.5 * step;
+  Index at = 0;
+  for (Index slot = slots.begin; slot < slots.end; ++slot) {
+    const MassProperties<2>& mass = parts_[slot].mass;
+    for (Index i = 0; i < 3; ++i, ++at) {
+      const double inverse = half / (i < 2 ? mass.mass : mass.inertia);
+      const double length = i < 2 ? 1.0 : length_scale(slot, i);
+      const double change_of_v =
+          inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
+      const double v = a.v0[at] + change_of_v;
+      const double q = a.q0[at] + half * (a.v0[at] + v);
+      a.cut[at] = change_of_v - (v - a.v0[at]);
+      change.take((v - a.v1[at]) * step * length, v * step * length);
+      change.take((q - a.q1[at]) * length, q * length);
+      a.v1[at] = v;
+      a.q1[at] = q;
+    }
+  }
+}
+
 void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* a) const {
   for (Index slot = slots.begin; slot < slots.end; ++slot, f += 3, a += 3) {
     const MassProperties<2>& mass = parts_[slot].mass;

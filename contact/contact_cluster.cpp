@@ -1,13 +1,28 @@
 #include <carom/contact/contact_cluster.h>
+#include <carom/contact/contact_mode.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
+
+namespace {
+
+// Two solutions whose velocities agree to this part of the largest given one have one velocity.
+constexpr double same_velocity = 1e-9;
+
+// The modes are known and, if they are right, linear: one step solves them, another takes the rounding.
+constexpr int newton_steps = 2;
+
+constexpr std::string_view kept = "modes of the last sweep";
+
+}  // namespace
 
 void ContactCluster::build(const Assembly& assembly, std::span<const Contact> contacts,
                            const double* velocity_before) {
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
   contacts_ = contacts;
+  solved_ = changed_modes_ = false;
   first_row_.clear();
   int rows = 0;
   for (const Contact& contact : contacts) {
@@ -71,9 +86,44 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
 }
 
 const ContactReport& ContactCluster::solve(SolverChain& chain) {
+  kept_impulse_.assign(impulse_.begin(), impulse_.end());
+  kept_modes_.assign(modes_.begin(), modes_.end());
   report_ = chain.solve(problem_, impulse_);
   modes_.assign(chain.modes().begin(), chain.modes().end());
+  changed_modes_ = solved_ && modes_ != kept_modes_;
+  if (changed_modes_) keep_modes();
+  solved_ = true;
   return report_;
+}
+
+void ContactCluster::keep_modes() {
+  const Residual found = polish_.improve(problem_, kept_impulse_, newton_steps);
+  if (!(found.value <= accepted_residual)) return;
+  kept_xi_.resize(kept_impulse_.size());
+  problem_.velocities(kept_impulse_, kept_xi_);
+  for (std::size_t group = 0; group < kept_modes_.size(); ++group) {
+    if (contact_mode(problem_, problem_.groups()[group], kept_impulse_, kept_xi_) != kept_modes_[group]) return;
+  }
+  xi_.resize(impulse_.size());
+  problem_.velocities(impulse_, xi_);
+  double difference = 0.0, size = 0.0;
+  for (std::size_t row = 0; row < xi_.size(); ++row) {
+    difference = std::max(difference, std::abs(xi_[row] - kept_xi_[row]));
+    size = std::max(size, std::abs(problem_.vector()[row]));
+  }
+  const bool known = report_.outcome == Outcome::several_solutions || report_.outcome == Outcome::forces_not_unique;
+  if (report_.usable() && !known) {
+    report_.outcome = difference > same_velocity * size ? Outcome::several_solutions : Outcome::forces_not_unique;
+  } else if (!report_.usable()) {
+    report_.outcome = Outcome::solved;
+  }
+  report_.residual = found.value;
+  report_.worst_group = found.group;
+  report_.solver = kept;
+  report_.reason = {};
+  std::copy(kept_impulse_.begin(), kept_impulse_.end(), impulse_.begin());
+  modes_.assign(kept_modes_.begin(), kept_modes_.end());
+  changed_modes_ = false;
 }
 
 void ContactCluster::apply(double* velocity) const {

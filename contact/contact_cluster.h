@@ -7,6 +7,7 @@
 
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_problem.h>
+#include <carom/contact/newton_polish.h>
 #include <carom/contact/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -23,7 +24,9 @@ public:
   void build(const Assembly& assembly, std::span<const Contact> contacts, const double* velocity_before);
   /// Makes b from the velocities that the step would end with if no contact acted.
   void set_free_velocity(const double* velocity_free);
-  /// Solves. The report says whether impulses() may be used.
+  /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
+  /// again since build() keeps to the modes of the answer before as long as they are one of them: an iteration
+  /// around it could not settle if it jumped between them.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
   /// Adds M^-1 H^T P to the velocities.
   void apply(double* velocity) const;
@@ -38,12 +41,16 @@ public:
   [[nodiscard]] std::span<const double> impulses() const { return impulse_; }
   /// Modes of the contacts.
   [[nodiscard]] std::span<const ContactMode> modes() const { return modes_; }
+  /// True if the last solution has other modes than the one before it since build().
+  [[nodiscard]] bool changed_modes() const { return changed_modes_; }
   /// Report of the last solution.
   [[nodiscard]] const ContactReport& report() const { return report_; }
   /// First row of a contact.
   [[nodiscard]] int first_row(std::size_t contact) const { return first_row_[contact]; }
 
 private:
+  void keep_modes();
+
   std::span<const Contact> contacts_;
   ContactProblem problem_;
   std::vector<int> first_row_;
@@ -51,6 +58,11 @@ private:
   std::vector<double> response_;  // M^-1 H^T, one row of max_columns numbers per contact row
   std::vector<ContactMode> modes_;
   ContactReport report_;
+  NewtonPolish polish_;
+  std::vector<double> kept_impulse_, xi_, kept_xi_;
+  std::vector<ContactMode> kept_modes_;
+  bool solved_ = false;  // since build()
+  bool changed_modes_ = false;
 };
 
 }  // namespace carom

@@ -159,17 +159,46 @@ void evaluate_positions(const Assembly& assembly, Index island, const StateView&
   });
 }
 
-void evaluate_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
-                    const Loads& loads) {
+namespace {
+
+/// Calls f(kind, elements, context) for the kinds that act in an island, with the load arrays zeroed first.
+template <class F>
+void for_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
+               const Loads& loads, F&& f) {
   const Island& range = assembly.islands()[island];
-  for (double* array : {loads.conservative, loads.dissipative, loads.external}) {
-    std::fill(array + range.v.begin, array + range.v.end, 0.0);
-  }
-  const EvaluationContext at{assembly, state, evaluation, range.bodies};
+  const auto zero = [&](double* array) { std::fill(array + range.v.begin, array + range.v.end, 0.0); };
+  zero(loads.conservative);
+  if (loads.dissipative != loads.conservative) zero(loads.dissipative);
+  if (loads.external != loads.conservative) zero(loads.external);
+  const EvaluationContext at{assembly, state, evaluation, island};
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const Range elements = assembly.elements(island, kind);
-    if (!elements.empty()) assembly.force_kinds()[kind]->evaluate(at, elements, loads);
+    if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, at);
   }
+}
+
+}  // namespace
+
+void evaluate_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
+                    const Loads& loads) {
+  for_loads(assembly, island, state, evaluation, loads,
+            [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
+              kind.evaluate(at, elements, loads);
+            });
+}
+
+void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
+                                   const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored) {
+  for_loads(assembly, island, state, evaluation, loads,
+            [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
+              stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
+            });
+}
+
+void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state, StoredEnergies& out) {
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
+  });
 }
 
 void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out) {
@@ -183,7 +212,7 @@ void add_stored_energies(const Assembly& assembly, Index island, const StateView
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
     out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
   });
-  const EvaluationContext at{assembly, state, evaluation, assembly.islands()[island].bodies};
+  const EvaluationContext at{assembly, state, evaluation, island};
   for (Index k = 0; k < assembly.force_kinds().size(); ++k) {
     const Range elements = assembly.elements(island, k);
     const ForceKind& kind = *assembly.force_kinds()[k];

@@ -95,6 +95,13 @@ CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const 
 CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                               const Evaluation& evaluation, const Loads& loads);
 
+/// evaluate_loads(), and adds the potential energies of the elements to `stored`.
+CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
+                                             const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored);
+
+/// Adds the kinetic energy of one island.
+CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state, StoredEnergies& out);
+
 /// Position group and the sum of all loads (Evaluation::force) of one island.
 CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
 

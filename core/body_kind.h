@@ -14,6 +14,34 @@
 
 namespace carom {
 
+/// Arrays of one sweep of the trapezoidal rule; each points at the first number of a range of bodies.
+struct SweepArrays {
+  const double* q0 = nullptr;        ///< coordinates at the start of the step
+  const double* v0 = nullptr;        ///< velocities at the start
+  const double* carried = nullptr;   ///< rounding carried by the velocities
+  const double* load0 = nullptr;     ///< loads at the start
+  const double* load1 = nullptr;     ///< loads at the end, of the iterate before
+  const double* response = nullptr;  ///< change of velocity by contact, null where nothing touches
+  double* q1 = nullptr;              ///< in: the iterate before; out: this one
+  double* v1 = nullptr;              ///< in: the iterate before; out: this one
+  double* cut = nullptr;             ///< out: what rounding cuts off v1
+};
+
+/// How much an iterate differs from the one before, angles weighed by the radius of gyration [m].
+struct SweepChange {
+  double change = 0.0;  ///< largest change of positions and of h times velocities; NaN if any is
+  double size = 0.0;    ///< largest of the numbers themselves
+
+  /// Takes one number: its change and its size. A NaN is kept.
+  void take(double difference, double number) {
+    difference = difference < 0.0 ? -difference : difference;
+    number = number < 0.0 ? -number : number;
+    // Written so that a NaN is taken, and kept since nothing compares greater.
+    if (difference > change || difference != difference) change = difference;
+    if (number > size || number != number) size = number;
+  }
+};
+
 /// All bodies of one kind. Slots are the places of bodies within the kind; `q` and `v` point at the numbers
 /// of the first body of a range, bodies of a range being consecutive in every array.
 class CAROM_API BodyKind {
@@ -55,6 +83,9 @@ public:
   virtual void rotations(Range slots, const double* q, double* rotation) const = 0;
   /// q1 = q0 advanced along the motion whose velocity times time is `delta`.
   virtual void advance(Range slots, const double* q0, const double* delta, double* q1) const = 0;
+  /// One sweep of the implicit trapezoidal rule with step h, bodies of a range at once:
+  ///     v1 = v0 + M^-1 h (load0 + load1)/2 + response,   q1 = q0 advanced by h (v0 + v1)/2.
+  virtual void sweep(Range slots, double step, const SweepArrays& arrays, SweepChange& change) const = 0;
   /// a = M^-1 f.
   virtual void apply_inverse_mass(Range slots, const double* f, double* a) const = 0;
   /// p = M v.

@@ -21,7 +21,7 @@ void DifferenceDerivatives::loads(const ForceKind& kind, Index element, std::vec
   }
   for (const Index column : columns_) force_[column] = 0.0;
   const EvaluationContext moved{at_.assembly, {at_.state.time, q_.data(), v_.data(), at_.state.z}, evaluation_,
-                                at_.bodies};
+                                at_.island};
   kind.evaluate(moved, {element, element + 1}, {force_.data(), force_.data(), force_.data()});
   out.clear();
   for (const Index column : columns_) out.push_back(force_[column]);

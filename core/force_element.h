@@ -84,7 +84,8 @@ private:
   [[nodiscard]] const BodySlot& slot(BodyId body) const {
     const Layout& layout = *context_->assembly.layout();
     const Index index = layout.index(body);
-    if (index < context_->bodies.begin || index >= context_->bodies.end) {
+    const Range island = context_->assembly.islands()[context_->island].bodies;
+    if (index < island.begin || index >= island.end) {
       throw ModelError("force element: acts on or looks at " + context_->assembly.system().name(body) +
                        ", which it does not name; allowed: a body among its bodies()");
     }

@@ -25,7 +25,7 @@ struct EvaluationContext {
   const Assembly& assembly;        ///< the model
   StateView state;                 ///< the state
   const Evaluation& evaluation;    ///< its derived quantities; those of position are up to date
-  Range bodies;                    ///< bodies of the island, in the order of assembly
+  Index island;                    ///< the island the elements belong to
 };
 
 /// One entry of the derivative of the loads of an element. Entries at the same place add up.
@@ -71,6 +71,11 @@ public:
   /// Appends the derivatives of the loads of one element. By central differences unless overridden; for many
   /// elements DifferenceDerivatives is cheaper.
   virtual void derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const;
+  /// evaluate() and potential() at once, for kinds that can save work by it.
+  virtual double evaluate_with_potential(const EvaluationContext& at, Range elements, const Loads& loads) const {
+    evaluate(at, elements, loads);
+    return potential(at, elements);
+  }
   /// Adds all that distinguishes this kind's elements (functions cannot).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

@@ -14,13 +14,25 @@
 
 namespace carom {
 
-/// With the state, all that a checkpoint holds.
+/// Loads at the present state, by cause; arrays over all velocities. A function of the state, kept so that
+/// the end of one step need not be evaluated again as the start of the next.
+struct PresentLoads {
+  bool valid = false;               ///< false: to be evaluated
+  std::vector<double> total;        ///< [N, N m]
+  std::vector<double> dissipative;  ///< part of the total
+  std::vector<double> external;     ///< part of the total
+};
+
+/// With the state, all that a checkpoint holds (but `loads`, which follow from the state).
 struct Companion {
   EnergyLedger ledger;       ///< the energy account
   Statistics statistics;     ///< counts since the start
   std::vector<double> rounding;  ///< what rounding cut off the velocities: carried on, so that it does not add up
+  std::vector<double> force_before;  ///< loads one step before, for the guess at the next; empty at a start
+  double step_before = 0.0;          ///< length of that step [s]
   double grid_start = 0.0;   ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;  ///< n
+  PresentLoads loads;           ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
   std::vector<std::int64_t> fired;                        ///< how often each periodic event has fired
 };

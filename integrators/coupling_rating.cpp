@@ -116,7 +116,7 @@ private:
 
 CouplingRating rate_couplings(const Assembly& assembly, Index island, const StateView& state,
                               const Evaluation& evaluation, double step) {
-  const EvaluationContext at{assembly, state, evaluation, assembly.islands()[island].bodies};
+  const EvaluationContext at{assembly, state, evaluation, island};
   CouplingRating rating;
   Rater rater(assembly, island);
   std::vector<LoadDerivative> entries;
@@ -145,9 +145,8 @@ CouplingRating rate_couplings(const Assembly& assembly, Index island, const Stat
 
 ElementId find_non_finite(const Assembly& assembly, Index island, const StateView& state,
                           const Evaluation& evaluation) {
-  const Range bodies = assembly.islands()[island].bodies;
   const Range v = assembly.islands()[island].v;
-  const EvaluationContext at{assembly, state, evaluation, bodies};
+  const EvaluationContext at{assembly, state, evaluation, island};
   std::vector<double> force(assembly.layout()->v_size(), 0.0);
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const Range elements = assembly.elements(island, kind);

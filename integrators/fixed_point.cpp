@@ -1,5 +1,6 @@
 #include <carom/integrators/fixed_point.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,19 +9,18 @@ namespace carom {
 FixedPointJudge::Verdict FixedPointJudge::judge(double change, double size) {
   // Below this many roundings of the numbers themselves a change that no longer shrinks is rounding.
   constexpr double rounding_floor = 64.0 * std::numeric_limits<double>::epsilon();
-  // A change that has grown this much will not come back.
+  // A change that has grown this much over the first few will not come back. The very first ones may vanish
+  // by chance: a body at rest, a contact that has not answered yet.
   constexpr double divergence = 1e8;
+  constexpr int few = 3;
 
   const double floor = rounding_floor * size;
   const double previous = last_;
   last_ = change;
   ++sweeps_;
   if (!std::isfinite(change)) return Verdict::failed;
-  if (sweeps_ == 1) {
-    first_ = change;
-  } else if (change > floor && previous > 0.0) {
-    contraction_ = change / previous;
-  }
+  if (sweeps_ <= few) first_ = std::max(first_, change);
+  if (sweeps_ > 1 && change > floor && previous > 0.0) contraction_ = change / previous;
   if (change <= tolerance_) return Verdict::converged;
   if (sweeps_ > 1 && change >= previous && change <= floor) return Verdict::converged;
   if (sweeps_ >= max_sweeps_ || change > divergence * (first_ + floor)) return Verdict::failed;

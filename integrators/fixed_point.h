@@ -30,7 +30,7 @@ private:
   double tolerance_;
   int max_sweeps_;
   int sweeps_ = 0;
-  double first_ = 0.0;
+  double first_ = 0.0;  // largest of the first few changes
   double last_ = 0.0;
   double contraction_ = 0.0;
 };

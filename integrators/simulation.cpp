@@ -70,6 +70,8 @@ struct Simulation::Impl {
   void forget_history() {
     companion.modes.clear();
     companion.rounding.assign(state.v.size(), 0.0);
+    companion.force_before.clear();
+    companion.loads.valid = false;
   }
   void restart_grid() {
     companion.grid_start = state.time;
@@ -219,7 +221,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
 void Simulation::set_state(const State& state) {
   Impl& self = *impl_;
   check_state(self.model->assembly, state);
-  if (state.layout() != self.state.layout()) {
+  if (state.layout() != self.state.layout() || state.z.size() != self.state.z.size()) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
   }
   const bool moved_in_time = state.time != self.state.time;

@@ -4,7 +4,7 @@
 /// The machine of the time-stepping mode. One step from t_j to t_{j+1} (Johansson 1999, section 4):
 ///
 ///   contacts     those with gap <= 0 at t_j
-///   guess        F_{j+1} = F_j
+///   guess        F_{j+1} by extrapolation
 ///   repeat       v_free = v_j + M^-1 h (F_j + F_{j+1})/2
 ///                v_{j+1} = v_free + M^-1 H^T P,  P from the contact problem
 ///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2
@@ -45,25 +45,23 @@ public:
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 
 private:
-  /// One split of the loads by cause, arrays over all velocities.
-  struct SplitLoads {
-    std::vector<double> conservative, dissipative, external;
-
-    void resize(std::size_t size);
-    [[nodiscard]] Loads view() { return {conservative.data(), dissipative.data(), external.data()}; }
-  };
-
   void advance_island(Index island, const State& state, const Companion& companion, double step);
   void find_contacts(Index island, const State& state);
-  void solve_velocities(Index island, const State& state, const Companion& companion, double step);
-  void advance_positions(Index island, const State& state, double step);
-  [[nodiscard]] FixedPointJudge::Verdict compare(Index island, double step, FixedPointJudge& judge) const;
-  void book_couplings(Index island, const State& state, double step);
-  void book_contacts();
+  void start_iteration(Index island, const State& state, const Companion& companion, double step);
+  void solve_contacts(Index island, const State& state, const Companion& companion, double step);
+  void sweep(Index island, const State& state, const Companion& companion, double step, SweepChange& change);
+  void book_couplings(Index island, const State& state, const Companion& companion, double step);
+  void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
   void rate(Index island, const State& state, double step, double contraction);
-  [[noreturn]] void fail_contraction(Index island, const State& state, double step, const FixedPointJudge& judge);
-  [[noreturn]] void fail_contact(const ContactCluster& cluster, const State& state, double step) const;
+
+  void demand_finite_loads(Index island, const StateView& at, const State& state, double step);
+  void find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps);
+  [[noreturn]] void fail_contraction(Index island, const State& state, const Companion& companion, double step,
+                                     const FixedPointJudge& judge);
+  [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state, double step);
+  [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state, double step) const;
+
   void commit(State& state, Companion& companion, double end_time, StepReport& report);
 
   const Assembly* assembly_;
@@ -71,18 +69,17 @@ private:
   ContactFinder finder_;
   SolverChain chain_;
 
-  State trial_;                  // q_{j+1}, v_{j+1} of the sweep at hand
-  std::vector<double> used_q_, used_v_;  // iterate at which the forces of that sweep were evaluated
-  Evaluation evaluation_;
-  SplitLoads start_, end_;       // loads by cause at t_j and at the used iterate
-  std::vector<double> start_force_, load_, delta_;
-  std::vector<double> change_;   // v_{j+1} - v_j before it is rounded
-  std::vector<double> rounding_; // what rounding cuts off v_{j+1}
+  State trial_;                    // q_{j+1}, v_{j+1} of the sweep at hand
+  Evaluation evaluation_;          // force: loads at the end, of the iterate before
+  PresentLoads end_;               // loads at the end, by cause, of the last iterate
+  std::vector<double> rounding_;   // what rounding cuts off v_{j+1}
+  std::vector<double> free_, response_;  // velocities without contact, changes by contact, where bodies touch
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
 
   EnergyFlows flows_;
+  CompensatedSum coupling_work_;
   StoredEnergies stored_;
   StepReport report_;
   std::vector<CouplingRating> ratings_;      // by island, of the last time it was rated

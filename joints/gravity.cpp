@@ -24,27 +24,34 @@ std::unique_ptr<ForceKind> GravityKind<D>::arranged(std::span<const Index> order
 
 template <int D>
 void GravityKind<D>::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
-  const auto& bodies = at.assembly.layout()->bodies();
-  const auto& masses = at.assembly.masses();
   for (Index element = elements.begin; element < elements.end; ++element) {
     const Vec<D>& g = parts_[element].acceleration;
-    for (Index body = at.bodies.begin; body < at.bodies.end; ++body) {
-      double* const load = loads.conservative + bodies[body].v;
-      for (int i = 0; i < D; ++i) load[i] += masses[body] * g[i];
-    }
+    const double* mass = at.assembly.masses().data() + at.assembly.islands()[at.island].bodies.begin;
+    at.assembly.for_bodies(at.island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      double* load = loads.conservative + v;
+      const Index stride = kind.v_size();
+      for (Index i = 0; i < slots.size(); ++i, ++mass, load += stride) {
+        for (int d = 0; d < D; ++d) load[d] += *mass * g[d];
+      }
+    });
   }
 }
 
 template <int D>
 double GravityKind<D>::potential(const EvaluationContext& at, Range elements) const {
-  const auto& bodies = at.assembly.layout()->bodies();
-  const auto& masses = at.assembly.masses();
   CompensatedSum sum;
   for (Index element = elements.begin; element < elements.end; ++element) {
     const Vec<D>& g = parts_[element].acceleration;
-    for (Index body = at.bodies.begin; body < at.bodies.end; ++body) {
-      sum.add(-masses[body] * g.dot(Eigen::Map<const Vec<D>>(at.state.q + bodies[body].q)));
-    }
+    const double* mass = at.assembly.masses().data() + at.assembly.islands()[at.island].bodies.begin;
+    at.assembly.for_bodies(at.island, [&](const BodyKind& kind, Range slots, Index q, Index, Index) {
+      const double* position = at.state.q + q;
+      const Index stride = kind.q_size();
+      for (Index i = 0; i < slots.size(); ++i, ++mass, position += stride) {
+        double height = 0.0;
+        for (int d = 0; d < D; ++d) height += g[d] * position[d];
+        sum.add(-*mass * height);
+      }
+    });
   }
   return sum.value();
 }

@@ -63,34 +63,39 @@ typename SpringDamperKind<D>::Ends SpringDamperKind<D>::ends_of(const Spring& sp
 
 namespace {
 
-/// Factors a, b of the force -(a + b) d on `to`: a of the spring, b of the dashpot.
+/// Factors a, b of the force -(a + b) d on `to`, a of the spring, b of the dashpot; and the stretch.
 struct Factors {
   double spring = 0.0;
   double dashpot = 0.0;
+  double stretch = 0.0;
 };
 
 template <int D>
 Factors factors(double stiffness, double damping, double free_length, const Vec<D>& d, const Vec<D>& rate) {
   const double square = d.squaredNorm();
-  if (square == 0.0) return {};
+  if (square == 0.0) return {0.0, 0.0, -free_length};
   const double length = std::sqrt(square);
-  return {stiffness * (length - free_length) / length, damping * d.dot(rate) / square};
+  const double inverse = 1.0 / length;
+  const double stretch = length - free_length;
+  return {stiffness * stretch * inverse, damping * d.dot(rate) * (inverse * inverse), stretch};
 }
 
 }  // namespace
 
 template <int D>
-void SpringDamperKind<D>::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
+template <bool Together, bool WithPotential>
+double SpringDamperKind<D>::sweep(const EvaluationContext& at, Range elements, const Loads& loads) const {
   using Map = Eigen::Map<Vec<D>>;
   using ConstMap = Eigen::Map<const Vec<D>>;
-  const bool together = loads.conservative == loads.dissipative;
+  CompensatedSum potential;
   for (Index i = elements.begin; i < elements.end; ++i) {
     const Spring& spring = springs_[i];
     if (spring.ends == none) {
       const Vec<D> d = ConstMap(at.state.q + spring.to_q) - ConstMap(at.state.q + spring.from_q);
       const Vec<D> rate = ConstMap(at.state.v + spring.to_v) - ConstMap(at.state.v + spring.from_v);
       const Factors f = factors<D>(spring.stiffness, spring.damping, spring.free_length, d, rate);
-      if (together) {
+      if constexpr (WithPotential) potential.add(0.5 * spring.stiffness * f.stretch * f.stretch);
+      if constexpr (Together) {
         const Vec<D> force = (f.spring + f.dashpot) * d;
         Map(loads.conservative + spring.from_v) += force;
         Map(loads.conservative + spring.to_v) -= force;
@@ -110,11 +115,29 @@ void SpringDamperKind<D>::evaluate(const EvaluationContext& at, Range elements, 
     const Vec<D> d = ends.to.position(at.state, to) - ends.from.position(at.state, from);
     const Vec<D> rate = ends.to.velocity(at.state, to) - ends.from.velocity(at.state, from);
     const Factors f = factors<D>(spring.stiffness, spring.damping, spring.free_length, d, rate);
+    if constexpr (WithPotential) potential.add(0.5 * spring.stiffness * f.stretch * f.stretch);
     ends.from.add_force(loads.conservative, from, f.spring * d);
     ends.to.add_force(loads.conservative, to, -f.spring * d);
     ends.from.add_force(loads.dissipative, from, f.dashpot * d);
     ends.to.add_force(loads.dissipative, to, -f.dashpot * d);
   }
+  return potential.value();
+}
+
+template <int D>
+void SpringDamperKind<D>::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
+  if (loads.conservative == loads.dissipative) {
+    sweep<true, false>(at, elements, loads);
+  } else {
+    sweep<false, false>(at, elements, loads);
+  }
+}
+
+template <int D>
+double SpringDamperKind<D>::evaluate_with_potential(const EvaluationContext& at, Range elements,
+                                                    const Loads& loads) const {
+  return loads.conservative == loads.dissipative ? sweep<true, true>(at, elements, loads)
+                                                 : sweep<false, true>(at, elements, loads);
 }
 
 template <int D>

@@ -52,6 +52,7 @@ public:
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::elastic; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
+  double evaluate_with_potential(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   void derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const override;
   [[nodiscard]] bool has_derivatives() const override { return true; }
   void fingerprint(Fingerprint& print) const override;
@@ -68,6 +69,8 @@ private:
   };
 
   [[nodiscard]] Ends ends_of(const Spring& spring) const;
+  template <bool Together, bool WithPotential>
+  double sweep(const EvaluationContext& at, Range elements, const Loads& loads) const;
 
   std::vector<SpringDamper<D>> parts_;
   std::vector<Spring> springs_;  // packed for running, empty until arranged

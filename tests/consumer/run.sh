@@ -64,6 +64,14 @@ configure_and_build "$here/find_package" "$work/from-shared" \
   -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
 run "$work/from-shared/consumer"
 
+echo "consumer: the program of the README"
+sed -n '/^```cpp$/,/^```$/{/^```/!p}' "$source_dir/README.md" >"$work/readme.cpp"
+grep -q 'int main' "$work/readme.cpp" || fail "README.md shows no program"
+configure_and_build "$here/find_package" "$work/readme" \
+  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCONSUMER_SOURCE="$work/readme.cpp"
+run "$work/readme/consumer" >"$work/readme.out"
+grep -q '^  total ' "$work/readme.out" || fail "the README's program prints no energies"
+
 echo "consumer: installed shared copy, program compiled with -mavx2"
 if grep -qw avx2 /proc/cpuinfo; then
   configure_and_build "$here/find_package" "$work/from-shared-avx2" \

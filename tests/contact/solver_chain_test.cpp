@@ -1,34 +1,14 @@
 #include <carom/contact/solver_chain.h>
 
+#include "tests/allocation_counter.h"
 #include "tests/contact/random_problems.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cstdint>
 #include <limits>
-#include <new>
 #include <stdexcept>
 #include <vector>
-
-namespace {
-
-// Counts allocations of this thread, for the test that there are none.
-thread_local long allocations = 0;
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size > 0 ? size : 1);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 
 namespace carom {
 namespace {
@@ -191,15 +171,15 @@ TEST(SolverChain, AllocatesNothingInTheSteadyState) {
   ContactProblem threefold;
   contact_test::make_problem(1.6, 1.2, 3.4, 0.1, 1.0, 2.0, threefold);
   std::vector<double> p(2);
-  long counted = 0;
+  std::int64_t counted = 0;
   for (int round = 0; round < 2; ++round) {
-    const long before = allocations;
+    const std::int64_t before = carom_test::allocations();
     for (std::size_t k = 0; k < problems.size(); ++k) {
       static_cast<void>(chain.solve(problems[k].problem, impulses[k]));
       static_cast<void>(chain.solve(single, p));
       static_cast<void>(chain.solve(threefold, p));
     }
-    counted = allocations - before;
+    counted = carom_test::allocations() - before;
   }
   EXPECT_EQ(counted, 0);
 }

@@ -207,8 +207,7 @@ TEST(ForceElement, AParticleHasNoPointOffItsCentreAndNoAngle) {
 
   Scene free;
   const LoadedModel model(free.system);
-  const EvaluationContext context{model.assembly, model.state.view(), model.evaluation,
-                                  model.assembly.islands()[1].bodies};
+  const EvaluationContext context{model.assembly, model.state.view(), model.evaluation, 1};
   const ElementView<2> view(context);
   EXPECT_MODEL_ERROR(view.angle(free.dot), "particle 'dot'", "has no orientation");
   EXPECT_MODEL_ERROR(view.spin(free.dot), "particle 'dot'", "has no orientation");
@@ -220,8 +219,7 @@ TEST(ForceElement, AParticleHasNoPointOffItsCentreAndNoAngle) {
 TEST(ForceElement, ViewShowsAnglesAndSpins) {
   Scene scene;
   const LoadedModel model(scene.system);
-  const EvaluationContext context{model.assembly, model.state.view(), model.evaluation,
-                                  model.assembly.islands()[0].bodies};
+  const EvaluationContext context{model.assembly, model.state.view(), model.evaluation, 0};
   const ElementView<2> view(context);
   EXPECT_EQ(view.angle(scene.plate), 0.4);
   EXPECT_EQ(view.spin(scene.plate), 0.5);

@@ -143,8 +143,7 @@ TEST(SpringDamper, DerivativesMeetDifferences) {
     EXPECT_TRUE(kind.has_derivatives());
     const auto matrices = [&](bool own) {
       const Index island = model.assembly.elements(0, 0).empty() ? 1 : 0;
-      const EvaluationContext at{model.assembly, model.state.view(), model.evaluation,
-                                 model.assembly.islands()[island].bodies};
+      const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, island};
       std::vector<LoadDerivative> entries;
       if (own) {
         kind.derivatives(at, 0, entries);
@@ -170,8 +169,7 @@ TEST(SpringDamper, DerivativesMeetDifferences) {
 TEST(SpringDamper, StiffnessMatrixIsSymmetricWithoutDamping) {
   for_random_springs(123, 0.0, [](LoadedModel& model, const planar::SpringDamper&) {
     const Index island = model.assembly.elements(0, 0).empty() ? 1 : 0;
-    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation,
-                               model.assembly.islands()[island].bodies};
+    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, island};
     std::vector<LoadDerivative> entries;
     model.assembly.force_kinds()[0]->derivatives(at, 0, entries);
     const auto size = static_cast<Eigen::Index>(model.state.v.size());
@@ -289,8 +287,7 @@ TEST_F(ZeroLengthTest, DerivativesAreThoseOfTheForceThere) {
   for (const double free_length : {0.0, 1.0}) {
     const LoadedModel model(make(free_length));
     for (Index element = 0; element < 2; ++element) {
-      const EvaluationContext at{model.assembly, model.state.view(), model.evaluation,
-                                 model.assembly.islands()[element].bodies};
+      const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, element};
       std::vector<LoadDerivative> entries;
       model.assembly.force_kinds()[0]->derivatives(at, element, entries);
       for (const LoadDerivative& entry : entries) {
@@ -344,7 +341,7 @@ TEST(SpringDamper, InSpaceForceAndDerivativesMeetDifferences) {
                             .free_length = 1.5});
     LoadedModel model(system);
     expect_loads_near(model.conservative, model.minus_gradient(), 1e-10);
-    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, {0, 2}};
+    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, 0};
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6, 12), differences = own;
     std::vector<LoadDerivative> entries;
     model.assembly.force_kinds()[0]->derivatives(at, 0, entries);

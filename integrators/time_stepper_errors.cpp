@@ -1,0 +1,142 @@
+// Problem: say what went wrong in a step, with names, and what would help.
+
+#include <carom/integrators/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+std::string place(const State& state, double step) {
+  return "time stepping at t = " + to_text(state.time) + " s, step " + to_text(step) + " s: ";
+}
+
+bool all_finite(const std::vector<double>& numbers, Range range) {
+  return std::all_of(numbers.begin() + range.begin, numbers.begin() + range.end,
+                     [](double number) { return std::isfinite(number); });
+}
+
+SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state, double step) {
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.residual = cluster.report().residual;
+  for (const Contact& contact : cluster.contacts()) failure.parts.push_back(finder.name(contact.key));
+  failure.problem = std::make_shared<const ContactProblem>(cluster.problem());
+  return failure;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+void check_options(const TimeStepping& options) {
+  const auto refuse = [](const char* option, double value, const char* allowed) {
+    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) + "; allowed: " + allowed);
+  };
+  if (!(std::isfinite(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
+  if (!(std::isfinite(options.tolerance) && options.tolerance >= 0.0)) {
+    refuse("tolerance", options.tolerance, "finite and >= 0 m");
+  }
+  if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
+  if (!(std::isfinite(options.capture_speed) && options.capture_speed >= 0.0)) {
+    refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
+  }
+}
+
+void TimeStepper::demand_finite_loads(Index island, const StateView& at, const State& state, double step) {
+  evaluate_positions(*assembly_, island, at, evaluation_);
+  const ElementId culprit = find_non_finite(*assembly_, island, at, evaluation_);
+  if (!culprit.valid()) return;
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.parts.push_back(assembly_->system().name(culprit));
+  const std::string message = place(state, step) + "the loads of " + failure.parts.front() + " are not finite";
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps) {
+  const Range q = assembly_->islands()[island].q;
+  const Range v = assembly_->islands()[island].v;
+  demand_finite_loads(island, state.view(), state, step);
+  // The same sweeps once more, looking at the loads of every element between them. Loads may overflow only
+  // because the iteration diverged; then no element is to blame.
+  start_iteration(island, state, companion, step);
+  for (int i = 0; i < sweeps; ++i) {
+    SweepChange change;
+    solve_contacts(island, state, companion, step);
+    sweep(island, state, companion, step, change);
+    if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
+    demand_finite_loads(island, trial_.view(), state, step);
+    evaluate(*assembly_, island, trial_.view(), evaluation_);
+  }
+}
+
+void TimeStepper::fail_contraction(Index island, const State& state, const Companion& companion, double step,
+                                   const FixedPointJudge& judge) {
+  // The bound of the rating is pessimistic by itself; the rest is room for forces that stiffen on the way.
+  constexpr double caution = 0.9;
+  std::vector<std::string> jumping;
+  for (std::size_t i = 0; i < clusters_in_use_; ++i) {
+    if (!clusters_[i].changed_modes()) continue;
+    for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(finder_.name(contact.key));
+  }
+  if (!std::isfinite(judge.change())) find_culprit(island, state, companion, step, judge.sweeps());
+
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.residual = judge.change();
+  evaluate_positions(*assembly_, island, state.view(), evaluation_);
+  const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
+  std::string message = place(state, step) + "the fixed-point iteration does not contract after " +
+                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) + " m)";
+  if (rating.worst.valid()) {
+    failure.parts.push_back(assembly_->system().name(rating.worst));
+    failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
+    message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
+  }
+  if (rating.island_rate >= 1.0) {
+    message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
+  } else {
+    // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
+    message += "; by their derivatives at its start the couplings contract (rate " + to_text(rating.island_rate) +
+               " together), so a force jumps or stiffens";
+    if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
+    failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, const State& state, double step) {
+  SolverFailure failure = failure_of(cluster, finder_, state, step);
+  const auto b = cluster.problem().vector();
+  const bool finite = std::all_of(b.begin(), b.end(), [](double number) { return std::isfinite(number); });
+  // Loads that are not finite reach the contact first; the iterate before is still there.
+  if (!finite) {
+    demand_finite_loads(island, state.view(), state, step);
+    demand_finite_loads(island, trial_.view(), state, step);
+  }
+  std::string message = place(state, step) + "contact problem of " + listed(failure.parts) + ": ";
+  message += to_string(cluster.report().outcome);
+  if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
+  message += ", residual " + to_text(cluster.report().residual);
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state, double step) const {
+  SolverFailure failure = failure_of(cluster, finder_, state, step);
+  const std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
+                              " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+  throw SolverError(message, std::move(failure));
+}
+
+}  // namespace carom
