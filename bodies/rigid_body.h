@@ -28,11 +28,11 @@ struct RigidBody<2> {
   static constexpr Role role = Role::body;
   using Kind = RigidBodyKind<2>;
 
-  MassProperties<2> mass{};            ///< made by disc(), rod(), ... (required)
-  Vec<2> position = Vec<2>::Zero();    ///< of the centre of mass, at the start [m]
-  double angle = 0.0;                  ///< at the start, counter-clockwise [rad]
-  Vec<2> velocity = Vec<2>::Zero();    ///< of the centre of mass, at the start [m/s]
-  double spin = 0.0;                   ///< at the start, counter-clockwise [rad/s]
+  MassProperties<2> mass{};          ///< made by disc(), rod(), ... (required)
+  Vec<2> position = Vec<2>::Zero();  ///< of the centre of mass, at the start [m]
+  double angle = 0.0;                ///< at the start, counter-clockwise [rad]
+  Vec<2> velocity = Vec<2>::Zero();  ///< of the centre of mass, at the start [m/s]
+  double spin = 0.0;                 ///< at the start, counter-clockwise [rad/s]
 };
 
 /// All planar rigid bodies of a system.

@@ -19,10 +19,10 @@ struct Disc {
   static constexpr std::string_view label = "disc";
   using Kind = generic::FeatureShapeKind<Disc>;
 
-  BodyId body{};                     ///< the body (required)
+  BodyId body{};                                             ///< the body (required)
   double radius = std::numeric_limits<double>::quiet_NaN();  ///< > 0 [m]
-  Vec<2> centre = Vec<2>::Zero();    ///< in the body's frame, from the centre of mass [m]
-  MaterialId material{};             ///< for laws between materials
+  Vec<2> centre = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
+  MaterialId material{};           ///< for laws between materials
 
   /// Throws ModelError for impossible values.
   void check(const PartCheck& check) const {

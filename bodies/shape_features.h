@@ -27,14 +27,18 @@ public:
     parts_.push_back(part);
   }
 
-  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override { return std::make_unique<FeatureShapeKind>(*this); }
+  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override {
+    return std::make_unique<FeatureShapeKind>(*this);
+  }
   void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return P::dimension; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] BodyId body(Index slot) const override { return parts_[slot].body; }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
-  void rounded_points(Index slot, std::vector<RoundedPoint>& out) const override { parts_[slot].features(out); }
+  void rounded_points(Index slot, std::vector<RoundedPoint>& out) const override {
+    parts_[slot].features(out);
+  }
   void fingerprint(Fingerprint& print) const override {
     std::vector<RoundedPoint> points;
     for (const P& part : parts_) {

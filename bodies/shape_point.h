@@ -23,9 +23,7 @@ struct Point {
   MaterialId material{};             ///< for laws between materials
 
   /// Throws ModelError for impossible values.
-  void check(const PartCheck& check) const {
-    check.finite({position.data(), 2}, "position", "m");
-  }
+  void check(const PartCheck& check) const { check.finite({position.data(), 2}, "position", "m"); }
   /// Appends what can touch a half-plane.
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{position[0], position[1], 0.0}, 0.0});

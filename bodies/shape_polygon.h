@@ -19,13 +19,14 @@ struct Polygon {
   static constexpr std::string_view label = "polygon";
   using Kind = generic::FeatureShapeKind<Polygon>;
 
-  BodyId body{};                     ///< the body (required)
-  std::vector<Vec<2>> vertices{};    ///< at least three, in the body's frame [m]
-  MaterialId material{};             ///< for laws between materials
+  BodyId body{};                   ///< the body (required)
+  std::vector<Vec<2>> vertices{};  ///< at least three, in the body's frame [m]
+  MaterialId material{};           ///< for laws between materials
 
   /// Throws ModelError for impossible values.
   void check(const PartCheck& check) const {
-    if (vertices.size() < 3) check.refuse("number of vertices", std::to_string(vertices.size()), "at least 3");
+    if (vertices.size() < 3)
+      check.refuse("number of vertices", std::to_string(vertices.size()), "at least 3");
     for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
   }
   /// Appends what can touch a half-plane.

@@ -19,10 +19,11 @@ struct Segment {
   static constexpr std::string_view label = "segment";
   using Kind = generic::FeatureShapeKind<Segment>;
 
-  BodyId body{};                     ///< the body (required)
-  Vec<2> from = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< one end, in the body's frame [m]
-  Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());    ///< the other end [m]
-  MaterialId material{};             ///< for laws between materials
+  BodyId body{};  ///< the body (required)
+  Vec<2> from =
+      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< one end, in the body's frame [m]
+  Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< the other end [m]
+  MaterialId material{};                                                   ///< for laws between materials
 
   /// Throws ModelError for impossible values.
   void check(const PartCheck& check) const {

@@ -37,13 +37,14 @@ struct Contact {
   static constexpr int max_columns = 6;
 
   ContactKey key;
-  Index body = none;    ///< in the order of assembly
-  Index v = 0;          ///< first velocity of the body
-  int columns = 0;      ///< velocities of the body
-  int rows = 0;         ///< 2 in the plane, 3 in space
-  double gap = 0.0;     ///< negative where violated [m]
-  Surface law;          ///< coefficients
-  std::array<double, static_cast<std::size_t>(max_rows* max_columns)> jacobian{};  ///< row-major, stride max_columns
+  Index body = none;  ///< in the order of assembly
+  Index v = 0;        ///< first velocity of the body
+  int columns = 0;    ///< velocities of the body
+  int rows = 0;       ///< 2 in the plane, 3 in space
+  double gap = 0.0;   ///< negative where violated [m]
+  Surface law;        ///< coefficients
+  std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
+      jacobian{};  ///< row-major, stride max_columns
 
   /// Row of the map from the body's velocities to the contact velocity.
   [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }

@@ -102,7 +102,8 @@ void ContactCluster::keep_modes() {
   kept_xi_.resize(kept_impulse_.size());
   problem_.velocities(kept_impulse_, kept_xi_);
   for (std::size_t group = 0; group < kept_modes_.size(); ++group) {
-    if (contact_mode(problem_, problem_.groups()[group], kept_impulse_, kept_xi_) != kept_modes_[group]) return;
+    if (contact_mode(problem_, problem_.groups()[group], kept_impulse_, kept_xi_) != kept_modes_[group])
+      return;
   }
   xi_.resize(impulse_.size());
   problem_.velocities(impulse_, xi_);
@@ -111,9 +112,11 @@ void ContactCluster::keep_modes() {
     difference = std::max(difference, std::abs(xi_[row] - kept_xi_[row]));
     size = std::max(size, std::abs(problem_.vector()[row]));
   }
-  const bool known = report_.outcome == Outcome::several_solutions || report_.outcome == Outcome::forces_not_unique;
+  const bool known =
+      report_.outcome == Outcome::several_solutions || report_.outcome == Outcome::forces_not_unique;
   if (report_.usable() && !known) {
-    report_.outcome = difference > same_velocity * size ? Outcome::several_solutions : Outcome::forces_not_unique;
+    report_.outcome =
+        difference > same_velocity * size ? Outcome::several_solutions : Outcome::forces_not_unique;
   } else if (!report_.usable()) {
     report_.outcome = Outcome::solved;
   }

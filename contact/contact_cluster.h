@@ -25,8 +25,8 @@ public:
   /// Makes b from the velocities that the step would end with if no contact acted.
   void set_free_velocity(const double* velocity_free);
   /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
-  /// again since build() keeps to the modes of the answer before as long as they are one of them: an iteration
-  /// around it could not settle if it jumped between them.
+  /// again since build() keeps to the modes of the answer before as long as they are one of them: an
+  /// iteration around it could not settle if it jumped between them.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
   /// Adds M^-1 H^T P to the velocities.
   void apply(double* velocity) const;

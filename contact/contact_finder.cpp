@@ -27,7 +27,8 @@ void ContactFinder::collect_obstacles() {
   }
 }
 
-void ContactFinder::add_feature(Index body, const FeatureKey& key, const RoundedPoint& point, MaterialId material) {
+void ContactFinder::add_feature(Index body, const FeatureKey& key, const RoundedPoint& point,
+                                MaterialId material) {
   const auto found = std::find(materials_.begin(), materials_.end(), material);
   const auto row = static_cast<Index>(found - materials_.begin());
   if (found == materials_.end()) materials_.push_back(material);
@@ -67,8 +68,9 @@ void ContactFinder::make_law_table() {
         laws_.push_back(*law);
         continue;
       }
-      const auto feature = std::find_if(features_.begin(), features_.end(),
-                                        [&](const Feature& candidate) { return candidate.material == material; });
+      const auto feature = std::find_if(features_.begin(), features_.end(), [&](const Feature& candidate) {
+        return candidate.material == material;
+      });
       const ContactKey key{feature->key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
       throw ModelError("contact of " + name(key) +
                        ": law is not given; allowed: a Surface on the obstacle or between the two materials");
@@ -79,9 +81,10 @@ void ContactFinder::make_law_table() {
 std::string ContactFinder::name(const ContactKey& key) const {
   const System& system = assembly_->system();
   const Index token = system.token();
-  std::string text = key.of.owner == FeatureKey::Owner::body
-                         ? system.name(BodyId{key.of.serial, token})
-                         : system.name(ShapeId{key.of.serial, token}) + " (feature " + std::to_string(key.of.feature) + ")";
+  std::string text =
+      key.of.owner == FeatureKey::Owner::body
+          ? system.name(BodyId{key.of.serial, token})
+          : system.name(ShapeId{key.of.serial, token}) + " (feature " + std::to_string(key.of.feature) + ")";
   if (key.of.owner == FeatureKey::Owner::shape) {
     const auto place = system.shape_kinds().place(key.of.serial);
     text += " of " + system.name(system.shape_kinds().entries()[place.entry].kind->body(place.slot));
@@ -110,7 +113,8 @@ void ContactFinder::find_in(Index island, const StateView& state, const Evaluati
     Vec<D> arm = Vec<D>::Zero();
     if constexpr (Space<D>::has_orientation) {
       if (body.rotation != none) {
-        arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation, Vec<D>(ConstMap(feature.centre.data())));
+        arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
+                               Vec<D>(ConstMap(feature.centre.data())));
       }
     }
     const Vec<D> centre = ConstMap(state.q + body.q) + arm;

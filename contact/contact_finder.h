@@ -30,8 +30,8 @@ public:
 
 private:
   struct Feature {
-    Index body;              // in the order of assembly
-    Index material;          // row of the law table
+    Index body;      // in the order of assembly
+    Index material;  // row of the law table
     FeatureKey key;
     std::array<double, 3> centre;
     double radius;
@@ -52,10 +52,10 @@ private:
 
   const Assembly* assembly_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Feature> features_;       // ordered by body
-  std::vector<Range> of_island_;        // features of each island
-  std::vector<MaterialId> materials_;   // rows of the law table
-  std::vector<Surface> laws_;           // row-major: material, obstacle
+  std::vector<Feature> features_;      // ordered by body
+  std::vector<Range> of_island_;       // features of each island
+  std::vector<MaterialId> materials_;  // rows of the law table
+  std::vector<Surface> laws_;          // row-major: material, obstacle
 };
 
 }  // namespace carom

@@ -26,8 +26,9 @@ struct HalfSpace {
   using Kind = HalfSpaceKind<D>;
 
   Vec<D> point = Vec<D>::Zero();  ///< a point of the boundary [m]
-  Vec<D> normal = Vec<D>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
-  MaterialId material{};          ///< for laws between materials
+  Vec<D> normal =
+      Vec<D>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
+  MaterialId material{};                                           ///< for laws between materials
 };
 
 /// All half-spaces of a system.

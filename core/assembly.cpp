@@ -57,7 +57,8 @@ void Assembly::order_bodies() {
   };
   std::vector<Key> keys;
   keys.reserve(serials.size());
-  for (const Index serial : serials) keys.push_back({unions.find(serial), registry.place(serial).entry, serial});
+  for (const Index serial : serials)
+    keys.push_back({unions.find(serial), registry.place(serial).entry, serial});
   std::sort(keys.begin(), keys.end());
 
   const auto kinds = static_cast<Index>(registry.entries().size());
@@ -77,8 +78,8 @@ void Assembly::order_bodies() {
         body_slots_.push_back({first, first});
       }
     }
-    BodySlot slot{key.serial, q, v, kind.q_size(), kind.v_size(), none, key.kind,
-                  static_cast<Index>(order[key.kind].size())};
+    BodySlot slot{key.serial,    q,    v,        kind.q_size(),
+                  kind.v_size(), none, key.kind, static_cast<Index>(order[key.kind].size())};
     if (kind.has_orientation()) {
       slot.rotation = rotation;
       rotation += kind.dimension() == 2 ? 2U : 9U;
@@ -131,7 +132,8 @@ void Assembly::order_elements() {
       serials.push_back(entries[k].serials[slot]);
     }
     if (kind.is_field()) {
-      for (Index island = 0; island < islands_.size(); ++island) element_slots_[island * kinds + k] = {0, kind.size()};
+      for (Index island = 0; island < islands_.size(); ++island)
+        element_slots_[island * kinds + k] = {0, kind.size()};
     }
     force_kinds_.push_back(kind.arranged(order, *layout_));
     element_serials_.push_back(std::move(serials));
@@ -179,8 +181,8 @@ void for_loads(const Assembly& assembly, Index island, const StateView& state, c
 
 }  // namespace
 
-void evaluate_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
-                    const Loads& loads) {
+void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
+                    const Evaluation& evaluation, const Loads& loads) {
   for_loads(assembly, island, state, evaluation, loads,
             [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
               kind.evaluate(at, elements, loads);
@@ -225,7 +227,8 @@ void check_state(const Assembly& assembly, const State& state) {
   const PartCheck check("state", assembly.system());
   check.finite(state.time, "time", "s");
   if (state.q.size() != layout.q_size() || state.v.size() != layout.v_size()) {
-    check.refuse("number of coordinates", std::to_string(state.q.size()) + " + " + std::to_string(state.v.size()),
+    check.refuse("number of coordinates",
+                 std::to_string(state.q.size()) + " + " + std::to_string(state.v.size()),
                  std::to_string(layout.q_size()) + " + " + std::to_string(layout.v_size()));
   }
   for (Index body = 0; body < layout.bodies().size(); ++body) {
@@ -233,7 +236,8 @@ void check_state(const Assembly& assembly, const State& state) {
     const auto all_finite = [](const double* numbers, Index count) {
       return std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); });
     };
-    if (all_finite(state.q.data() + slot.q, slot.q_size) && all_finite(state.v.data() + slot.v, slot.v_size)) continue;
+    if (all_finite(state.q.data() + slot.q, slot.q_size) && all_finite(state.v.data() + slot.v, slot.v_size))
+      continue;
     const PartCheck body_check("state of " + assembly.system().name(layout.id(body)), assembly.system());
     body_check.finite({state.q.data() + slot.q, slot.q_size}, "coordinate", "");
     body_check.finite({state.v.data() + slot.v, slot.v_size}, "velocity", "");

@@ -88,7 +88,8 @@ private:
 };
 
 /// Fills the position group of `out` for one island.
-CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
+CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state,
+                                  Evaluation& out);
 
 /// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
 /// `evaluation` must be up to date. Arrays may coincide.
@@ -97,10 +98,12 @@ CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const Stat
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
 CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
-                                             const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored);
+                                             const Evaluation& evaluation, const Loads& loads,
+                                             StoredEnergies& stored);
 
 /// Adds the kinetic energy of one island.
-CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state, StoredEnergies& out);
+CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,
+                                  StoredEnergies& out);
 
 /// Position group and the sum of all loads (Evaluation::force) of one island.
 CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);

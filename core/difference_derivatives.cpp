@@ -7,8 +7,10 @@
 namespace carom {
 
 DifferenceDerivatives::DifferenceDerivatives(const EvaluationContext& at)
-    : at_(at), q_(at.state.q, at.state.q + at.assembly.layout()->q_size()),
-      v_(at.state.v, at.state.v + at.assembly.layout()->v_size()), force_(v_.size(), 0.0),
+    : at_(at),
+      q_(at.state.q, at.state.q + at.assembly.layout()->q_size()),
+      v_(at.state.v, at.state.v + at.assembly.layout()->v_size()),
+      force_(v_.size(), 0.0),
       evaluation_(at.evaluation) {}
 
 void DifferenceDerivatives::loads(const ForceKind& kind, Index element, std::vector<double>& out) {
@@ -20,8 +22,8 @@ void DifferenceDerivatives::loads(const ForceKind& kind, Index element, std::vec
                                                     evaluation_.rotation.data() + slot.rotation);
   }
   for (const Index column : columns_) force_[column] = 0.0;
-  const EvaluationContext moved{at_.assembly, {at_.state.time, q_.data(), v_.data(), at_.state.z}, evaluation_,
-                                at_.island};
+  const EvaluationContext moved{
+      at_.assembly, {at_.state.time, q_.data(), v_.data(), at_.state.z}, evaluation_, at_.island};
   kind.evaluate(moved, {element, element + 1}, {force_.data(), force_.data(), force_.data()});
   out.clear();
   for (const Index column : columns_) out.push_back(force_[column]);

@@ -22,8 +22,8 @@ struct End {
   End(BodyId on) : body(on) {}  // NOLINT(google-explicit-constructor): a body is an end
   End(BodyId on, const Vec<D>& at) : body(on), point(at) {}
 
-  BodyId body;                     ///< invalid until given
-  Vec<D> point = Vec<D>::Zero();   ///< in the body's frame, from its centre of mass [m]
+  BodyId body;                    ///< invalid until given
+  Vec<D> point = Vec<D>::Zero();  ///< in the body's frame, from its centre of mass [m]
 };
 
 /// Demands an end that can be: a body of this system (or ground), finite, off the centre only on a body that

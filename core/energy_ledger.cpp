@@ -8,15 +8,25 @@
 namespace carom {
 
 std::string_view to_string(StoredEnergy term) {
-  constexpr std::array<std::string_view, stored_energy_count> names{"kinetic", "gravity", "elastic", "potential"};
+  constexpr std::array<std::string_view, stored_energy_count> names{"kinetic", "gravity", "elastic",
+                                                                    "potential"};
   return names[static_cast<std::size_t>(term)];
 }
 
 std::string_view to_string(EnergyFlow term) {
-  constexpr std::array<std::string_view, energy_flow_count> names{
-      "external",       "intervention",   "dashpot", "impact_normal", "impact_tangential",
-      "contact_normal", "sliding",        "joint_friction", "rolling", "accumulation",
-      "projection",     "mode_switch",    "coupling_discretisation"};
+  constexpr std::array<std::string_view, energy_flow_count> names{"external",
+                                                                  "intervention",
+                                                                  "dashpot",
+                                                                  "impact_normal",
+                                                                  "impact_tangential",
+                                                                  "contact_normal",
+                                                                  "sliding",
+                                                                  "joint_friction",
+                                                                  "rolling",
+                                                                  "accumulation",
+                                                                  "projection",
+                                                                  "mode_switch",
+                                                                  "coupling_discretisation"};
   return names[static_cast<std::size_t>(term)];
 }
 

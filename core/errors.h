@@ -29,11 +29,11 @@ public:
 
 /// What is known of a computation that did not succeed.
 struct SolverFailure {
-  double time = 0.0;               ///< time of the last good state [s]
-  double step = 0.0;               ///< step that was tried [s]
-  double suggested_step = 0.0;     ///< step expected to succeed [s], 0 if unknown
-  double residual = 0.0;           ///< the residual that was too large, 0 if there is none
-  std::vector<std::string> parts{};  ///< names of the parts involved, the worst first
+  double time = 0.0;                                ///< time of the last good state [s]
+  double step = 0.0;                                ///< step that was tried [s]
+  double suggested_step = 0.0;                      ///< step expected to succeed [s], 0 if unknown
+  double residual = 0.0;                            ///< the residual that was too large, 0 if there is none
+  std::vector<std::string> parts{};                 ///< names of the parts involved, the worst first
   std::shared_ptr<const ContactProblem> problem{};  ///< contact problem that failed, may be null
 };
 

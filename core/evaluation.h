@@ -23,7 +23,7 @@ struct Evaluation {
   std::vector<double> rotation;  ///< rotations of oriented bodies, at BodySlot::rotation
 
   // depends on position, velocity and time
-  std::vector<double> force;        ///< sum of all loads, over all velocities [N, N m]
+  std::vector<double> force;  ///< sum of all loads, over all velocities [N, N m]
 };
 
 }  // namespace carom

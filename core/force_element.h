@@ -15,8 +15,8 @@
 ///       double potential(const ElementView<2>& at) const {                      // of the conservative part
 ///         return 0.5 * strength * at.position(body).squaredNorm();
 ///       }
-///       void check(const PartCheck& check) const { check.positive(strength, "strength", "N/m"); }  // optional
-///       void fingerprint(Fingerprint& print) const { print.add(strength); }                        // optional
+///       void check(const PartCheck& check) const { check.positive(strength, "strength", "N/m"); }  //
+///       optional void fingerprint(Fingerprint& print) const { print.add(strength); } // optional
 ///     };
 ///
 /// An element may look at and push only bodies that it names in bodies(). Without fingerprint() a checkpoint
@@ -53,22 +53,19 @@ public:
     return at.velocity(context_->state, at.lever(context_->evaluation));
   }
   /// Angle of a planar rigid body [rad].
-  [[nodiscard]] double angle(BodyId body) const
-    requires(D == 2)
-  {
+  [[nodiscard]] double angle(BodyId body) const requires(D == 2) {
     return context_->state.q[oriented(body).q + D];
   }
   /// Spin of a planar rigid body [rad/s].
-  [[nodiscard]] double spin(BodyId body) const
-    requires(D == 2)
-  {
+  [[nodiscard]] double spin(BodyId body) const requires(D == 2) {
     return context_->state.v[oriented(body).v + D];
   }
 
   /// Places of an end in the arrays. Throws ModelError for a body outside the element's island, and for a
   /// point off the centre of a body without orientation.
   [[nodiscard]] Attachment<D> attach(const End<D>& end) const {
-    if (end.body != ground && slot(end.body).rotation == none && !end.point.isZero(0.0)) refuse_orientation(end.body);
+    if (end.body != ground && slot(end.body).rotation == none && !end.point.isZero(0.0))
+      refuse_orientation(end.body);
     return {end, *context_->assembly.layout()};
   }
   /// Slot of a body that must have an orientation. Throws ModelError otherwise.
@@ -158,8 +155,11 @@ public:
     parts_.push_back(part);
   }
 
-  [[nodiscard]] std::unique_ptr<ForceKind> clone() const override { return std::make_unique<ForceElementKind>(*this); }
-  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order, const Layout&) const override {
+  [[nodiscard]] std::unique_ptr<ForceKind> clone() const override {
+    return std::make_unique<ForceElementKind>(*this);
+  }
+  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
+                                                    const Layout&) const override {
     auto copy = std::make_unique<ForceElementKind>();
     for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
     return copy;

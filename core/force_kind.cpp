@@ -3,7 +3,8 @@
 
 namespace carom {
 
-void ForceKind::derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const {
+void ForceKind::derivatives(const EvaluationContext& at, Index element,
+                            std::vector<LoadDerivative>& out) const {
   difference_derivatives(*this, at, element, out);
 }
 

@@ -22,10 +22,10 @@ class Assembly;
 
 /// Where elements are evaluated.
 struct EvaluationContext {
-  const Assembly& assembly;        ///< the model
-  StateView state;                 ///< the state
-  const Evaluation& evaluation;    ///< its derived quantities; those of position are up to date
-  Index island;                    ///< the island the elements belong to
+  const Assembly& assembly;      ///< the model
+  StateView state;               ///< the state
+  const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
+  Index island;                  ///< the island the elements belong to
 };
 
 /// One entry of the derivative of the loads of an element. Entries at the same place add up.
@@ -70,9 +70,11 @@ public:
   [[nodiscard]] virtual bool has_derivatives() const { return false; }
   /// Appends the derivatives of the loads of one element. By central differences unless overridden; for many
   /// elements DifferenceDerivatives is cheaper.
-  virtual void derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const;
+  virtual void derivatives(const EvaluationContext& at, Index element,
+                           std::vector<LoadDerivative>& out) const;
   /// evaluate() and potential() at once, for kinds that can save work by it.
-  virtual double evaluate_with_potential(const EvaluationContext& at, Range elements, const Loads& loads) const {
+  virtual double evaluate_with_potential(const EvaluationContext& at, Range elements,
+                                         const Loads& loads) const {
     evaluate(at, elements, loads);
     return potential(at, elements);
   }

@@ -28,7 +28,8 @@ bool Layout::contains(BodyId id) const {
 Index Layout::index(BodyId id) const {
   if (contains(id)) return by_serial_[id.serial];
   if (id == ground) throw ModelError("state of the ground: it has none; allowed: a body of this model");
-  if (!id.valid()) throw ModelError("state of a body: identity was never given; allowed: a body of this model");
+  if (!id.valid())
+    throw ModelError("state of a body: identity was never given; allowed: a body of this model");
   throw ModelError("state of a body: identity #" + std::to_string(id.serial) +
                    " is not in this model; allowed: a body of this model");
 }

@@ -30,12 +30,14 @@ public:
   /// \param bodies slots in the order of assembly
   Layout(int dimension, Index token, std::vector<BodySlot> bodies);
 
-  [[nodiscard]] int dimension() const { return dimension_; }                       ///< 2 or 3
-  [[nodiscard]] Index q_size() const { return q_size_; }                           ///< number of coordinates
-  [[nodiscard]] Index v_size() const { return v_size_; }                           ///< number of velocities
-  [[nodiscard]] Index rotation_size() const { return rotation_size_; }             ///< numbers in all rotations
-  [[nodiscard]] const std::vector<BodySlot>& bodies() const { return bodies_; }    ///< in the order of assembly
-  [[nodiscard]] BodyId id(Index body) const { return {bodies_[body].serial, token_}; }  ///< of the body-th body
+  [[nodiscard]] int dimension() const { return dimension_; }                     ///< 2 or 3
+  [[nodiscard]] Index q_size() const { return q_size_; }                         ///< number of coordinates
+  [[nodiscard]] Index v_size() const { return v_size_; }                         ///< number of velocities
+  [[nodiscard]] Index rotation_size() const { return rotation_size_; }           ///< numbers in all rotations
+  [[nodiscard]] const std::vector<BodySlot>& bodies() const { return bodies_; }  ///< in the order of assembly
+  [[nodiscard]] BodyId id(Index body) const {
+    return {bodies_[body].serial, token_};
+  }  ///< of the body-th body
 
   /// Place of a body in bodies(). Throws ModelError for an identity that is not of this model.
   [[nodiscard]] Index index(BodyId id) const;

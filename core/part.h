@@ -67,7 +67,8 @@ template <class P>
 concept Part = requires {
   { P::role } -> std::convertible_to<Role>;
   typename KindOf<P>::type;
-} && requires(typename KindOf<P>::type& kind, const P& part, const PartCheck& check) { kind.add(part, check); };
+}
+&&requires(typename KindOf<P>::type& kind, const P& part, const PartCheck& check) { kind.add(part, check); };
 
 /// Identity that a system gives to a part.
 template <class P>

@@ -36,7 +36,8 @@ void PartCheck::finite(double value, std::string_view quantity, std::string_view
   if (!std::isfinite(value)) refuse(quantity, with_unit(value, unit), "a finite number");
 }
 
-void PartCheck::finite(std::span<const double> values, std::string_view quantity, std::string_view unit) const {
+void PartCheck::finite(std::span<const double> values, std::string_view quantity,
+                       std::string_view unit) const {
   for (const double value : values) finite(value, quantity, unit);
 }
 
@@ -78,7 +79,8 @@ void PartCheck::oriented_body(BodyId id, std::string_view quantity) const {
 
 void PartCheck::different_ends(BodyId from, BodyId to) const {
   if (from == to) {
-    refuse("to", from == ground ? "ground, as from" : system_->name(to) + ", as from", "another body than from");
+    refuse("to", from == ground ? "ground, as from" : system_->name(to) + ", as from",
+           "another body than from");
   }
 }
 

@@ -32,7 +32,8 @@ public:
   Registry() = default;
   Registry(const Registry& other) : places_(other.places_) {
     entries_.reserve(other.entries_.size());
-    for (const Entry& entry : other.entries_) entries_.push_back({entry.type, entry.kind->clone(), entry.serials});
+    for (const Entry& entry : other.entries_)
+      entries_.push_back({entry.type, entry.kind->clone(), entry.serials});
   }
   Registry(Registry&&) noexcept = default;
   Registry& operator=(Registry other) noexcept {
@@ -65,7 +66,9 @@ public:
   [[nodiscard]] Index next_serial() const { return static_cast<Index>(places_.size()); }
 
   /// True if the part was added and not removed.
-  [[nodiscard]] bool contains(Index serial) const { return serial < places_.size() && places_[serial].slot != none; }
+  [[nodiscard]] bool contains(Index serial) const {
+    return serial < places_.size() && places_[serial].slot != none;
+  }
   /// Place of a part that is contained.
   [[nodiscard]] Place place(Index serial) const { return places_[serial]; }
   /// Kind of a part that is contained.

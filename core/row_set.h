@@ -20,10 +20,10 @@ enum class SetKind : std::uint8_t {
 /// The set of one row. A disc takes two consecutive rows; both carry the same description.
 struct RowSet {
   SetKind kind = SetKind::half_line;
-  double lower = 0.0;                                       ///< lower bound [N s] (interval)
-  double upper = std::numeric_limits<double>::infinity();   ///< upper bound [N s] (interval)
-  int bound = -1;                                           ///< row whose impulse bounds this one
-  double coefficient = 0.0;                                 ///< coefficient of friction
+  double lower = 0.0;                                      ///< lower bound [N s] (interval)
+  double upper = std::numeric_limits<double>::infinity();  ///< upper bound [N s] (interval)
+  int bound = -1;                                          ///< row whose impulse bounds this one
+  double coefficient = 0.0;                                ///< coefficient of friction
 };
 
 }  // namespace carom

@@ -25,13 +25,13 @@ class CAROM_API ShapeKind {
 public:
   virtual ~ShapeKind() = default;
   [[nodiscard]] virtual std::unique_ptr<ShapeKind> clone() const = 0;  ///< a copy
-  virtual void remove(Index slot) = 0;                                 ///< removes a shape; later ones move up
+  virtual void remove(Index slot) = 0;  ///< removes a shape; later ones move up
 
-  [[nodiscard]] virtual std::string_view label() const = 0;        ///< name used in messages
-  [[nodiscard]] virtual int dimension() const = 0;                 ///< 2 or 3
-  [[nodiscard]] virtual Index size() const = 0;                    ///< number of shapes
-  [[nodiscard]] virtual BodyId body(Index slot) const = 0;         ///< the body it is fixed to
-  [[nodiscard]] virtual MaterialId material(Index slot) const = 0; ///< its material
+  [[nodiscard]] virtual std::string_view label() const = 0;         ///< name used in messages
+  [[nodiscard]] virtual int dimension() const = 0;                  ///< 2 or 3
+  [[nodiscard]] virtual Index size() const = 0;                     ///< number of shapes
+  [[nodiscard]] virtual BodyId body(Index slot) const = 0;          ///< the body it is fixed to
+  [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
   /// Appends the features that may touch a half-plane, in a fixed order (their places are feature numbers).
   virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;
   /// Adds all that distinguishes this kind's shapes.

@@ -30,9 +30,9 @@ template <>
 struct Space<2> {
   static constexpr int dimension = 2;
   static constexpr bool has_orientation = true;  ///< bodies may have an orientation
-  static constexpr int orientation_size = 1;  ///< the angle
-  static constexpr int spin_size = 1;         ///< the angular velocity
-  static constexpr int rotation_size = 2;     ///< cosine and sine of the angle
+  static constexpr int orientation_size = 1;     ///< the angle
+  static constexpr int spin_size = 1;            ///< the angular velocity
+  static constexpr int rotation_size = 2;        ///< cosine and sine of the angle
   static constexpr int tangents = 1;
 
   /// Writes cosine and sine of the angle.
@@ -45,11 +45,17 @@ struct Space<2> {
     return {rotation[0] * local[0] - rotation[1] * local[1], rotation[1] * local[0] + rotation[0] * local[1]};
   }
   /// Velocity omega x r of the end of the lever r.
-  static Vec<2> lever_velocity(const double* spin, const Vec<2>& r) { return {-spin[0] * r[1], spin[0] * r[0]}; }
+  static Vec<2> lever_velocity(const double* spin, const Vec<2>& r) {
+    return {-spin[0] * r[1], spin[0] * r[0]};
+  }
   /// Adds the torque r x f.
-  static void add_torque(const Vec<2>& r, const Vec<2>& f, double* torque) { torque[0] += r[0] * f[1] - r[1] * f[0]; }
+  static void add_torque(const Vec<2>& r, const Vec<2>& f, double* torque) {
+    torque[0] += r[0] * f[1] - r[1] * f[0];
+  }
   /// Orientation after the rotation vector `delta` (spin times time).
-  static void advance_orientation(const double* from, const double* delta, double* to) { to[0] = from[0] + delta[0]; }
+  static void advance_orientation(const double* from, const double* delta, double* to) {
+    to[0] = from[0] + delta[0];
+  }
   /// Tangent of a contact: the normal turned clockwise by 90 degrees (Johansson 1999, figure 1).
   static std::array<Vec<2>, 1> tangent_frame(const Vec<2>& n) { return {Vec<2>(n[1], -n[0])}; }
   /// Row of a contact velocity a.(v + omega x r) with respect to the spin.

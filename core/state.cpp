@@ -13,7 +13,8 @@ State::State(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) 
 }
 
 const BodySlot& State::slot(BodyId body) const {
-  if (!layout_) throw ModelError("state of a body: the state belongs to no model; allowed: a state of a simulation");
+  if (!layout_)
+    throw ModelError("state of a body: the state belongs to no model; allowed: a state of a simulation");
   return layout_->slot(body);
 }
 

@@ -34,10 +34,10 @@ public:
   /// All numbers zero.
   explicit State(std::shared_ptr<const Layout> layout);
 
-  double time = 0.0;              ///< [s]
-  std::vector<double> q;          ///< coordinates, bodies in the order of assembly [m, rad]
-  std::vector<double> v;          ///< velocities [m/s, rad/s]
-  std::vector<double> z;          ///< internal variables of elements
+  double time = 0.0;      ///< [s]
+  std::vector<double> q;  ///< coordinates, bodies in the order of assembly [m, rad]
+  std::vector<double> v;  ///< velocities [m/s, rad/s]
+  std::vector<double> z;  ///< internal variables of elements
 
   /// Position of the centre of mass [m], 2 or 3 numbers. Throws ModelError for a foreign identity.
   [[nodiscard]] ConstVectorMap position(BodyId body) const;

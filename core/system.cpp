@@ -24,15 +24,16 @@ std::string System::describe(std::string_view label, const std::string& name, In
 
 void System::take_dimension(int dimension, std::string_view label) const {
   if (dimension == 0 || dimension_ == 0 || dimension == dimension_) return;
-  throw ModelError(std::string(label) + ": dimension is " + std::to_string(dimension) + "; allowed: " +
-                   std::to_string(dimension_) + ", as the other parts of the system");
+  throw ModelError(std::string(label) + ": dimension is " + std::to_string(dimension) +
+                   "; allowed: " + std::to_string(dimension_) + ", as the other parts of the system");
 }
 
 void System::check_name(Role role, const std::string& name, std::string_view label) const {
   if (name.empty()) return;
   const auto names = serials_by_name_.find(role);
   if (names == serials_by_name_.end() || !names->second.contains(name)) return;
-  throw ModelError(std::string(label) + " '" + name + "': name is taken; allowed: a name no other part of its role has");
+  throw ModelError(std::string(label) + " '" + name +
+                   "': name is taken; allowed: a name no other part of its role has");
 }
 
 void System::added(Role role, int dimension, Index serial, std::string name) {
@@ -55,7 +56,9 @@ std::string System::name_in(Role role, const Registry<K>& registry, Identity id)
   return describe(registry.kind_of(id.serial).label(), given, id.serial);
 }
 
-std::string System::name(BodyId id) const { return id == ground ? "ground" : name_in(Role::body, bodies_, id); }
+std::string System::name(BodyId id) const {
+  return id == ground ? "ground" : name_in(Role::body, bodies_, id);
+}
 std::string System::name(ElementId id) const { return name_in(Role::force, forces_, id); }
 std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_, id); }
 std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, obstacles_, id); }
@@ -71,12 +74,14 @@ Index System::by_name(Role role, std::string_view name, std::string_view what) c
   if (const auto names = serials_by_name_.find(role); names != serials_by_name_.end()) {
     if (const auto found = names->second.find(name); found != names->second.end()) return found->second;
   }
-  throw ModelError(std::string(what) + " '" + std::string(name) + "': there is none; allowed: the name of a " +
-                   std::string(what) + " of this system");
+  throw ModelError(std::string(what) + " '" + std::string(name) +
+                   "': there is none; allowed: the name of a " + std::string(what) + " of this system");
 }
 
 BodyId System::body(std::string_view name) const { return {by_name(Role::body, name, "body"), token_}; }
-ElementId System::element(std::string_view name) const { return {by_name(Role::force, name, "element"), token_}; }
+ElementId System::element(std::string_view name) const {
+  return {by_name(Role::force, name, "element"), token_};
+}
 ShapeId System::shape(std::string_view name) const { return {by_name(Role::shape, name, "shape"), token_}; }
 ObstacleId System::obstacle(std::string_view name) const {
   return {by_name(Role::obstacle, name, "obstacle"), token_};
@@ -146,12 +151,14 @@ void System::between(MaterialId a, MaterialId b, const Surface& surface) {
 }
 
 std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
-  if (!contains(obstacle)) throw ModelError("law of contact: obstacle is " + name(obstacle) + "; allowed: one of this system");
+  if (!contains(obstacle))
+    throw ModelError("law of contact: obstacle is " + name(obstacle) + "; allowed: one of this system");
   PartCheck("law of contact", *this).material(a);
   const auto place = obstacles_.place(obstacle.serial);
   const MaterialId b = obstacles_.entries()[place.entry].kind->material(place.slot);
   if (a.valid() && b.valid()) {
-    if (const auto found = laws_.find(std::minmax(a.serial, b.serial)); found != laws_.end()) return found->second;
+    if (const auto found = laws_.find(std::minmax(a.serial, b.serial)); found != laws_.end())
+      return found->second;
   }
   if (const auto found = surfaces_.find(obstacle.serial); found != surfaces_.end()) return found->second;
   return std::nullopt;

@@ -84,10 +84,16 @@ public:
 
   /// True if the part is of this system and was not removed.
   [[nodiscard]] bool contains(BodyId id) const { return id.token == token_ && bodies_.contains(id.serial); }
-  [[nodiscard]] bool contains(ElementId id) const { return id.token == token_ && forces_.contains(id.serial); }
+  [[nodiscard]] bool contains(ElementId id) const {
+    return id.token == token_ && forces_.contains(id.serial);
+  }
   [[nodiscard]] bool contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
-  [[nodiscard]] bool contains(ObstacleId id) const { return id.token == token_ && obstacles_.contains(id.serial); }
-  [[nodiscard]] bool contains(MaterialId id) const { return id.token == token_ && id.serial < materials_.size(); }
+  [[nodiscard]] bool contains(ObstacleId id) const {
+    return id.token == token_ && obstacles_.contains(id.serial);
+  }
+  [[nodiscard]] bool contains(MaterialId id) const {
+    return id.token == token_ && id.serial < materials_.size();
+  }
   /// True if the body has an orientation.
   [[nodiscard]] bool has_orientation(BodyId id) const;
 

@@ -29,10 +29,11 @@ void print_impacts_of(const carom::Simulation& simulation) {
   for (const carom::ContactRecord& contact : simulation.report().contacts) {
     if (!contact.impact) continue;
     std::cout << "  impact at t = " << simulation.time() << " s: " << simulation.name(contact.key) << "\n    "
-              << to_string(contact.mode) << ", P_n = " << contact.impulse[0] << " N s, P_t = " << contact.impulse[1]
-              << " N s, normal velocity " << contact.velocity_before[0] << " -> " << contact.velocity_after[0]
-              << " m/s, tangential " << contact.velocity_before[1] << " -> " << contact.velocity_after[1]
-              << " m/s, found " << -1e3 * contact.gap << " mm deep\n";
+              << to_string(contact.mode) << ", P_n = " << contact.impulse[0]
+              << " N s, P_t = " << contact.impulse[1] << " N s, normal velocity "
+              << contact.velocity_before[0] << " -> " << contact.velocity_after[0] << " m/s, tangential "
+              << contact.velocity_before[1] << " -> " << contact.velocity_after[1] << " m/s, found "
+              << -1e3 * contact.gap << " mm deep\n";
   }
 }
 
@@ -43,9 +44,9 @@ void run(const std::string& title, const carom::System& system, const std::files
   simulation.observe(print_impacts_of);
   simulation.run_until(end);
   recorder.flush();
-  std::cout << "  energies at t = " << simulation.time() << " s\n" << simulation.energy() << "  "
-            << simulation.statistics().steps << " steps, at most " << simulation.statistics().most_sweeps
-            << " sweeps in one\n\n";
+  std::cout << "  energies at t = " << simulation.time() << " s\n"
+            << simulation.energy() << "  " << simulation.statistics().steps << " steps, at most "
+            << simulation.statistics().most_sweeps << " sweeps in one\n\n";
 }
 
 }  // namespace

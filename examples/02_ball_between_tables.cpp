@@ -24,7 +24,8 @@
 namespace {
 
 void run(const scenes::Tables& tables, const std::filesystem::path& folder) {
-  std::cout << "e_t = " << tables.tangential_restitution << ", thrown at " << tables.horizontal_speed << " m/s\n";
+  std::cout << "e_t = " << tables.tangential_restitution << ", thrown at " << tables.horizontal_speed
+            << " m/s\n";
   carom::System system;
   const carom::BodyId ball = scenes::add_tables(system, tables);
 
@@ -36,18 +37,19 @@ void run(const scenes::Tables& tables, const std::filesystem::path& folder) {
   simulation.observe([ball](const carom::Simulation& now) {
     for (const carom::ContactRecord& contact : now.report().contacts) {
       if (!contact.impact) continue;
-      std::cout << "  t = " << std::setw(7) << now.time() << " s  " << now.system().name(contact.obstacle) << "  "
-                << std::setw(5) << to_string(contact.mode) << "  spin after " << std::setw(8)
-                << now.state().spin(ball) << " rad/s, horizontal speed after "
-                << std::setw(7) << now.state().velocity(ball)[0] << " m/s\n";
+      std::cout << "  t = " << std::setw(7) << now.time() << " s  " << now.system().name(contact.obstacle)
+                << "  " << std::setw(5) << to_string(contact.mode) << "  spin after " << std::setw(8)
+                << now.state().spin(ball) << " rad/s, horizontal speed after " << std::setw(7)
+                << now.state().velocity(ball)[0] << " m/s\n";
     }
   });
   simulation.run_until((scenes::flashes - 1) * scenes::strobe_interval);
   recorder.flush();
   const carom::EnergyLedger& energy = simulation.energy();
-  std::cout << "  energy " << energy.initial() << " J -> " << energy.total() << " J, lost in normal direction "
-            << energy.flow(carom::EnergyFlow::impact_normal) << " J, in tangential direction "
-            << energy.flow(carom::EnergyFlow::impact_tangential) << " J, residual " << energy.residual() << " J\n\n";
+  std::cout << "  energy " << energy.initial() << " J -> " << energy.total()
+            << " J, lost in normal direction " << energy.flow(carom::EnergyFlow::impact_normal)
+            << " J, in tangential direction " << energy.flow(carom::EnergyFlow::impact_tangential)
+            << " J, residual " << energy.residual() << " J\n\n";
 }
 
 }  // namespace

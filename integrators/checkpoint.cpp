@@ -21,7 +21,8 @@ constexpr std::string_view mark = "carom checkpoint 1\n";
 class Writer {
 public:
   void add(std::uint64_t number) {
-    for (unsigned shift = 0; shift < 64; shift += 8) bytes_.push_back(static_cast<char>((number >> shift) & 0xffU));
+    for (unsigned shift = 0; shift < 64; shift += 8)
+      bytes_.push_back(static_cast<char>((number >> shift) & 0xffU));
   }
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
   void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
@@ -43,7 +44,8 @@ public:
   void get(std::uint64_t& number) {
     if (bytes_.size() < 8) damaged("ends too early");
     number = 0;
-    for (unsigned i = 0; i < 8; ++i) number |= std::uint64_t{static_cast<unsigned char>(bytes_[i])} << (8 * i);
+    for (unsigned i = 0; i < 8; ++i)
+      number |= std::uint64_t{static_cast<unsigned char>(bytes_[i])} << (8 * i);
     bytes_.remove_prefix(8);
   }
   void get(double& number) {
@@ -166,7 +168,8 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   if (!file) throw FileError("checkpoint '" + path + "': cannot be read");
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   std::string_view text(bytes.data(), bytes.size());
-  if (!text.starts_with(mark)) throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
+  if (!text.starts_with(mark))
+    throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   text.remove_prefix(mark.size());
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");

@@ -25,12 +25,13 @@ struct PresentLoads {
 
 /// With the state, all that a checkpoint holds (but `loads`, which follow from the state).
 struct Companion {
-  EnergyLedger ledger;       ///< the energy account
-  Statistics statistics;     ///< counts since the start
-  std::vector<double> rounding;  ///< what rounding cut off the velocities: carried on, so that it does not add up
+  EnergyLedger ledger;    ///< the energy account
+  Statistics statistics;  ///< counts since the start
+  std::vector<double>
+      rounding;  ///< what rounding cut off the velocities: carried on, so that it does not add up
   std::vector<double> force_before;  ///< loads one step before, for the guess at the next; empty at a start
   double step_before = 0.0;          ///< length of that step [s]
-  double grid_start = 0.0;   ///< times of steps are grid_start + n h, so that rounding does not add up [s]
+  double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;  ///< n
   PresentLoads loads;           ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key

@@ -32,8 +32,10 @@ double step_of_half(double stiffness, double damping) {
 class Rater {
 public:
   Rater(const Assembly& assembly, Index island)
-      : assembly_(assembly), first_(assembly.islands()[island].v.begin),
-        sums_(assembly.islands()[island].v.size()), body_of_(sums_.stiffness.size()) {
+      : assembly_(assembly),
+        first_(assembly.islands()[island].v.begin),
+        sums_(assembly.islands()[island].v.size()),
+        body_of_(sums_.stiffness.size()) {
     const Range bodies = assembly.islands()[island].bodies;
     for (Index body = bodies.begin; body < bodies.end; ++body) {
       const BodySlot& slot = assembly.layout()->bodies()[body];
@@ -45,7 +47,9 @@ public:
   double add(const std::vector<LoadDerivative>& entries, double step) {
     // Entries of equal place add up before their absolute value counts.
     std::vector<LoadDerivative> sorted = entries;
-    const auto place = [this](const LoadDerivative& e) { return std::tuple(e.column, body_of_[e.row - first_], e.row); };
+    const auto place = [this](const LoadDerivative& e) {
+      return std::tuple(e.column, body_of_[e.row - first_], e.row);
+    };
     std::sort(sorted.begin(), sorted.end(),
               [&](const LoadDerivative& a, const LoadDerivative& b) { return place(a) < place(b); });
     RowMap own;
@@ -152,7 +156,8 @@ ElementId find_non_finite(const Assembly& assembly, Index island, const StateVie
     const Range elements = assembly.elements(island, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       std::fill(force.begin() + v.begin, force.begin() + v.end, 0.0);
-      assembly.force_kinds()[kind]->evaluate(at, {element, element + 1}, {force.data(), force.data(), force.data()});
+      assembly.force_kinds()[kind]->evaluate(at, {element, element + 1},
+                                             {force.data(), force.data(), force.data()});
       const bool finite = std::all_of(force.begin() + v.begin, force.begin() + v.end,
                                       [](double number) { return std::isfinite(number); });
       if (!finite) return assembly.element_id(kind, element);

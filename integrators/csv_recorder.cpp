@@ -28,7 +28,8 @@ std::string field(const std::string& name) {
 }  // namespace
 
 struct CsvRecorder::Impl {
-  Impl(const std::string& file_path, const Options& chosen) : path(file_path), options(chosen), file(file_path) {}
+  Impl(const std::string& file_path, const Options& chosen)
+      : path(file_path), options(chosen), file(file_path) {}
 
   void write_header(const Simulation& simulation);
   void write_row(const Simulation& simulation);
@@ -99,11 +100,13 @@ void CsvRecorder::Impl::write_row(const Simulation& simulation) {
   ++rows;
 }
 
-CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path) : CsvRecorder(simulation, path, Options{}) {}
+CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path)
+    : CsvRecorder(simulation, path, Options{}) {}
 
 CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const Options& options) {
   if (options.every_steps < 1) {
-    throw ModelError("recorder: every_steps is " + std::to_string(options.every_steps) + "; allowed: at least 1");
+    throw ModelError("recorder: every_steps is " + std::to_string(options.every_steps) +
+                     "; allowed: at least 1");
   }
   for (const BodyId body : options.bodies) (void)simulation.state().layout()->index(body);
   impl_ = std::make_shared<Impl>(path, options);

@@ -32,7 +32,8 @@ void ProgressBar::update(double time, Clock::time_point now) {
   const int filled = static_cast<int>(std::lround(done * width));
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   out_ << "\r[" << std::string(static_cast<std::size_t>(filled), '#')
-       << std::string(static_cast<std::size_t>(width - filled), ' ') << "] " << std::lround(100.0 * done) << " %";
+       << std::string(static_cast<std::size_t>(width - filled), ' ') << "] " << std::lround(100.0 * done)
+       << " %";
   if (done > 0.0) out_ << "  " << std::lround(elapsed * (1.0 - done) / done) << " s left ";
   out_ << std::flush;
 }

@@ -46,7 +46,8 @@ struct Simulation::Impl {
     TimeStepper stepper;
   };
 
-  Impl(System system, Mode chosen) : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
+  Impl(System system, Mode chosen)
+      : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
     state = model->assembly.initial_state();
     forget_history();
     companion.ledger.open(stored_energies(model->assembly, state));
@@ -154,7 +155,8 @@ void Simulation::Impl::write_news() {
   }
 }
 
-Simulation::Simulation(System system, Mode mode) : impl_(std::make_unique<Impl>(std::move(system), std::move(mode))) {}
+Simulation::Simulation(System system, Mode mode)
+    : impl_(std::make_unique<Impl>(std::move(system), std::move(mode))) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;

@@ -35,30 +35,30 @@ struct ContactRecord {
 
 /// What happened in the last accepted step.
 struct StepReport {
-  double time = 0.0;                ///< at its end [s]
-  double step = 0.0;                ///< its length [s]
-  int sweeps = 0;                   ///< of the fixed-point iteration, the most over all islands
-  double contraction = 0.0;         ///< ratio of successive changes, the largest over islands (0: none seen)
-  ElementId worst_coupling{};       ///< coupling that limits the contraction most, invalid if there is none
-  double worst_coupling_rate = 0.0; ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
-  double energy_gain = 0.0;         ///< energy that contact added, summed over problems that gained [J]
+  double time = 0.0;                 ///< at its end [s]
+  double step = 0.0;                 ///< its length [s]
+  int sweeps = 0;                    ///< of the fixed-point iteration, the most over all islands
+  double contraction = 0.0;          ///< ratio of successive changes, the largest over islands (0: none seen)
+  ElementId worst_coupling{};        ///< coupling that limits the contraction most, invalid if there is none
+  double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
+  double energy_gain = 0.0;          ///< energy that contact added, summed over problems that gained [J]
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
 };
 
 /// Counts and extremes since the start.
 struct Statistics {
-  std::int64_t steps = 0;           ///< accepted steps
-  std::int64_t sweeps = 0;          ///< sum over steps of StepReport::sweeps
-  int most_sweeps = 0;              ///< the most in one step
-  double largest_contraction = 0.0; ///< the largest StepReport::contraction
-  std::int64_t impacts = 0;         ///< contacts that closed faster than the capture speed
-  std::int64_t contact_steps = 0;   ///< contacts that took part in steps
+  std::int64_t steps = 0;              ///< accepted steps
+  std::int64_t sweeps = 0;             ///< sum over steps of StepReport::sweeps
+  int most_sweeps = 0;                 ///< the most in one step
+  double largest_contraction = 0.0;    ///< the largest StepReport::contraction
+  std::int64_t impacts = 0;            ///< contacts that closed faster than the capture speed
+  std::int64_t contact_steps = 0;      ///< contacts that took part in steps
   std::int64_t several_solutions = 0;  ///< of contact problems with more than one end velocity
   std::int64_t forces_not_unique = 0;  ///< contact problems with more than one set of impulses
-  std::int64_t energy_gains = 0;    ///< steps in which contact added energy
-  double energy_gained = 0.0;       ///< sum of those gains [J]
-  double deepest_gap = 0.0;         ///< the most negative gap found [m]
-  double worst_residual = 0.0;      ///< the largest certificate of a contact problem
+  std::int64_t energy_gains = 0;       ///< steps in which contact added energy
+  double energy_gained = 0.0;          ///< sum of those gains [J]
+  double deepest_gap = 0.0;            ///< the most negative gap found [m]
+  double worst_residual = 0.0;         ///< the largest certificate of a contact problem
 };
 
 }  // namespace carom

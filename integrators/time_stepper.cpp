@@ -15,7 +15,9 @@ void resize(PresentLoads& loads, std::size_t size) {
 }
 
 /// Where elements book: the conservative part goes into `total`, to which finish() adds the others.
-Loads open(PresentLoads& loads) { return {loads.total.data(), loads.dissipative.data(), loads.external.data()}; }
+Loads open(PresentLoads& loads) {
+  return {loads.total.data(), loads.dissipative.data(), loads.external.data()};
+}
 
 void finish(PresentLoads& loads, Range v) {
   for (Index i = v.begin; i < v.end; ++i) loads.total[i] += loads.dissipative[i] + loads.external[i];
@@ -24,7 +26,10 @@ void finish(PresentLoads& loads, Range v) {
 }  // namespace
 
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), options_(options), finder_(assembly), trial_(assembly.layout()),
+    : assembly_(&assembly),
+      options_(options),
+      finder_(assembly),
+      trial_(assembly.layout()),
       evaluation_(make_evaluation(assembly)) {
   check_options(options);
   const std::size_t size = assembly.layout()->v_size();
@@ -132,8 +137,8 @@ void TimeStepper::solve_contacts(Index island, const State& state, const Compani
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
       response_[k] = half * (companion.loads.total[k] + evaluation_.force[k]);
     }
-    assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, response_.data() + body.v,
-                                                           free_.data() + body.v);
+    assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1},
+                                                           response_.data() + body.v, free_.data() + body.v);
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
       free_[k] += companion.rounding[k] + state.v[k];
       response_[k] = 0.0;
@@ -150,8 +155,8 @@ void TimeStepper::sweep(Index island, const State& state, const Companion& compa
     kind.sweep(slots, step,
                {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v,
                 companion.loads.total.data() + v, evaluation_.force.data() + v,
-                clusters_in_use_ > 0 ? response_.data() + v : nullptr, trial_.q.data() + q, trial_.v.data() + v,
-                rounding_.data() + v},
+                clusters_in_use_ > 0 ? response_.data() + v : nullptr, trial_.q.data() + q,
+                trial_.v.data() + v, rounding_.data() + v},
                change);
   });
 }
@@ -193,9 +198,11 @@ void TimeStepper::book_contacts(const State& state, double step) {
       for (int direction = 0; direction < entry.directions; ++direction) {
         const auto at = static_cast<std::size_t>(direction);
         gain += entry.work[at];
-        scale += std::abs(entry.impulse[at]) * (std::abs(entry.velocity_before[at]) + std::abs(entry.velocity_after[at]));
-        const EnergyFlow line = entry.impact ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
-                                             : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+        scale += std::abs(entry.impulse[at]) *
+                 (std::abs(entry.velocity_before[at]) + std::abs(entry.velocity_after[at]));
+        const EnergyFlow line =
+            entry.impact ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                         : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
         flows_[line] -= entry.work[at];
       }
     }

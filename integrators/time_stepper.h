@@ -31,7 +31,8 @@ namespace carom {
 /// Demands options that can be. Throws ModelError naming the option.
 CAROM_API void check_options(const TimeStepping& options);
 
-/// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion, options.
+/// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion,
+/// options.
 class CAROM_API TimeStepper {
 public:
   /// Throws ModelError for impossible options or a contact without a law.
@@ -57,10 +58,12 @@ private:
 
   void demand_finite_loads(Index island, const StateView& at, const State& state, double step);
   void find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps);
-  [[noreturn]] void fail_contraction(Index island, const State& state, const Companion& companion, double step,
-                                     const FixedPointJudge& judge);
-  [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state, double step);
-  [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state, double step) const;
+  [[noreturn]] void fail_contraction(Index island, const State& state, const Companion& companion,
+                                     double step, const FixedPointJudge& judge);
+  [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state,
+                                 double step);
+  [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state,
+                                double step) const;
 
   void commit(State& state, Companion& companion, double end_time, StepReport& report);
 
@@ -69,10 +72,10 @@ private:
   ContactFinder finder_;
   SolverChain chain_;
 
-  State trial_;                    // q_{j+1}, v_{j+1} of the sweep at hand
-  Evaluation evaluation_;          // force: loads at the end, of the iterate before
-  PresentLoads end_;               // loads at the end, by cause, of the last iterate
-  std::vector<double> rounding_;   // what rounding cuts off v_{j+1}
+  State trial_;                          // q_{j+1}, v_{j+1} of the sweep at hand
+  Evaluation evaluation_;                // force: loads at the end, of the iterate before
+  PresentLoads end_;                     // loads at the end, by cause, of the last iterate
+  std::vector<double> rounding_;         // what rounding cuts off v_{j+1}
   std::vector<double> free_, response_;  // velocities without contact, changes by contact, where bodies touch
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
@@ -82,8 +85,8 @@ private:
   CompensatedSum coupling_work_;
   StoredEnergies stored_;
   StepReport report_;
-  std::vector<CouplingRating> ratings_;      // by island, of the last time it was rated
-  std::vector<double> rated_contraction_;    // contraction seen then, negative if never rated
+  std::vector<CouplingRating> ratings_;    // by island, of the last time it was rated
+  std::vector<double> rated_contraction_;  // contraction seen then, negative if never rated
 };
 
 }  // namespace carom

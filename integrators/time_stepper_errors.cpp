@@ -19,7 +19,8 @@ bool all_finite(const std::vector<double>& numbers, Range range) {
                      [](double number) { return std::isfinite(number); });
 }
 
-SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state, double step) {
+SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state,
+                         double step) {
   SolverFailure failure;
   failure.time = state.time;
   failure.step = step;
@@ -39,7 +40,8 @@ std::string listed(const std::vector<std::string>& names) {
 
 void check_options(const TimeStepping& options) {
   const auto refuse = [](const char* option, double value, const char* allowed) {
-    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) + "; allowed: " + allowed);
+    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
+                     "; allowed: " + allowed);
   };
   if (!(std::isfinite(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
   if (!(std::isfinite(options.tolerance) && options.tolerance >= 0.0)) {
@@ -59,11 +61,13 @@ void TimeStepper::demand_finite_loads(Index island, const StateView& at, const S
   failure.time = state.time;
   failure.step = step;
   failure.parts.push_back(assembly_->system().name(culprit));
-  const std::string message = place(state, step) + "the loads of " + failure.parts.front() + " are not finite";
+  const std::string message =
+      place(state, step) + "the loads of " + failure.parts.front() + " are not finite";
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps) {
+void TimeStepper::find_culprit(Index island, const State& state, const Companion& companion, double step,
+                               int sweeps) {
   const Range q = assembly_->islands()[island].q;
   const Range v = assembly_->islands()[island].v;
   demand_finite_loads(island, state.view(), state, step);
@@ -98,7 +102,8 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   evaluate_positions(*assembly_, island, state.view(), evaluation_);
   const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
   std::string message = place(state, step) + "the fixed-point iteration does not contract after " +
-                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) + " m)";
+                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) +
+                        " m)";
   if (rating.worst.valid()) {
     failure.parts.push_back(assembly_->system().name(rating.worst));
     failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
@@ -108,8 +113,8 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
-    message += "; by their derivatives at its start the couplings contract (rate " + to_text(rating.island_rate) +
-               " together), so a force jumps or stiffens";
+    message += "; by their derivatives at its start the couplings contract (rate " +
+               to_text(rating.island_rate) + " together), so a force jumps or stiffens";
     if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
     failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
   }
@@ -132,9 +137,11 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state, double step) const {
+void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state,
+                              double step) const {
   SolverFailure failure = failure_of(cluster, finder_, state, step);
-  const std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
+  const std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " +
+                              to_text(gain) +
                               " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
   throw SolverError(message, std::move(failure));
 }

@@ -8,12 +8,12 @@ namespace carom {
 /// Steps of fixed length: coupling forces by the implicit trapezoidal rule through a fixed-point iteration,
 /// contacts found at the start of a step, their law in every step of a lasting contact.
 struct TimeStepping {
-  double step = 1e-3;           ///< h > 0 [s]
+  double step = 1e-3;  ///< h > 0 [s]
 
   /// The iteration ends when positions, and h times velocities, change less than this between two sweeps
   /// (angles weighed with the radius of gyration). At 0 it goes on until the change stops shrinking [m].
   double tolerance = 1e-12;
-  int max_sweeps = 200;         ///< sweeps after which the iteration is given up
+  int max_sweeps = 200;  ///< sweeps after which the iteration is given up
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// about lines of the energy account only, never about the motion [m/s].

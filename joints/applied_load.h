@@ -21,8 +21,8 @@ struct AppliedForce {
   static constexpr int dimension = D;
   static constexpr std::string_view label = "applied force";
 
-  End<D> on{};                                  ///< body, or body and point (required)
-  std::function<Vec<D>(double time)> force{};   ///< [N] (required)
+  End<D> on{};                                 ///< body, or body and point (required)
+  std::function<Vec<D>(double time)> force{};  ///< [N] (required)
 
   /// The body it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
@@ -63,7 +63,9 @@ struct AppliedTorque {
     check.finite(torque(0.0), "torque at time 0", "N m");
   }
   /// Books the load.
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const { out.external_torque(on, torque(at.time())); }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+    out.external_torque(on, torque(at.time()));
+  }
   /// Adds nothing that the body's identity does not tell (a function cannot be hashed).
   void fingerprint(Fingerprint&) const {}
 };

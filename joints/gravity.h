@@ -38,7 +38,8 @@ public:
   void add(const Gravity<D>& part, const PartCheck& check);
 
   [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order, const Layout& layout) const override;
+  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
+                                                    const Layout& layout) const override;
   void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }

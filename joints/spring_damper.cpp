@@ -24,7 +24,8 @@ std::unique_ptr<ForceKind> SpringDamperKind<D>::clone() const {
 }
 
 template <int D>
-std::unique_ptr<ForceKind> SpringDamperKind<D>::arranged(std::span<const Index> order, const Layout& layout) const {
+std::unique_ptr<ForceKind> SpringDamperKind<D>::arranged(std::span<const Index> order,
+                                                         const Layout& layout) const {
   auto copy = std::make_unique<SpringDamperKind>();
   copy->parts_.reserve(order.size());
   copy->springs_.reserve(order.size());
@@ -176,7 +177,8 @@ void SpringDamperKind<D>::derivatives(const EvaluationContext& at, Index element
     const double length_rate = u.dot(rate);
     const double tension = spring.stiffness * (length - spring.free_length) + spring.damping * length_rate;
     force = -tension * u;
-    by_d = -spring.stiffness * u * u.transpose() - spring.damping * u * (across * rate).transpose() - tension * across;
+    by_d = -spring.stiffness * u * u.transpose() - spring.damping * u * (across * rate).transpose() -
+           tension * across;
     by_rate = -spring.damping * u * u.transpose();
   }
 

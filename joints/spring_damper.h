@@ -25,11 +25,11 @@ struct SpringDamper {
   static constexpr Role role = Role::force;
   using Kind = SpringDamperKind<D>;
 
-  End<D> from{};            ///< required
-  End<D> to{};              ///< required
-  double stiffness = 0.0;   ///< k >= 0 [N/m]
-  double damping = 0.0;     ///< c >= 0 [N s/m]
-  double free_length = 0.0; ///< L >= 0 [m]
+  End<D> from{};             ///< required
+  End<D> to{};               ///< required
+  double stiffness = 0.0;    ///< k >= 0 [N/m]
+  double damping = 0.0;      ///< c >= 0 [N s/m]
+  double free_length = 0.0;  ///< L >= 0 [m]
 };
 
 /// All spring-dampers of a system.
@@ -43,7 +43,8 @@ public:
   void add(const SpringDamper<D>& part, const PartCheck& check);
 
   [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order, const Layout& layout) const override;
+  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
+                                                    const Layout& layout) const override;
   void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }
@@ -52,8 +53,10 @@ public:
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::elastic; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
-  double evaluate_with_potential(const EvaluationContext& at, Range elements, const Loads& loads) const override;
-  void derivatives(const EvaluationContext& at, Index element, std::vector<LoadDerivative>& out) const override;
+  double evaluate_with_potential(const EvaluationContext& at, Range elements,
+                                 const Loads& loads) const override;
+  void derivatives(const EvaluationContext& at, Index element,
+                   std::vector<LoadDerivative>& out) const override;
   [[nodiscard]] bool has_derivatives() const override { return true; }
   void fingerprint(Fingerprint& print) const override;
 

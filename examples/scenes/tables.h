@@ -18,14 +18,14 @@ struct Tables {
   double spin = 0.0;                            ///< [rad/s]
 };
 
-inline constexpr double ball_mass = 0.00859;          ///< [kg]
-inline constexpr double ball_radius = 0.0131;         ///< [m]
-inline constexpr double table_distance = 0.530;       ///< [m]
-inline constexpr double table_restitution = 0.91;     ///< e_n
+inline constexpr double ball_mass = 0.00859;       ///< [kg]
+inline constexpr double ball_radius = 0.0131;      ///< [m]
+inline constexpr double table_distance = 0.530;    ///< [m]
+inline constexpr double table_restitution = 0.91;  ///< e_n
 inline constexpr double lower_friction = 1.13;
 inline constexpr double upper_friction = 0.95;
-inline constexpr double tables_step = 0.000309;       ///< the paper's [s]
-inline constexpr double strobe_interval = 0.0309;     ///< between flashes [s]
+inline constexpr double tables_step = 0.000309;    ///< the paper's [s]
+inline constexpr double strobe_interval = 0.0309;  ///< between flashes [s]
 inline constexpr int flashes = 12;
 
 /// The whole arrangement; returns the ball.

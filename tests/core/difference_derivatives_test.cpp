@@ -58,9 +58,7 @@ protected:
     }
     return m;
   }
-  EvaluationContext context() const {
-    return {model.assembly, model.state.view(), model.evaluation, 1};
-  }
+  EvaluationContext context() const { return {model.assembly, model.state.view(), model.evaluation, 1}; }
 
   LoadedModel model{make_system()};
   const ForceKind& kind = *model.assembly.force_kinds()[0];
