@@ -42,7 +42,7 @@ void demand_possible(const MassProperties<2>& properties, std::string_view funct
 /// m times the square of a radius of gyration, about the origin.
 MassProperties<2> around_origin(std::string_view function, double mass, double gyration_squared) {
   demand_positive(mass, function, "mass", " kg");
-  const MassProperties<2> properties{.mass = mass, .inertia = mass * gyration_squared};
+  MassProperties<2> properties{.mass = mass, .inertia = mass * gyration_squared};
   demand_positive(properties.inertia, function, "moment of inertia", " kg m^2");
   return properties;
 }

@@ -1,5 +1,6 @@
 #include <carom/core/errors.h>
 #include <carom/core/fingerprint.h>
+#include <carom/core/part_check.h>
 #include <carom/integrators/checkpoint.h>
 
 #include <bit>
@@ -147,8 +148,12 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
     add(out, key.against);
     out.add(std::uint64_t{static_cast<std::uint8_t>(mode)});
   }
-  out.add(std::uint64_t{companion.fired.size()});
-  for (const std::int64_t count : companion.fired) out.add(count);
+  out.add(std::uint64_t{companion.rhythms.size()});
+  for (const Rhythm& rhythm : companion.rhythms) {
+    out.add(rhythm.start);
+    out.add(rhythm.interval);
+    out.add(rhythm.fired);
+  }
   const std::string_view body(out.bytes().data(), out.bytes().size());
   Writer end;
   end.add(checksum(body));
@@ -214,12 +219,22 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
     if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");
     mode = static_cast<ContactMode>(number);
   }
-  other.fired.resize(in.count());
-  for (std::int64_t& count : other.fired) in.get(count);
+  other.rhythms.resize(in.count());
+  for (Rhythm& rhythm : other.rhythms) {
+    in.get(rhythm.start);
+    in.get(rhythm.interval);
+    in.get(rhythm.fired);
+  }
   in.finish();
-  if (other.fired.size() != companion.fired.size()) {
-    throw FileError("checkpoint '" + path + "': has " + std::to_string(other.fired.size()) +
-                    " periodic events, the simulation " + std::to_string(companion.fired.size()));
+  if (other.rhythms.size() != companion.rhythms.size()) {
+    throw FileError("checkpoint '" + path + "': has " + std::to_string(other.rhythms.size()) +
+                    " periodic events, the simulation " + std::to_string(companion.rhythms.size()));
+  }
+  for (std::size_t i = 0; i < other.rhythms.size(); ++i) {
+    if (other.rhythms[i].interval == companion.rhythms[i].interval) continue;
+    throw FileError("checkpoint '" + path + "': periodic event " + std::to_string(i) +
+                    " has an interval of " + to_text(other.rhythms[i].interval) + " s, in the simulation " +
+                    to_text(companion.rhythms[i].interval) + " s");
   }
   state = std::move(read);
   companion = std::move(other);

@@ -23,6 +23,16 @@ struct PresentLoads {
   std::vector<double> external;     ///< part of the total
 };
 
+/// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.
+struct Rhythm {
+  double start = 0.0;      ///< [s]
+  double interval = 0.0;   ///< [s]
+  std::int64_t fired = 0;  ///< how often it has fired
+
+  /// When it is due next [s].
+  [[nodiscard]] double due() const { return start + static_cast<double>(fired + 1) * interval; }
+};
+
 /// With the state, all that a checkpoint holds (but `loads`, which follow from the state).
 struct Companion {
   EnergyLedger ledger;    ///< the energy account
@@ -35,7 +45,7 @@ struct Companion {
   std::int64_t grid_steps = 0;  ///< n
   PresentLoads loads;           ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
-  std::vector<std::int64_t> fired;                        ///< how often each periodic event has fired
+  std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()
 };
 
 }  // namespace carom

@@ -23,7 +23,8 @@ FixedPointJudge::Verdict FixedPointJudge::judge(double change, double size) {
   if (sweeps_ > 1 && change > floor && previous > 0.0) contraction_ = change / previous;
   if (change <= tolerance_) return Verdict::converged;
   if (sweeps_ > 1 && change >= previous && change <= floor) return Verdict::converged;
-  if (sweeps_ >= max_sweeps_ || change > divergence * (first_ + floor)) return Verdict::failed;
+  if (change > size && change > divergence * (first_ + floor)) return Verdict::failed;
+  if (sweeps_ >= max_sweeps_) return Verdict::failed;
   return Verdict::go_on;
 }
 

@@ -27,13 +27,6 @@ StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
   return stored;
 }
 
-/// A periodic event. Times are start + k interval, so that rounding does not add up.
-struct Periodic {
-  double start;
-  double interval;
-  Simulation::Action action;
-};
-
 }  // namespace
 
 struct Simulation::Impl {
@@ -53,12 +46,9 @@ struct Simulation::Impl {
     companion.ledger.open(stored_energies(model->assembly, state));
   }
 
-  [[nodiscard]] double due(std::size_t i) const {
-    return periodic[i].start + static_cast<double>(companion.fired[i] + 1) * periodic[i].interval;
-  }
   [[nodiscard]] double next_due() const {
     double next = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < periodic.size(); ++i) next = std::min(next, due(i));
+    for (const Rhythm& rhythm : companion.rhythms) next = std::min(next, rhythm.due());
     return next;
   }
   void book_intervention() {
@@ -95,7 +85,7 @@ struct Simulation::Impl {
   State state;
   Companion companion;
   StepReport report;
-  std::vector<Periodic> periodic;
+  std::vector<Action> actions;  // of the periodic events, as Companion::rhythms
   std::vector<Observer> observers;
   Log log;
   bool progress = false;
@@ -120,10 +110,11 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
     Guard& operator=(const Guard&) = delete;
   } guard(in_callback);
   for (const Observer& observer : observers) observer(simulation);
-  for (std::size_t i = 0; i < periodic.size(); ++i) {
-    if (due(i) > state.time + close) continue;
-    ++companion.fired[i];
-    const Action action = periodic[i].action;  // a copy: the action may add further ones
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    Rhythm& rhythm = companion.rhythms[i];
+    if (rhythm.due() > state.time + close) continue;
+    ++rhythm.fired;
+    const Action action = actions[i];  // a copy: the action may add further ones
     action(simulation);
   }
 }
@@ -194,8 +185,8 @@ void Simulation::every(double interval, Action action) {
     throw ModelError("every: interval is " + to_text(interval) + " s; allowed: finite and > 0");
   }
   if (!action) throw ModelError("every: action is empty; allowed: a function");
-  impl_->periodic.push_back({impl_->state.time, interval, std::move(action)});
-  impl_->companion.fired.push_back(0);
+  impl_->actions.push_back(std::move(action));
+  impl_->companion.rhythms.push_back({impl_->state.time, interval, 0});
 }
 
 void Simulation::edit(const std::function<void(System&)>& change) {
@@ -228,10 +219,10 @@ void Simulation::set_state(const State& state) {
   }
   const bool moved_in_time = state.time != self.state.time;
   if (moved_in_time) {
-    for (std::size_t i = 0; i < self.periodic.size(); ++i) {
+    for (Rhythm& rhythm : self.companion.rhythms) {
       // Periodic events keep their rhythm: those that the jump skips are not made up for.
-      const double passed = std::floor((state.time - self.periodic[i].start) / self.periodic[i].interval);
-      self.companion.fired[i] = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
+      const double passed = std::floor((state.time - rhythm.start) / rhythm.interval);
+      rhythm.fired = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
     }
   }
   self.state = state;

@@ -1,0 +1,22 @@
+#pragma once
+
+// The reference problems of tests/reference/*.json (README.md there says where they come from).
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace carom_test {
+
+using Json = nlohmann::json;
+
+inline Json reference_data(const std::string& name) {
+  const std::string path = std::string(CAROM_TEST_DATA) + "/" + name;
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  return Json::parse(file);
+}
+
+}  // namespace carom_test
