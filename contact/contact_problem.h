@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The contact problem: matrix, vector and one set per row, nothing else (theory: section 3 of
-/// docs/architecture.md; Johansson 1999, equations 4 to 13).
+/// The contact problem: matrix, vector and one set per row, nothing else (docs/method.md,
+/// section 3; Johansson 1999, equations 4 to 13).
 ///
 /// Find impulses P with scaled mean velocities  xi = W P + b  such that for every row set C
 ///     P in C(P),   -xi in the normal cone of C(P) at P.

@@ -64,7 +64,8 @@ private:
   int variables_ = 0;
 };
 
-/// The form without an inverse (theory section 3): z = (P_n, beta+, beta-, sigma) with P_t = beta+ - beta-,
+/// The form without an inverse (docs/method.md section 3): z = (P_n, beta+, beta-, sigma) with P_t = beta+ -
+/// beta-,
 ///
 ///     xi_n >= 0  _|_  P_n,    +-xi_t + sigma >= 0  _|_  beta+-,    mu P_n - beta+ - beta- >= 0  _|_  sigma.
 ///

@@ -30,8 +30,8 @@ private:
 };
 
 /// Lemke's method on the copositive form. Not applicable for discs. Ends at a ray only where contacts jam
-/// with unequal restitution or driven obstacles (theory section 3); without friction a ray proves that there
-/// is no solution, since W is then copositive-plus.
+/// with unequal restitution or driven obstacles (docs/method.md section 3); without friction a ray proves
+/// that there is no solution, since W is then copositive-plus.
 class CAROM_API LemkeSolver final : public ContactSolver {
 public:
   [[nodiscard]] std::string_view name() const override { return "Lemke"; }

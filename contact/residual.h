@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// How wrong is an answer? One certificate judges every solver (theory: section 3, "Certificate"), from the
+/// How wrong is an answer? One certificate judges every solver (docs/method.md, section 3), from the
 /// problem and the impulses alone.
 
 #include <carom/contact/contact_problem.h>

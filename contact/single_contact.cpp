@@ -168,8 +168,9 @@ PlanarSolutions list_modes(const PlanarContact& c, const Predicates& v) {
   if (v.p_minus != 0.0 && slip_minus_margin >= 0.0) {
     add(found, slip(c, v.p_minus, ContactMode::slip_negative));
   }
-  // W positive definite and b_n < 0: exactly, S+ and S- are not both negative (theory section 3); where
-  // rounding says so, or says that a vanishing p opens a gap, the contact stands between slip and stick.
+  // W positive definite and b_n < 0: exactly, S+ and S- are not both negative (docs/method.md section 3);
+  // where rounding says so, or says that a vanishing p opens a gap, the contact stands between slip and
+  // stick.
   if (found.count == 0 && !singular) add(found, stick(c, v.determinant));
 
   for (const double margin : {open_margin, stick_margin, slip_plus_margin, slip_minus_margin}) {

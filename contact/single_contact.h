@@ -67,7 +67,7 @@ struct PlanarSolutions {
 /// the answer, or on the presence of another one, is below degenerate_margin.
 ///
 /// Singular W (by singular_determinant): the sticking impulse nearest to the origin is taken and reported as
-/// forces_not_unique; without any solution (jammed: theory section 3) the outcome is no_solution.
+/// forces_not_unique; without any solution (jammed: docs/method.md section 3) the outcome is no_solution.
 [[nodiscard]] CAROM_API PlanarSolutions solve_planar_contact(const PlanarContact& contact);
 
 /// A solution of a planar contact together with its certificate.

@@ -38,7 +38,7 @@ SolverAnswer solve_lone_row(const ContactProblem& problem, std::span<double> imp
   return {Outcome::no_solution, false, 1, "an immovable row is driven against its bound"};
 }
 
-// A sphere or a particle in space (theory section 4, with the tangent a plane).
+// A sphere or a particle in space (docs/method.md section 4, with the tangent a plane).
 SolverAnswer solve_decoupled_disc(const ContactProblem& problem, std::span<double> impulse) {
   const auto b = problem.vector();
   const double w_nn = problem.w(0, 0), w_tt = 0.5 * (problem.w(1, 1) + problem.w(2, 2));

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The contact law of a pair of surfaces (docs/architecture.md; Johansson 1999, section 2).
+/// The contact law of a pair of surfaces (docs/method.md, section 2; Johansson 1999, section 2).
 
 #include <limits>
 

@@ -25,7 +25,7 @@ double judge(const ContactProblem& problem, const std::vector<double>& impulse) 
   return residual(problem, impulse, xi).value;
 }
 
-// The matrix and vector the paper prints (Johansson 1999, equation 13; theory section 3), brought from the
+// The matrix and vector the paper prints (Johansson 1999, equation 13), brought from the
 // mean velocities to xi = (1 + e) (mean) and from the paper's order (P_n, chi1, chi2) to the scaled
 // variables.
 TEST(PaperForm, IsThePapersForOneContact) {
@@ -44,7 +44,7 @@ TEST(PaperForm, IsThePapersForOneContact) {
     const double m1 = 1.0 / (1.0 / impact.mass + r1 * r1 / impact.inertia);
     const double coupling = r1 * r2 / impact.inertia;  // 1 / Ibar
     const double a = 1.0 + impact.e_n, c = m1 * (1.0 + impact.e_t), k = m1 * coupling;
-    // First entry without cancellation, as the theory gives it.
+    // First entry without cancellation, as the masses give it.
     const double a11 = m1 / impact.mass * (1.0 / impact.mass + (r1 * r1 + r2 * r2) / impact.inertia) / a;
     const double paper[3][3] = {{a11, -c * coupling / a, c * coupling / a},
                                 {impact.friction + k, c, -c},
@@ -220,7 +220,7 @@ TEST(LcpForms, IntervalsOfEveryKind) {
 TEST(PivotingSolvers, AgreeOnOneContact) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Impact impact = contact_test::random_impact(seed);
-    // Where the solution is unique (theory section 3), both have to find it.
+    // Where the solution is unique (docs/method.md section 3), both have to find it.
     if (impact.friction * std::abs(impact.w_nt()) > 0.99 * impact.w_nn()) continue;
     ContactProblem problem;
     contact_test::make_problem(impact, problem);

@@ -47,8 +47,9 @@ void solve_many(std::uint64_t first, int count, double decades) {
     }
     EXPECT_EQ(report.residual, error) << "seed " << seed;
     if (!random.common_restitution) continue;
-    // One e <= 1 and obstacles at rest: dT = P^T (gamma^- + gamma^+) / 2 <= 0 (theory section 5), with
-    // gamma^- = b / (1 + e) and gamma^+ = xi - e gamma^-. Exactly so; xi carries the residual of the answer.
+    // One e <= 1 and obstacles at rest: dT = P^T (gamma^- + gamma^+) / 2 <= 0 (docs/method.md section 5),
+    // with gamma^- = b / (1 + e) and gamma^+ = xi - e gamma^-. Exactly so; xi carries the residual of the
+    // answer.
     double change = 0.0, terms = 0.0;
     for (std::size_t i = 0; i < impulse.size(); ++i) {
       const double before = random.problem.vector()[i] / (1.0 + random.restitution);

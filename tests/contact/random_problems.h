@@ -38,7 +38,7 @@ private:
   std::uint64_t state_;
 };
 
-/// One planar impact in the notation of the theory (sections 1 and 3).
+/// One planar impact in the notation of docs/method.md, sections 1 and 3.
 struct Impact {
   double mass = 1.0, inertia = 1.0, r_x = 0.0, r_y = 0.0;  // contact from centre: r_x along t, r_y along n
   double x_minus = 0.0, y_minus = 0.0;                     // contact velocity before: tangential, normal
@@ -103,7 +103,8 @@ struct RandomProblem {
   ContactProblem problem;
   int bodies = 0;
   int contacts = 0;
-  bool existence_guaranteed = false;  // theory section 3: one common e and obstacles at rest, or no jam
+  bool existence_guaranteed =
+      false;  // docs/method.md section 3: one common e and obstacles at rest, or no jam
   bool common_restitution = false;
   double restitution = 0.0;  // the common one
 };

@@ -125,7 +125,7 @@ TEST(ReferenceImpacts, TwoContactsOfOneBody) {
   }
 }
 
-// Walton's law is this law (theory section 4): psi2 over psi1, with unit normal speed.
+// Walton's law is this law (docs/method.md section 4): psi2 over psi1, with unit normal speed.
 TEST(ReferenceImpacts, WaltonCurves) {
   const auto data = contact_test::reference_data("impacts_planar.json");
   SolverChain chain;

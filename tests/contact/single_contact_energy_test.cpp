@@ -1,4 +1,4 @@
-// Energy at a single impact (theory section 5; Johansson 1999, equation 23).
+// Energy at a single impact (docs/method.md section 5; Johansson 1999, equation 23).
 
 #include <carom/contact/solver_chain.h>
 

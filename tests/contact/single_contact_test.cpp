@@ -46,7 +46,7 @@ TEST(SingleContact, LoneRows) {
   EXPECT_EQ(solve_row(free, 0.0, 1.0, p).outcome, Outcome::no_solution);
 }
 
-// Theory section 4: where the directions do not couple.
+// docs/method.md section 4: where the directions do not couple.
 TEST(SingleContact, SphereInThePlane) {
   const double m = 2.0, r = 0.1, inertia = 0.4 * m * r * r, m1 = 1.0 / (1.0 / m + r * r / inertia);
   for (const double e_n : {0.0, 0.5, 1.0}) {
@@ -94,7 +94,8 @@ TEST(SingleContact, SphereInSpaceIsTheSphereInThePlaneOfItsMotion) {
   }
 }
 
-// theory section 7: rod tip at mu = 2, tan theta = 2. Impact without collision: stick with P = (0.3, 0.4).
+// The Painleve rod of tests/reference/contacts_planar.json: rod tip at mu = 2, tan theta = 2. Impact without
+// collision: stick with P = (0.3, 0.4).
 TEST(SingleContact, PainleveRod) {
   const auto data = contact_test::reference_data("contacts_planar.json");
   int compared = 0;
@@ -123,8 +124,8 @@ TEST(SingleContact, PainleveRod) {
   EXPECT_EQ(compared, 18);
 }
 
-// p+ < 0 and b_n > 0: open, stick and slip are all possible (theory section 3, "otherwise there can be
-// three").
+// p+ < 0 and b_n > 0: open, stick and slip are all possible (docs/method.md section 3, "otherwise there can
+// be three").
 TEST(SingleContact, ThreeSolutionsAreFound) {
   const PlanarContact contact{1.6, 1.2, 3.4, 0.1, 1.0, 2.0};
   const PlanarSolutions found = solve_planar_contact(contact);

@@ -44,7 +44,8 @@ ContactProblem one_body(const std::vector<std::array<double, 3>>& points, std::a
   return problem;
 }
 
-// theory section 3: the tangential block of W is singular, only the sum of both friction impulses counts.
+// docs/method.md section 3: the tangential block of W is singular, only the sum of both friction impulses
+// counts.
 TEST(SolutionList, BrickOnTwoCornersHasForcesThatAreNotUnique) {
   const ContactProblem brick = one_body({{-1.0, -0.5, 0.0}, {1.0, -0.5, 0.0}}, {0.2, -1.0, 0.0}, 0.6, 0.0);
   SolutionList list;

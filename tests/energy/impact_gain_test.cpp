@@ -1,4 +1,4 @@
-// Energy at impacts (theory of the paper's section 5): what can be gained, what cannot, and who is told.
+// Energy at impacts (docs/method.md, section 5): what can be gained, what cannot, and who is told.
 
 #include "tests/analytic/sphere_impact.h"
 #include "tests/energy/ledger_check.h"
