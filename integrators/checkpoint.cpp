@@ -138,8 +138,10 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   for (const double number : companion.ledger.save()) out.add(number);
   for_statistics(companion.statistics, [&out](const auto& number) { out.add(number); });
   out.add(companion.rounding);
-  out.add(companion.force_before);
-  out.add(companion.step_before);
+  out.add(companion.history.known);
+  out.add(companion.history.step);
+  if (companion.history.known > 0) out.add(companion.history.before);
+  if (companion.history.known > 1) out.add(companion.history.earlier);
   out.add(companion.grid_start);
   out.add(companion.grid_steps);
   out.add(std::uint64_t{companion.modes.size()});
@@ -203,11 +205,15 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for_statistics(other.statistics, [&in](auto& number) { in.get(number); });
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
-  in.get(other.force_before);
-  if (!other.force_before.empty() && other.force_before.size() != state.v.size()) {
-    in.damaged("its sizes do not fit the model");
+  LoadHistory& history = other.history;
+  in.get(history.known);
+  if (history.known < 0 || history.known > 2) in.damaged("its history of loads is of unknown length");
+  in.get(history.step);
+  if (history.known > 0) in.get(history.before);
+  if (history.known > 1) in.get(history.earlier);
+  for (const auto* loads : {&history.before, &history.earlier}) {
+    if (!loads->empty() && loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
   }
-  in.get(other.step_before);
   in.get(other.grid_start);
   in.get(other.grid_steps);
   other.modes.resize(in.count());

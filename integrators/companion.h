@@ -23,6 +23,14 @@ struct PresentLoads {
   std::vector<double> external;     ///< part of the total
 };
 
+/// Loads at the starts of the last steps, by which those at the end of the next are guessed.
+struct LoadHistory {
+  int known = 0;                ///< how many of the two are known
+  double step = 0.0;            ///< length of the last step; of the last two if both are known [s]
+  std::vector<double> before;   ///< loads one step ago [N, N m]
+  std::vector<double> earlier;  ///< loads two steps ago
+};
+
 /// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.
 struct Rhythm {
   double start = 0.0;      ///< [s]
@@ -38,12 +46,11 @@ struct Companion {
   EnergyLedger ledger;    ///< the energy account
   Statistics statistics;  ///< counts since the start
   std::vector<double>
-      rounding;  ///< what rounding cut off the velocities: carried on, so that it does not add up
-  std::vector<double> force_before;  ///< loads one step before, for the guess at the next; empty at a start
-  double step_before = 0.0;          ///< length of that step [s]
-  double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
-  std::int64_t grid_steps = 0;  ///< n
-  PresentLoads loads;           ///< at the state
+      rounding;             ///< what rounding cut off the velocities: carried on, so that it does not add up
+  LoadHistory history;      ///< for the guess at the loads of the next step
+  double grid_start = 0.0;  ///< times of steps are grid_start + n h, so that rounding does not add up [s]
+  std::int64_t grid_steps = 0;                            ///< n
+  PresentLoads loads;                                     ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
   std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()
 };

@@ -61,7 +61,7 @@ struct Simulation::Impl {
   void forget_history() {
     companion.modes.clear();
     companion.rounding.assign(state.v.size(), 0.0);
-    companion.force_before.clear();
+    companion.history.known = 0;
     companion.loads.valid = false;
   }
   void restart_grid() {

@@ -120,12 +120,18 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
   std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
   std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
 
-  const std::vector<double>& now = companion.loads.total;
-  const std::vector<double>& before = companion.force_before;
-  const bool known = !before.empty() && step <= farthest * companion.step_before;
-  const double ratio = known ? step / companion.step_before : 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    evaluation_.force[i] = known ? now[i] + ratio * (now[i] - before[i]) : now[i];
+  const double* const now = companion.loads.total.data();
+  const LoadHistory& history = companion.history;
+  double* const guess = evaluation_.force.data();
+  if (history.known == 2 && step == history.step) {
+    const double* const before = history.before.data();
+    const double* const earlier = history.earlier.data();
+    for (Index i = v.begin; i < v.end; ++i) guess[i] = 3.0 * (now[i] - before[i]) + earlier[i];
+  } else if (history.known > 0 && step <= farthest * history.step) {
+    const double ratio = step / history.step;
+    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + ratio * (now[i] - history.before[i]);
+  } else {
+    std::copy(now + v.begin, now + v.end, guess + v.begin);
   }
 }
 
@@ -258,8 +264,11 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
       -(stored_.potential() - companion.ledger.potential() + coupling_work_.value());
   std::swap(state.q, trial_.q);
   std::swap(state.v, trial_.v);
-  companion.force_before.swap(companion.loads.total);
-  companion.step_before = report_.step;
+  LoadHistory& history = companion.history;
+  history.known = history.known > 0 && history.step == report_.step ? 2 : 1;
+  history.step = report_.step;
+  history.earlier.swap(history.before);
+  history.before.swap(companion.loads.total);
   std::swap(companion.loads, end_);
   companion.loads.valid = true;
   resize(end_, state.v.size());
