@@ -19,8 +19,9 @@
 ///       optional void fingerprint(Fingerprint& print) const { print.add(strength); } // optional
 ///     };
 ///
-/// An element may look at and push only bodies that it names in bodies(). Without fingerprint() a checkpoint
-/// cannot tell it from one with other parameters.
+/// An element may look at and push only bodies that it names in bodies(). Its potential is booked as
+/// `potential` unless it says `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
+/// fingerprint() a checkpoint cannot tell it from one with other parameters.
 
 #include <carom/core/assembly.h>
 #include <carom/core/end.h>
@@ -171,6 +172,13 @@ public:
   void ends(Index element, std::vector<BodyId>& out) const override {
     const std::vector<BodyId> bodies = parts_[element].bodies();
     out.insert(out.end(), bodies.begin(), bodies.end());
+  }
+  [[nodiscard]] StoredEnergy stored_as() const override {
+    if constexpr (requires { P::stored; }) {
+      return P::stored;
+    } else {
+      return StoredEnergy::potential;
+    }
   }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override {
     const ElementView<D> view(at);

@@ -27,6 +27,8 @@ public:
 
   /// Name of the part in messages.
   [[nodiscard]] const std::string& part() const { return part_; }
+  /// The system it enters, without the part.
+  [[nodiscard]] const System& system() const { return *system_; }
 
   /// Throws the ModelError "<part>: <quantity> is <value>; allowed: <allowed>".
   [[noreturn]] void refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const;

@@ -1,0 +1,56 @@
+#pragma once
+
+/// \file
+/// Resistance of a medium at rest.
+
+#include <carom/core/force_element.h>
+
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+/// Viscous and quadratic drag at an end, with v its velocity in the fixed frame: F = -(c1 + c2 |v|) v. It
+/// takes (c1 + c2 |v|) |v|^2 >= 0.
+template <int D>
+struct Drag {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = D;
+  static constexpr std::string_view label = "drag";
+
+  End<D> on{};             ///< body, or body and point (required)
+  double linear = 0.0;     ///< c1 >= 0 [N s/m]
+  double quadratic = 0.0;  ///< c2 >= 0 [N s^2/m^2]
+
+  /// The body it acts on.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
+  /// Throws ModelError for an end or numbers that cannot be.
+  void check(const PartCheck& check) const {
+    check_end(check, on, "on");
+    check.non_negative(linear, "linear", "N s/m");
+    check.non_negative(quadratic, "quadratic", "N s^2/m^2");
+  }
+  /// Books the load.
+  void loads(const ElementView<D>& at, ElementLoads<D>& out) const {
+    const Vec<D> velocity = at.velocity(on);
+    out.dissipative(on, -(linear + quadratic * velocity.norm()) * velocity);
+  }
+  /// Adds the end and the numbers.
+  void fingerprint(Fingerprint& print) const {
+    add_to(print, on);
+    print.add(linear);
+    print.add(quadratic);
+  }
+};
+
+}  // namespace generic
+
+namespace planar {
+using Drag = generic::Drag<2>;
+}
+namespace spatial {
+using Drag = generic::Drag<3>;
+}
+
+}  // namespace carom

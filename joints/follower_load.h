@@ -1,0 +1,42 @@
+#pragma once
+
+/// \file
+/// Prescribed forces that turn with their body.
+
+#include <carom/core/force_element.h>
+
+#include <functional>
+#include <vector>
+
+namespace carom::planar {
+
+/// A force at a point of a rigid body, a given function of time, in the body's frame: it turns with the body,
+/// as a thruster does. Its work is external work.
+struct FollowerLoad {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = 2;
+  static constexpr std::string_view label = "follower load";
+
+  End<2> on{};                                 ///< rigid body, or rigid body and point (required)
+  std::function<Vec<2>(double time)> force{};  ///< in the body's frame [N] (required)
+
+  /// The body it acts on.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
+  /// Throws ModelError for an end or a function that cannot be.
+  void check(const PartCheck& check) const {
+    check.oriented_body(on.body, "on");
+    check_end(check, on, "on");
+    if (!force) check.refuse("force", "not given", "a function of time");
+    const Vec<2> start = force(0.0);
+    check.finite({start.data(), 2}, "force at time 0", "N");
+  }
+  /// Books the load.
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+    const double* rotation = at.context().evaluation.rotation.data() + at.oriented(on.body).rotation;
+    out.external(on, Space<2>::rotate(rotation, force(at.time())));
+  }
+  /// Adds the end (a function cannot be hashed).
+  void fingerprint(Fingerprint& print) const { add_to(print, on); }
+};
+
+}  // namespace carom::planar

@@ -1,0 +1,113 @@
+#pragma once
+
+/// \file
+/// Two ends as an element between them sees them: along a line, or as an angle.
+
+#include <carom/core/end.h>
+#include <carom/core/force_element.h>
+#include <carom/core/system.h>
+
+#include <vector>
+
+namespace carom {
+
+/// The described start of a body: its coordinates and velocities. For laws that are tried as they enter.
+struct DescribedStart {
+  DescribedStart(const System& system, BodyId body) {
+    const Registry<BodyKind>& registry = system.body_kinds();
+    const BodyKind& kind = registry.kind_of(body.serial);
+    q.resize(kind.q_size());
+    v.resize(kind.v_size());
+    kind.initial(registry.place(body.serial).slot, q.data(), v.data());
+  }
+
+  std::vector<double> q, v;
+};
+
+namespace generic {
+
+/// The line between two ends: with d from `from` to `to`, the length |d|, d/|d| and the rate of the length.
+/// Where the ends coincide there is no direction: it is zero, and so is the rate.
+template <int D>
+struct LineOfAction {
+  LineOfAction(const Vec<D>& distance, const Vec<D>& relative_velocity) : length(distance.norm()) {
+    if (length == 0.0) return;
+    direction = distance / length;
+    rate = direction.dot(relative_velocity);
+  }
+  LineOfAction(const ElementView<D>& at, const End<D>& from, const End<D>& to)
+      : LineOfAction(at.position(to) - at.position(from), at.velocity(to) - at.velocity(from)) {}
+
+  /// The line as the bodies are described, before anything moves.
+  static LineOfAction described(const System& system, const End<D>& from, const End<D>& to) {
+    Vec<D> distance = Vec<D>::Zero(), velocity = Vec<D>::Zero();
+    const auto add = [&](const End<D>& end, double sign) {
+      if (end.body == ground) {
+        distance += sign * end.point;
+        return;
+      }
+      const DescribedStart start(system, end.body);
+      distance += sign * Eigen::Map<const Vec<D>>(start.q.data());
+      velocity += sign * Eigen::Map<const Vec<D>>(start.v.data());
+      if constexpr (Space<D>::has_orientation) {
+        if (end.point.isZero(0.0)) return;
+        double rotation[Space<D>::rotation_size];
+        Space<D>::rotation(start.q.data() + D, rotation);
+        const Vec<D> lever = Space<D>::rotate(rotation, end.point);
+        distance += sign * lever;
+        velocity += sign * Space<D>::lever_velocity(start.v.data() + D, lever);
+      }
+    };
+    add(to, 1.0);
+    add(from, -1.0);
+    return {distance, velocity};
+  }
+
+  double length = 0.0;                ///< [m]
+  double rate = 0.0;                  ///< [m/s]
+  Vec<D> direction = Vec<D>::Zero();  ///< from `from` to `to`
+};
+
+}  // namespace generic
+
+namespace planar {
+
+/// The angle of one rigid body (or the ground) relative to another, and its rate. Angles of bodies count
+/// their turns, so it does too.
+struct RelativeAngle {
+  RelativeAngle(const ElementView<2>& at, BodyId from, BodyId to) {
+    if (to != ground) {
+      angle = at.angle(to);
+      rate = at.spin(to);
+    }
+    if (from != ground) {
+      angle -= at.angle(from);
+      rate -= at.spin(from);
+    }
+  }
+  /// The angle as the bodies are described, before anything moves.
+  RelativeAngle(const System& system, BodyId from, BodyId to) {
+    const auto add = [&](BodyId body, double sign) {
+      if (body == ground) return;
+      const DescribedStart start(system, body);
+      angle += sign * start.q[2];
+      rate += sign * start.v[2];
+    };
+    add(to, 1.0);
+    add(from, -1.0);
+  }
+
+  double angle = 0.0;  ///< of `to` less that of `from` [rad]
+  double rate = 0.0;   ///< [rad/s]
+};
+
+/// Demands two different ends, each a rigid body or the ground.
+inline void check_angular_ends(const PartCheck& check, BodyId from, BodyId to) {
+  if (from != ground) check.oriented_body(from, "from");
+  if (to != ground) check.oriented_body(to, "to");
+  check.different_ends(from, to);
+}
+
+}  // namespace planar
+
+}  // namespace carom

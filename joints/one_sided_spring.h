@@ -1,0 +1,106 @@
+#pragma once
+
+/// \file
+/// Springs with a dashpot in parallel that act in one direction only: a cable pulls, a bumper pushes.
+
+#include <carom/core/force_element.h>
+#include <carom/joints/line_of_action.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace carom {
+
+namespace generic {
+
+/// A spring-dashpot between two ends that is slack on one side of its free length L and there does nothing.
+/// With x >= 0 the excess beyond L (stretch of a cable, l - L; compression of a bumper, L - l):
+///
+///     spring  s = k x                      conservative, with the potential k x^2 / 2
+///     dashpot p = c dx/dt in [-s, s]       dissipative, p dx/dt >= 0 always
+///
+/// and s + p in [0, 2 s] draws x back. The dashpot is clipped, the spring never is. Below, so that the total
+/// cannot change sign: while x falls faster than k x/c the element goes with the ends without force, and what
+/// its spring gives its dashpot takes. Above, so that the force has no jump where the element goes taut: a
+/// jump has no solution in some implicit steps. Where the ends coincide there is no direction and no force.
+template <int D, bool Pulls>
+struct OneSidedSpring {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = D;
+  static constexpr std::string_view label = Pulls ? "cable" : "bumper";
+  static constexpr StoredEnergy stored = StoredEnergy::elastic;
+
+  End<D> from{};             ///< required
+  End<D> to{};               ///< required
+  double stiffness = 0.0;    ///< k > 0 [N/m]
+  double damping = 0.0;      ///< c >= 0 [N s/m]
+  double free_length = 0.0;  ///< L >= 0, for a bumper > 0 [m]
+
+  /// The bodies it joins.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
+  /// Throws ModelError for ends or numbers that cannot be.
+  void check(const PartCheck& check) const {
+    check_end(check, from, "from");
+    check_end(check, to, "to");
+    check.different_ends(from.body, to.body);
+    check.positive(stiffness, "stiffness", "N/m");
+    check.non_negative(damping, "damping", "N s/m");
+    if constexpr (Pulls) {
+      check.non_negative(free_length, "free_length", "m");
+    } else {
+      check.positive(free_length, "free_length", "m");
+    }
+  }
+  /// Books spring and dashpot.
+  void loads(const ElementView<D>& at, ElementLoads<D>& out) const {
+    const LineOfAction<D> line(at, from, to);
+    const double spring = stiffness * excess(line.length);
+    if (spring == 0.0) return;
+    const double dashpot = std::clamp(damping * side * line.rate, -spring, spring);
+    const Vec<D> conservative = side * spring * line.direction;  // on `from`
+    const Vec<D> dissipative = side * dashpot * line.direction;
+    out.conservative(from, conservative);
+    out.conservative(to, -conservative);
+    out.dissipative(from, dissipative);
+    out.dissipative(to, -dissipative);
+  }
+  /// k x^2 / 2 [J].
+  [[nodiscard]] double potential(const ElementView<D>& at) const {
+    const double x = excess((at.position(to) - at.position(from)).norm());
+    return 0.5 * stiffness * x * x;
+  }
+  /// Adds ends and numbers.
+  void fingerprint(Fingerprint& print) const {
+    add_to(print, from);
+    add_to(print, to);
+    print.add(stiffness);
+    print.add(damping);
+    print.add(free_length);
+  }
+
+private:
+  static constexpr double side = Pulls ? 1.0 : -1.0;
+
+  [[nodiscard]] double excess(double length) const { return std::max(0.0, side * (length - free_length)); }
+};
+
+/// Tension only.
+template <int D>
+using Cable = OneSidedSpring<D, true>;
+/// Compression only.
+template <int D>
+using Bumper = OneSidedSpring<D, false>;
+
+}  // namespace generic
+
+namespace planar {
+using Cable = generic::Cable<2>;
+using Bumper = generic::Bumper<2>;
+}  // namespace planar
+namespace spatial {
+using Cable = generic::Cable<3>;
+using Bumper = generic::Bumper<3>;
+}  // namespace spatial
+
+}  // namespace carom

@@ -1,0 +1,60 @@
+#pragma once
+
+/// \file
+/// Torsional spring with a dashpot in parallel.
+
+#include <carom/core/force_element.h>
+#include <carom/joints/line_of_action.h>
+
+#include <vector>
+
+namespace carom::planar {
+
+/// Torsional spring-dashpot between two rigid bodies, or one and the ground: with the angle a of `to`
+/// relative to `from`, the torque on `to` is -(k (a - A) + c da/dt), that on `from` the opposite. Angles
+/// count turns: a body that has turned once is pulled back the whole way.
+struct TorsionalSpring {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = 2;
+  static constexpr std::string_view label = "torsional spring";
+  static constexpr StoredEnergy stored = StoredEnergy::elastic;
+
+  BodyId from{};            ///< a rigid body or ground (required)
+  BodyId to{};              ///< a rigid body or ground (required)
+  double stiffness = 0.0;   ///< k >= 0 [N m/rad]
+  double damping = 0.0;     ///< c >= 0 [N m s/rad]
+  double free_angle = 0.0;  ///< A, counter-clockwise [rad]
+
+  /// The bodies it joins.
+  [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
+  /// Throws ModelError for bodies or numbers that cannot be.
+  void check(const PartCheck& check) const {
+    check_angular_ends(check, from, to);
+    check.non_negative(stiffness, "stiffness", "N m/rad");
+    check.non_negative(damping, "damping", "N m s/rad");
+    check.finite(free_angle, "free_angle", "rad");
+  }
+  /// Books spring and dashpot.
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+    const RelativeAngle relative(at, from, to);
+    const double elastic = stiffness * (relative.angle - free_angle);
+    const double viscous = damping * relative.rate;
+    out.conservative_torque(from, elastic);
+    out.conservative_torque(to, -elastic);
+    out.dissipative_torque(from, viscous);
+    out.dissipative_torque(to, -viscous);
+  }
+  /// k (a - A)^2 / 2 [J].
+  [[nodiscard]] double potential(const ElementView<2>& at) const {
+    const double twist = RelativeAngle(at, from, to).angle - free_angle;
+    return 0.5 * stiffness * twist * twist;
+  }
+  /// Adds the numbers.
+  void fingerprint(Fingerprint& print) const {
+    print.add(stiffness);
+    print.add(damping);
+    print.add(free_angle);
+  }
+};
+
+}  // namespace carom::planar
