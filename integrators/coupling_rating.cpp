@@ -147,23 +147,45 @@ CouplingRating rate_couplings(const Assembly& assembly, Index island, const Stat
   return rating;
 }
 
-ElementId find_non_finite(const Assembly& assembly, Index island, const StateView& state,
-                          const Evaluation& evaluation) {
-  const Range v = assembly.islands()[island].v;
+namespace {
+
+/// The first element of the island that `is_bad`, a function of (kind, element, context).
+template <class F>
+ElementId find_element(const Assembly& assembly, Index island, const StateView& state,
+                       const Evaluation& evaluation, F&& is_bad) {
   const EvaluationContext at{assembly, state, evaluation, island};
-  std::vector<double> force(assembly.layout()->v_size(), 0.0);
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const Range elements = assembly.elements(island, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
-      std::fill(force.begin() + v.begin, force.begin() + v.end, 0.0);
-      assembly.force_kinds()[kind]->evaluate(at, {element, element + 1},
-                                             {force.data(), force.data(), force.data()});
-      const bool finite = std::all_of(force.begin() + v.begin, force.begin() + v.end,
-                                      [](double number) { return std::isfinite(number); });
-      if (!finite) return assembly.element_id(kind, element);
+      if (is_bad(*assembly.force_kinds()[kind], Range{element, element + 1}, at)) {
+        return assembly.element_id(kind, element);
+      }
     }
   }
   return {};
+}
+
+}  // namespace
+
+ElementId find_non_finite(const Assembly& assembly, Index island, const StateView& state,
+                          const Evaluation& evaluation) {
+  const Range v = assembly.islands()[island].v;
+  std::vector<double> force(assembly.layout()->v_size(), 0.0);
+  return find_element(assembly, island, state, evaluation,
+                      [&](const ForceKind& kind, Range element, const EvaluationContext& at) {
+                        std::fill(force.begin() + v.begin, force.begin() + v.end, 0.0);
+                        kind.evaluate(at, element, {force.data(), force.data(), force.data()});
+                        return !std::all_of(force.begin() + v.begin, force.begin() + v.end,
+                                            [](double number) { return std::isfinite(number); });
+                      });
+}
+
+ElementId find_non_finite_potential(const Assembly& assembly, Index island, const StateView& state,
+                                    const Evaluation& evaluation) {
+  return find_element(assembly, island, state, evaluation,
+                      [](const ForceKind& kind, Range element, const EvaluationContext& at) {
+                        return !std::isfinite(kind.potential(at, element));
+                      });
 }
 
 }  // namespace carom

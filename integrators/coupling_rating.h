@@ -28,4 +28,9 @@ struct CouplingRating {
 [[nodiscard]] CAROM_API ElementId find_non_finite(const Assembly& assembly, Index island,
                                                   const StateView& state, const Evaluation& evaluation);
 
+/// The first element of the island whose potential is not finite at the state; invalid if there is none.
+[[nodiscard]] CAROM_API ElementId find_non_finite_potential(const Assembly& assembly, Index island,
+                                                            const StateView& state,
+                                                            const Evaluation& evaluation);
+
 }  // namespace carom

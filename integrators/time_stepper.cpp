@@ -186,6 +186,8 @@ void TimeStepper::book_couplings(Index island, const State& state, const Compani
     dissipative += path * (start.dissipative[i] + end_.dissipative[i]);
     external += path * (start.external[i] + end_.external[i]);
   }
+  // The last iterate's loads and potentials enter the account unseen by any sweep.
+  if (!std::isfinite(dissipative + external + stored_.total())) fail_account(island, state, step);
   coupling_work_.add(total - dissipative - external);
   flows_[EnergyFlow::dashpot] -= dissipative;
   flows_[EnergyFlow::external] += external;

@@ -62,6 +62,7 @@ private:
                                      double step, const FixedPointJudge& judge);
   [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state,
                                  double step);
+  [[noreturn]] void fail_account(Index island, const State& state, double step);
   [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                                 double step) const;
 

@@ -137,6 +137,23 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   throw SolverError(message, std::move(failure));
 }
 
+void TimeStepper::fail_account(Index island, const State& state, double step) {
+  demand_finite_loads(island, trial_.view(), state, step);
+  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+  const ElementId culprit = find_non_finite_potential(*assembly_, island, trial_.view(), evaluation_);
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  std::string message = place(state, step);
+  if (culprit.valid()) {
+    failure.parts.push_back(assembly_->system().name(culprit));
+    message += "the potential of " + failure.parts.front() + " is not finite";
+  } else {
+    message += "an energy is too large to be counted";
+  }
+  throw SolverError(message, std::move(failure));
+}
+
 void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                               double step) const {
   SolverFailure failure = failure_of(cluster, finder_, state, step);

@@ -376,6 +376,18 @@ struct Broken {
   }
 };
 
+/// A potential that is no number from 0.5 s on, of loads that are.
+struct Bottomless {
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = 2;
+  BodyId body;
+  std::vector<BodyId> bodies() const { return {body}; }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+    out.conservative(body, -at.position(body));
+  }
+  double potential(const ElementView<2>& at) const { return at.time() > 0.5 ? nan : 0.0; }
+};
+
 /// An element that throws from 0.1 s on.
 struct Thrower {
   static constexpr Role role = Role::force;
@@ -509,6 +521,16 @@ TEST(SimulationFailure, AUsersElementThatIsNoNumberIsNamed) {
   System system = pair_scene();
   system.add(Broken{system.body("upper")}, "root");
   expect_named_at_once(std::move(system), "force element 'root'");
+}
+
+TEST(SimulationFailure, APotentialThatIsNoNumberIsNamedAndNotBooked) {
+  System system;
+  system.add(Bottomless{system.add(Particle{.mass = 1.0, .position = {1.0, 0.0}})}, "well");
+  Simulation simulation(std::move(system), TimeStepping{.step = 1e-3});
+  simulation.run_until(0.5);
+  const auto before = bits_of(simulation);
+  EXPECT_THROWS(SolverError, simulation.step(), "potential of force element 'well'", "not finite");
+  EXPECT_EQ(bits_of(simulation), before);
 }
 
 TEST(SimulationFailure, AnElementThatThrowsChangesNothing) {
