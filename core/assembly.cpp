@@ -211,9 +211,7 @@ void evaluate(const Assembly& assembly, Index island, const StateView& state, Ev
 
 void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
                          const Evaluation& evaluation, StoredEnergies& out) {
-  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
-  });
+  add_kinetic_energy(assembly, island, state, out);
   const EvaluationContext at{assembly, state, evaluation, island};
   for (Index k = 0; k < assembly.force_kinds().size(); ++k) {
     const Range elements = assembly.elements(island, k);
