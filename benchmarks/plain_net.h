@@ -1,0 +1,43 @@
+#pragma once
+
+/// \file
+/// The net as one would write it by hand for this purpose alone: flat arrays, springs with the two particles
+/// they join, no use made of the grid.
+
+#include "examples/scenes/net.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace benchmarks {
+
+/// Arrays over the particles are interleaved: x, y, x, y, ...
+struct PlainNet {
+  struct Spring {
+    double stiffness, damping, free_length;
+    std::uint32_t from, to;  // where the coordinates of the two particles begin
+  };
+  std::vector<double> q, v, force, mass;
+  std::vector<Spring> springs;
+
+  explicit PlainNet(const scenes::Net& net);
+
+  [[nodiscard]] std::size_t size() const { return mass.size(); }
+};
+
+/// Forces at q, v. Compiled for the instruction set that the library is compiled for.
+void plain_forces(PlainNet& net);
+/// Forces, then v += h F/m, q += h v: one explicit step.
+void plain_sweep(PlainNet& net, double step);
+/// The same with AVX2 and FMA allowed.
+void plain_sweep_avx2(PlainNet& net, double step);
+/// The same, springs in blocks so that root and division run on four springs at once.
+void plain_sweep_blocked_avx2(PlainNet& net, double step);
+/// The same, springs in blocks, for the instruction set of the library.
+void plain_sweep_blocked(PlainNet& net, double step);
+/// Whether this machine has AVX2 and FMA.
+bool has_avx2();
+
+}  // namespace benchmarks
