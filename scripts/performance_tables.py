@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""Writes the tables of docs/performance.md from what the benchmarks measured (JSON of Google Benchmark).
+
+usage: performance_tables.py <folder of results> <page> <compiler>
+"""
+
+import json
+import os
+import re
+import sys
+from pathlib import Path
+
+SIZES = [10, 30, 100, 300, 1000]
+TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem")
+PLAIN = "plain_sweep"
+NET_ROWS = [
+    (PLAIN, "plain explicit sweep"),
+    ("plain_sweep_avx2", "the same, AVX2 and FMA allowed"),
+    ("plain_blocked", "the same, springs in blocks"),
+    ("plain_blocked_avx2", "the same, springs in blocks, AVX2 and FMA allowed"),
+    ("forces", "library: force sweep"),
+    ("step_falling", "library: step, free fall at rest"),
+    ("step_working", "library: step, all springs working"),
+    ("step_resting", "library: step, lowest row in contact"),
+]
+
+
+def load(folder, program):
+    """Context and, for each case, the least of every time and the most of every count over its repetitions."""
+    data = json.loads((folder / f"{program}.json").read_text())
+    cases = {}
+    for run in data["benchmarks"]:
+        if run["run_type"] != "iteration" or run.get("error_occurred"):
+            continue
+        name = "/".join(part for part in run["name"].split("/") if ":" not in part)
+        case = cases.setdefault(name, {})
+        for key, value in run.items():
+            if isinstance(value, (int, float)) and not isinstance(value, bool):
+                case[key] = (min if key in TIMES else max)(case.get(key, value), value)
+        case["unit"] = run["time_unit"]
+    return data["context"], cases
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def figure(value):
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+def seconds(case):
+    return case["cpu_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[case["unit"]]
+
+
+def net_table(net):
+    rows = []
+    for key, title in NET_ROWS:
+        cells = [title]
+        for k in SIZES:
+            case, plain = net.get(f"{key}/{k}"), net.get(f"{PLAIN}/{k}")
+            if case is None or plain is None:
+                cells.append("")
+                continue
+            cell = figure(1e9 * case["per_particle"])
+            if key != PLAIN:
+                cell += f" ({case['per_particle'] / plain['per_particle']:.2f})"
+            cells.append(cell)
+        rows.append(cells)
+    head = ["ns per particle (ratio to the plain sweep)"] + [f"k = {k}" for k in SIZES]
+    details = []
+    for key, title in NET_ROWS[5:]:
+        for what, unit in (("sweeps", "sweeps"), ("allocations", "allocations")):
+            cells = [f"{title}: {unit}"]
+            cells += [figure(net[f"{key}/{k}"][what]) if f"{key}/{k}" in net else "" for k in SIZES]
+            details.append(cells)
+    return table(head, rows) + "\n\n" + table(["per step"] + head[1:], details)
+
+
+def second_table(net):
+    rows = []
+    for k in SIZES:
+        case = net.get(f"second/{k}")
+        if case is None:
+            continue
+        rows.append([str(k), figure(seconds(case)), figure(1e9 * case["per_particle"]),
+                     f"{case['per_particle'] / net[f'{PLAIN}/{k}']['per_particle']:.2f}",
+                     f"{case['sweeps']:.2f}", f"{case['impacts']:.0f}"])
+    return table(["k", "s of CPU", "ns per particle and step", "plain sweeps", "sweeps per step", "impacts"], rows)
+
+
+def impact_table(impact):
+    hand = impact["impact_by_hand"]["per_impact"]
+    rows = [[title, figure(1e9 * impact[key]["per_impact"]), f"{impact[key]['per_impact'] / hand:.2f}"]
+            for key, title in (("impact_by_hand", "closed form by hand"),
+                               ("impact_by_library", "library: contact problem, solved and certified"),
+                               ("impact_of_body", "library: contact of a body to its velocities after"))]
+    return table(["one impact", "ns", "ratio"], rows)
+
+
+def tables_table(tables):
+    rows = [[title, f"{1e3 * seconds(tables[key]):.3g}"]
+            for key, title in (("second_by_hand", "loop by hand"), ("second_by_library", "library"))]
+    rows += [["ODE (measured)", "7"], ["Siconos (measured)", "32"]]
+    return table(["one simulated second", "ms of CPU"], rows)
+
+
+def chain_table(chain):
+    counts = [2, 4, 8, 12]
+    rows = []
+    for key, title in (("gauss_seidel_by_hand", "projected Gauss-Seidel by hand"), ("chain", "chain, certified"),
+                       ("principal_pivoting", "principal pivoting"), ("lemke", "Lemke"),
+                       ("projection", "projection")):
+        cells = [title]
+        for count in counts:
+            case = chain[f"{key}/{count}"]
+            ratio = case["per_problem"] / chain[f"gauss_seidel_by_hand/{count}"]["per_problem"]
+            cells.append(f"{figure(1e6 * case['per_problem'])} ({ratio:.2f})")
+        rows.append(cells)
+    return table(["µs per problem (ratio)"] + [f"{count} contacts" for count in counts], rows)
+
+
+def aims_table(net, impact, tables):
+    def ratios(key):
+        found = [net[f"{key}/{k}"]["per_particle"] / net[f"{PLAIN}/{k}"]["per_particle"]
+                 for k in SIZES if f"{key}/{k}" in net]
+        return f"{min(found):.2f} to {max(found):.2f}"
+
+    def times(key):
+        found = [1e9 * net[f"{key}/{k}"]["per_particle"] for k in SIZES if f"{key}/{k}" in net]
+        return f"{figure(min(found))} to {figure(max(found))}"
+
+    steps = [case for key, case in net.items() if key.startswith("step_")]
+    storage = net["storage"]
+    impact_ratio = impact["impact_by_library"]["per_impact"] / impact["impact_by_hand"]["per_impact"]
+    rows = [
+        ["force sweep, in plain sweeps", "≤ 1.5", ratios("forces")],
+        ["whole step converged to 1e-10, in plain sweeps", "≤ 4", ratios("step_working")],
+        ["the same, ns per particle", "< 60", times("step_working")],
+        ["allocations in a step of the steady state", "0", figure(max(case["allocations"] for case in steps))],
+        ["bytes per particle", "≤ 200", f"{storage['bytes_per_particle']:.0f}"],
+        ["bytes per spring", "≤ 128", f"{storage['bytes_per_spring']:.0f}"],
+        ["two threads against one, k = 300", "≥ 1.7", "steps run on one thread"],
+        ["one certified impact, in closed forms by hand", "≤ 3", f"{impact_ratio:.2f}"],
+        ["ball between tables, ms of CPU per second", "< 2", f"{1e3 * seconds(tables['second_by_library']):.3g}"],
+    ]
+    return table(["figure", "aim", "measured"], rows)
+
+
+def machine(context, compiler):
+    cpu = "unknown processor"
+    if Path("/proc/cpuinfo").exists():
+        found = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text())
+        cpu = found.group(1) if found else cpu
+    cpu = cpu.replace("(R)", "").replace("(TM)", "")
+    load = context.get("load_avg", [0.0])[0]
+    return (f"{cpu}, {os.cpu_count()} cores; {compiler}, Release. Measured {context['date'][:10]}; "
+            f"load of the machine when the net began: {load:.1f}.")
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    folder, page, compiler = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
+    context, net = load(folder, "net")
+    _, impact = load(folder, "impact")
+    _, tables = load(folder, "tables")
+    _, chain = load(folder, "chain")
+    parts = {
+        "machine": machine(context, compiler),
+        "aims": aims_table(net, impact, tables),
+        "net": net_table(net),
+        "second": second_table(net),
+        "impact": impact_table(impact),
+        "tables": tables_table(tables),
+        "chain": chain_table(chain),
+    }
+    text = page.read_text()
+    for name, part in parts.items():
+        text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
+                              lambda match: match.group(1) + part + match.group(2), text, flags=re.DOTALL)
+        if count != 1:
+            sys.exit(f"{page}: section '{name}' is there {count} times")
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
