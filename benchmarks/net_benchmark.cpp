@@ -26,13 +26,13 @@ using benchmarks::PlainNet;
 // What the net does while its steps are timed.
 enum class Phase {
   falling,  // free fall, no spring works
-  working,  // free fall, springs stretched by 1 % at the start: all work, nothing touches
+  working,  // free fall, springs stretched by 1 % at the start: it draws together from its border inwards
   resting   // lies with its lowest row along the plane
 };
 
 constexpr double tolerance = 1e-10;  // [m]
 constexpr int settling = 10;         // steps before any is timed: by then guesses have their history
-constexpr double longest = 0.25;     // then the run starts anew, before it falls on the plane [s]
+constexpr double longest = 0.02;     // then a run starts anew: what a step costs depends on when it is [s]
 
 scenes::Net net_of(Phase phase, int k) {
   scenes::Net net{.k = k};
@@ -125,6 +125,51 @@ void plain_sweep_avx2(benchmark::State& state) {
 void plain_blocked_avx2(benchmark::State& state) {
   if (!benchmarks::has_avx2()) return state.SkipWithError("no AVX2");
   time_plain<benchmarks::plain_sweep_blocked_avx2>(state);
+}
+
+// The library and the hand-written step go the same way from the same start.
+void demand_equal_motion(int k) {
+  constexpr int steps = 30;
+  const scenes::Net net = net_of(Phase::working, k);
+  carom::Simulation simulation(system_of(net),
+                               carom::TimeStepping{.step = scenes::net_step, .tolerance = tolerance});
+  PlainNet by_hand(net);
+  for (int i = 0; i < steps; ++i) {
+    simulation.step();
+    benchmarks::plain_step(by_hand, scenes::net_step, tolerance);
+  }
+  for (std::size_t i = 0; i < by_hand.q.size(); ++i) {
+    if (!(std::abs(by_hand.q[i] - simulation.state().q[i]) <= steps * 10.0 * tolerance)) {
+      throw std::logic_error("nets by hand and by library part");
+    }
+  }
+}
+
+void plain_step(benchmark::State& state) {
+  const int k = static_cast<int>(state.range(0));
+  static const bool checked = (demand_equal_motion(10), true);
+  benchmark::DoNotOptimize(checked);
+  const auto settled = [&] {
+    PlainNet net(net_of(Phase::working, k));
+    for (int i = 0; i < settling; ++i) benchmarks::plain_step(net, scenes::net_step, tolerance);
+    return net;
+  };
+  const PlainNet begin = settled();
+  PlainNet net = begin;
+  int steps = 0;
+  std::int64_t sweeps = 0;
+  for (auto _ : state) {
+    if (++steps * scenes::net_step > longest) {
+      state.PauseTiming();
+      net = begin;
+      steps = 0;
+      state.ResumeTiming();
+    }
+    sweeps += benchmarks::plain_step(net, scenes::net_step, tolerance);
+  }
+  count_particles(state, k);
+  state.counters["sweeps"] =
+      benchmark::Counter(static_cast<double>(sweeps), benchmark::Counter::kAvgIterations);
 }
 
 void forces(benchmark::State& state) {
@@ -240,6 +285,7 @@ BENCHMARK(plain_sweep)->Apply(sizes);
 BENCHMARK(plain_sweep_avx2)->Apply(sizes);
 BENCHMARK(plain_blocked)->Apply(sizes);
 BENCHMARK(plain_blocked_avx2)->Apply(sizes);
+BENCHMARK(plain_step)->Apply(sizes);
 BENCHMARK(forces)->Apply(sizes);
 BENCHMARK(step_falling)->Apply(sizes);
 BENCHMARK(step_working)->Apply(sizes);
@@ -249,6 +295,7 @@ BENCHMARK(plain_sweep)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchm
 BENCHMARK(plain_sweep_avx2)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(plain_blocked)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(plain_blocked_avx2)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
+BENCHMARK(plain_step)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(forces)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(step_working)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 

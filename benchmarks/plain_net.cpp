@@ -92,6 +92,29 @@ using Spring = PlainNet::Spring;
   }
 }
 
+// Trapezoidal rule from q0, v0 with the forces force0 and `force`, which is the guess at those of the end.
+void move_implicitly(PlainNet& net, double step) {
+  const double half = 0.5 * step;
+  for (std::size_t i = 0; i < net.size(); ++i) {
+    const double factor = half / net.mass[i];
+    for (std::size_t j = 2 * i; j < 2 * i + 2; ++j) {
+      net.v[j] = net.v0[j] + factor * (net.force0[j] + net.force[j]);
+      net.q[j] = net.q0[j] + half * (net.v0[j] + net.v[j]);
+    }
+  }
+}
+
+// What the next sweep would change, h times velocities [m].
+double next_change(const PlainNet& net, const std::vector<double>& acted, double step) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < net.size(); ++i) {
+    for (std::size_t j = 2 * i; j < 2 * i + 2; ++j) {
+      largest = std::max(largest, std::abs(net.force[j] - acted[j]) / net.mass[i]);
+    }
+  }
+  return 0.5 * step * step * largest;
+}
+
 }  // namespace
 
 PlainNet::PlainNet(const scenes::Net& net) {
@@ -137,6 +160,33 @@ CAROM_AVX2 void plain_sweep_blocked_avx2(PlainNet& net, double step) {
   weigh(net);
   pull_blocked(net);
   move(net, step);
+}
+
+int plain_step(PlainNet& net, double step, double tolerance) {
+  if (net.known == 0) {
+    plain_forces(net);
+    net.q0 = net.q;
+    net.v0 = net.v;
+    net.force0 = net.before = net.earlier = net.force;
+  }
+  net.q0.swap(net.q);
+  net.v0.swap(net.v);
+  net.earlier.swap(net.before);
+  net.before.swap(net.force0);
+  net.force0.swap(net.force);
+  net.known = std::min(net.known + 1, 3);
+  // Now force0 is at the start of the step, `before` one step and `earlier` two steps ago.
+  for (std::size_t i = 0; i < net.force.size(); ++i) {
+    net.force[i] = net.known == 3 ? 3.0 * (net.force0[i] - net.before[i]) + net.earlier[i] : net.force0[i];
+  }
+  constexpr int most = 100;
+  for (int sweeps = 1;; ++sweeps) {
+    move_implicitly(net, step);
+    net.acted.swap(net.force);
+    net.force.resize(net.acted.size());
+    plain_forces(net);
+    if (next_change(net, net.acted, step) <= tolerance || sweeps == most) return sweeps;
+  }
 }
 
 bool has_avx2() {

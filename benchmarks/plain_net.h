@@ -20,6 +20,9 @@ struct PlainNet {
     std::uint32_t from, to;  // where the coordinates of the two particles begin
   };
   std::vector<double> q, v, force, mass;
+  std::vector<double> q0, v0, force0, before, earlier,
+      acted;      // of plain_step(): at the start, and one and two steps ago
+  int known = 0;  // how many of the last three are known
   std::vector<Spring> springs;
 
   explicit PlainNet(const scenes::Net& net);
@@ -37,6 +40,10 @@ void plain_sweep_avx2(PlainNet& net, double step);
 void plain_sweep_blocked_avx2(PlainNet& net, double step);
 /// The same, springs in blocks, for the instruction set of the library.
 void plain_sweep_blocked(PlainNet& net, double step);
+/// One step of the trapezoidal rule, sweeps until the next one would change positions and h times velocities
+/// by less than `tolerance` [m]; forces at its end are guessed from those of the last three. No contact, no
+/// energy account. Returns the sweeps.
+int plain_step(PlainNet& net, double step, double tolerance);
 /// Whether this machine has AVX2 and FMA.
 bool has_avx2();
 
