@@ -71,7 +71,9 @@ void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, Swe
       const double change_of_v =
           inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
       const double v = a.v0[at] + change_of_v;
-      const double q = a.q0[at] + half * (a.v0[at] + v);
+      double move = half * (a.v0[at] + v);
+      if (i == 2 && a.rational_turn) move = Space<2>::rational_turn(move);
+      const double q = a.q0[at] + move;
       a.cut[at] = change_of_v - (v - a.v0[at]);
       change.take((v - a.v1[at]) * step * length, v * step * length);
       change.take((q - a.q1[at]) * length, q * length);

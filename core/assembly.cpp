@@ -34,6 +34,7 @@ Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
   order_bodies();
   order_elements();
+  place_internals();
 }
 
 void Assembly::order_bodies() {
@@ -72,7 +73,7 @@ void Assembly::order_bodies() {
     const auto body = static_cast<Index>(slots.size());
     if (key.island != root) {
       root = key.island;
-      islands_.push_back({{body, body}, {q, q}, {v, v}});
+      islands_.push_back({{body, body}, {q, q}, {v, v}, {}});
       for (Index k = 0; k < kinds; ++k) {
         const auto first = static_cast<Index>(order[k].size());
         body_slots_.push_back({first, first});
@@ -140,10 +141,46 @@ void Assembly::order_elements() {
   }
 }
 
+void Assembly::place_internals() {
+  Index z = 0;
+  std::vector<InternalSlot> internals;
+  std::vector<std::vector<Index>> first(force_kinds_.size());
+  for (Index island = 0; island < islands_.size(); ++island) {
+    islands_[island].z.begin = z;
+    for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
+      const Index size = force_kinds_[kind]->internal_size();
+      if (size == 0) continue;
+      const Range range = elements(island, kind);
+      for (Index element = range.begin; element < range.end; ++element, z += size) {
+        internals.push_back({element_serials_[kind][element], z, size});
+        first[kind].push_back(z);
+      }
+    }
+    islands_[island].z.end = z;
+  }
+  if (internals.empty()) return;
+  for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
+    if (!first[kind].empty()) force_kinds_[kind]->place_internal(first[kind]);
+  }
+  layout_ = std::make_shared<const Layout>(layout_->dimension(), system_.token(), layout_->bodies(),
+                                           std::move(internals));
+}
+
 State Assembly::initial_state() const {
   State state(layout_);
   for (const BodySlot& slot : layout_->bodies()) {
     body_kinds_[slot.kind]->initial(slot.slot, state.q.data() + slot.q, state.v.data() + slot.v);
+  }
+  Index z = 0;
+  for (Index island = 0; island < islands_.size(); ++island) {
+    for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
+      const Index size = force_kinds_[kind]->internal_size();
+      if (size == 0) continue;
+      const Range range = elements(island, kind);
+      for (Index element = range.begin; element < range.end; ++element, z += size) {
+        force_kinds_[kind]->initial_internal(element, state.z.data() + z);
+      }
+    }
   }
   return state;
 }
@@ -163,19 +200,20 @@ void evaluate_positions(const Assembly& assembly, Index island, const StateView&
 
 namespace {
 
-/// Calls f(kind, elements, context) for the kinds that act in an island, with the load arrays zeroed first.
+void zero(const Assembly& assembly, Index island, const Loads& loads) {
+  const Range v = assembly.islands()[island].v;
+  const auto clear = [&](double* array) { std::fill(array + v.begin, array + v.end, 0.0); };
+  clear(loads.conservative);
+  if (loads.dissipative != loads.conservative) clear(loads.dissipative);
+  if (loads.external != loads.conservative) clear(loads.external);
+}
+
+/// Calls f(kind, elements, index of the kind) for the kinds that act in an island.
 template <class F>
-void for_loads(const Assembly& assembly, Index island, const StateView& state, const Evaluation& evaluation,
-               const Loads& loads, F&& f) {
-  const Island& range = assembly.islands()[island];
-  const auto zero = [&](double* array) { std::fill(array + range.v.begin, array + range.v.end, 0.0); };
-  zero(loads.conservative);
-  if (loads.dissipative != loads.conservative) zero(loads.dissipative);
-  if (loads.external != loads.conservative) zero(loads.external);
-  const EvaluationContext at{assembly, state, evaluation, island};
+void for_kinds(const Assembly& assembly, Index island, F&& f) {
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const Range elements = assembly.elements(island, kind);
-    if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, at);
+    if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, kind);
   }
 }
 
@@ -183,18 +221,51 @@ void for_loads(const Assembly& assembly, Index island, const StateView& state, c
 
 void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                     const Evaluation& evaluation, const Loads& loads) {
-  for_loads(assembly, island, state, evaluation, loads,
-            [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
-              kind.evaluate(at, elements, loads);
-            });
+  zero(assembly, island, loads);
+  const EvaluationContext at{assembly, state, evaluation, island};
+  for_kinds(assembly, island,
+            [&](const ForceKind& kind, Range elements, Index) { kind.evaluate(at, elements, loads); });
 }
 
 void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
                                    const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored) {
-  for_loads(assembly, island, state, evaluation, loads,
-            [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
-              stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
-            });
+  zero(assembly, island, loads);
+  const EvaluationContext at{assembly, state, evaluation, island};
+  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
+    stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
+  });
+}
+
+void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
+                         const Loads& loads) {
+  zero(assembly, island, loads);
+  for_kinds(assembly, island,
+            [&](const ForceKind& kind, Range elements, Index) { kind.evaluate_mean(step, elements, loads); });
+}
+
+bool uses_middle(const Assembly& assembly, Index island) {
+  bool uses = false;
+  for_kinds(assembly, island,
+            [&](const ForceKind& kind, Range, Index) { uses = uses || kind.uses_middle(); });
+  return uses;
+}
+
+ElementId advance_internals(const Assembly& assembly, Index island, const StepContext& step, double* z) {
+  ElementId failed;
+  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index index) {
+    if (failed.valid() || kind.internal_size() == 0) return;
+    const Index stopped = kind.advance_internal(step, elements, z);
+    if (stopped != elements.end) failed = assembly.element_id(index, stopped);
+  });
+  return failed;
+}
+
+double internal_loss(const Assembly& assembly, Index island, const StepContext& step) {
+  double loss = 0.0;
+  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
+    if (kind.internal_size() > 0) loss += kind.internal_loss(step, elements);
+  });
+  return loss;
 }
 
 void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state, StoredEnergies& out) {
@@ -213,21 +284,29 @@ void add_stored_energies(const Assembly& assembly, Index island, const StateView
                          const Evaluation& evaluation, StoredEnergies& out) {
   add_kinetic_energy(assembly, island, state, out);
   const EvaluationContext at{assembly, state, evaluation, island};
-  for (Index k = 0; k < assembly.force_kinds().size(); ++k) {
-    const Range elements = assembly.elements(island, k);
-    const ForceKind& kind = *assembly.force_kinds()[k];
-    if (!elements.empty()) out[kind.stored_as()] += kind.potential(at, elements);
-  }
+  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
+    out[kind.stored_as()] += kind.potential(at, elements);
+  });
 }
 
 void check_state(const Assembly& assembly, const State& state) {
   const Layout& layout = *assembly.layout();
   const PartCheck check("state", assembly.system());
   check.finite(state.time, "time", "s");
-  if (state.q.size() != layout.q_size() || state.v.size() != layout.v_size()) {
-    check.refuse("number of coordinates",
-                 std::to_string(state.q.size()) + " + " + std::to_string(state.v.size()),
-                 std::to_string(layout.q_size()) + " + " + std::to_string(layout.v_size()));
+  if (state.q.size() != layout.q_size() || state.v.size() != layout.v_size() ||
+      state.z.size() != layout.z_size()) {
+    const auto sizes = [](auto q, auto v, auto z) {
+      return std::to_string(q) + " + " + std::to_string(v) + " + " + std::to_string(z);
+    };
+    check.refuse("number of coordinates, velocities and internal variables",
+                 sizes(state.q.size(), state.v.size(), state.z.size()),
+                 sizes(layout.q_size(), layout.v_size(), layout.z_size()));
+  }
+  for (const InternalSlot& slot : layout.internals()) {
+    const PartCheck element_check(
+        "state of " + assembly.system().name(ElementId{slot.serial, assembly.system().token()}),
+        assembly.system());
+    element_check.finite({state.z.data() + slot.first, slot.size}, "internal variable", "");
   }
   for (Index body = 0; body < layout.bodies().size(); ++body) {
     const BodySlot& slot = layout.bodies()[body];

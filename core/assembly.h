@@ -19,6 +19,7 @@ struct Island {
   Range bodies;  ///< in the order of assembly
   Range q;       ///< coordinates
   Range v;       ///< velocities
+  Range z;       ///< internal variables of elements
 };
 
 /// Constant once made.
@@ -74,6 +75,7 @@ public:
 private:
   void order_bodies();
   void order_elements();
+  void place_internals();
 
   System system_;
   std::shared_ptr<const Layout> layout_;
@@ -104,6 +106,22 @@ CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index isl
 /// Adds the kinetic energy of one island.
 CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,
                                   StoredEnergies& out);
+
+/// Zeroes the given arrays over one island and adds the mean loads of all its elements over a step
+/// (ForceKind::evaluate_mean).
+CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
+                                   const Loads& loads);
+
+/// True if the mean loads or inner losses of an island's elements look at the state halfway.
+[[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index island);
+
+/// Advances the internal variables of one island to the end of a step (ForceKind::advance_internal). Returns
+/// the first element for which that did not succeed, an invalid identity if there is none.
+[[nodiscard]] CAROM_API ElementId advance_internals(const Assembly& assembly, Index island,
+                                                    const StepContext& step, double* z);
+
+/// Energy lost inside the elements of one island over a step [J].
+[[nodiscard]] CAROM_API double internal_loss(const Assembly& assembly, Index island, const StepContext& step);
 
 /// Position group and the sum of all loads (Evaluation::force) of one island.
 CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);

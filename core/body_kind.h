@@ -25,6 +25,9 @@ struct SweepArrays {
   double* q1 = nullptr;              ///< in: the iterate before; out: this one
   double* v1 = nullptr;              ///< in: the iterate before; out: this one
   double* cut = nullptr;             ///< out: what rounding cuts off v1
+  /// Turn by 2 atan(h w/2) instead of h w, w the mean spin. A lever r then moves by h w x (r0 + r1)/2
+  /// exactly, so that a force at the mean lever does the work of its own displacement.
+  bool rational_turn = false;
 };
 
 /// How much an iterate differs from the one before, angles weighed by the radius of gyration [m].

@@ -19,6 +19,19 @@
 ///       optional void fingerprint(Fingerprint& print) const { print.add(strength); } // optional
 ///     };
 ///
+/// Optional, for the rule `energy_momentum`: `void mean_loads(const ElementStep<D>&, ElementLoads<D>&)
+/// const`, loads over a step whose conservative part does exactly the work by which the potential falls.
+/// Without it the loads halfway through the step are taken.
+///
+/// Optional internal variables, numbers of its own that follow a differential equation:
+///
+///       static constexpr int internal_size = 1;
+///       void initial_internal(double* z) const;                                   // optional, zero without
+///       void internal_rates(const ElementView<D>& at, double* rates) const;       // dz/dt, z in
+///       at.internal() double internal_loss_rate(const ElementView<D>& at) const;                // optional
+///       [W] void advance_internal(const ElementStep<D>& step, double* z) const;       // optional: by closed
+///       form double internal_loss(const ElementStep<D>& step) const;                   // optional [J]
+///
 /// An element may look at and push only bodies that it names in bodies(). Its potential is booked as
 /// `potential` unless it says `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
 /// fingerprint() a checkpoint cannot tell it from one with other parameters.
@@ -26,8 +39,12 @@
 #include <carom/core/assembly.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
+#include <carom/core/internal_step.h>
 #include <carom/core/part_check.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -39,7 +56,9 @@ namespace carom {
 template <int D>
 class ElementView {
 public:
-  explicit ElementView(const EvaluationContext& context) : context_(&context) {}
+  /// \param internal first internal variable of the element, null if it has none
+  explicit ElementView(const EvaluationContext& context, const double* internal = nullptr)
+      : context_(&context), internal_(internal) {}
 
   /// Time [s].
   [[nodiscard]] double time() const { return context_->state.time; }
@@ -61,6 +80,9 @@ public:
   [[nodiscard]] double spin(BodyId body) const requires(D == 2) {
     return context_->state.v[oriented(body).v + D];
   }
+
+  /// Internal variables of the element, as many as its internal_size.
+  [[nodiscard]] const double* internal() const { return internal_; }
 
   /// Places of an end in the arrays. Throws ModelError for a body outside the element's island, and for a
   /// point off the centre of a body without orientation.
@@ -94,6 +116,16 @@ private:
   }
 
   const EvaluationContext* context_;
+  const double* internal_;
+};
+
+/// What an element sees of a step of the time stepping.
+template <int D>
+struct ElementStep {
+  ElementView<D> start;   ///< at its start
+  ElementView<D> end;     ///< at its end
+  ElementView<D> middle;  ///< halfway: mean velocities, positions advanced by half the step
+  double step = 0.0;      ///< h [s]
 };
 
 /// Where an element books its loads, by cause (see Loads).
@@ -101,6 +133,9 @@ template <int D>
 class ElementLoads {
 public:
   ElementLoads(const ElementView<D>& view, const Loads& loads) : view_(&view), loads_(loads) {}
+  /// Loads over a step, which act at the mean of the levers at both its ends.
+  ElementLoads(const ElementStep<D>& step, const Loads& loads)
+      : view_(&step.start), other_(&step.end), loads_(loads) {}
 
   /// A force at an end that is minus the gradient of potential() [N].
   void conservative(const End<D>& end, const Vec<D>& force) { add(loads_.conservative, end, force); }
@@ -116,13 +151,16 @@ public:
 private:
   void add(double* load, const End<D>& end, const Vec<D>& force) const {
     const Attachment<D> at = view_->attach(end);
-    at.add_force(load, at.lever(view_->context().evaluation), force);
+    Vec<D> lever = at.lever(view_->context().evaluation);
+    if (other_ != nullptr) lever = 0.5 * (lever + at.lever(other_->context().evaluation));
+    at.add_force(load, lever, force);
   }
   void add(double* load, BodyId body, double torque) const {
     if (body != ground) load[view_->oriented(body).v + D] += torque;
   }
 
   const ElementView<D>* view_;
+  const ElementView<D>* other_ = nullptr;
   Loads loads_;
 };
 
@@ -162,6 +200,7 @@ public:
   [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
                                                     const Layout&) const override {
     auto copy = std::make_unique<ForceElementKind>();
+    copy->parts_.reserve(order.size());
     for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
     return copy;
   }
@@ -181,17 +220,86 @@ public:
     }
   }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override {
-    const ElementView<D> view(at);
-    ElementLoads<D> out(view, loads);
-    for (Index i = elements.begin; i < elements.end; ++i) parts_[i].loads(view, out);
+    for (Index i = elements.begin; i < elements.end; ++i) {
+      const ElementView<D> element = view(at, i);
+      ElementLoads<D> out(element, loads);
+      parts_[i].loads(element, out);
+    }
   }
+  void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override {
+    if constexpr (has_mean_loads) {
+      for (Index i = elements.begin; i < elements.end; ++i) {
+        const ElementStep<D> element = step(at, i);
+        ElementLoads<D> out(element, loads);
+        parts_[i].mean_loads(element, out);
+      }
+    } else {
+      evaluate(at.middle, elements, loads);
+    }
+  }
+  [[nodiscard]] bool uses_middle() const override { return !has_mean_loads || N > 0; }
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override {
     double sum = 0.0;
     if constexpr (requires(const P& part, const ElementView<D>& view) { part.potential(view); }) {
-      const ElementView<D> view(at);
-      for (Index i = elements.begin; i < elements.end; ++i) sum += parts_[i].potential(view);
+      for (Index i = elements.begin; i < elements.end; ++i) sum += parts_[i].potential(view(at, i));
     }
     return sum;
+  }
+
+  [[nodiscard]] Index internal_size() const override { return static_cast<Index>(N); }
+  void place_internal(std::span<const Index> first) override { internal_.assign(first.begin(), first.end()); }
+  void initial_internal(Index element, double* z) const override {
+    if constexpr (requires(const P& part) { part.initial_internal(z); }) {
+      parts_[element].initial_internal(z);
+    } else {
+      std::fill(z, z + N, 0.0);
+    }
+  }
+  void internal_rates(const EvaluationContext& at, Range elements, double* rates) const override {
+    if constexpr (N > 0) {
+      for (Index i = elements.begin; i < elements.end; ++i) {
+        parts_[i].internal_rates(view(at, i), rates + internal_[i]);
+      }
+    }
+  }
+  [[nodiscard]] Index advance_internal(const StepContext& at, Range elements, double* z) const override {
+    if constexpr (N > 0) {
+      for (Index i = elements.begin; i < elements.end; ++i) {
+        const ElementStep<D> element = step(at, i);
+        double* const own = z + internal_[i];
+        if constexpr (requires(const P& part) { part.advance_internal(element, own); }) {
+          parts_[i].advance_internal(element, own);
+          if (!std::all_of(own, own + N, [](double number) { return std::isfinite(number); })) return i;
+        } else {
+          std::array<double, static_cast<std::size_t>(N)> before{};
+          parts_[i].internal_rates(element.start, before.data());
+          const auto rates_at_end = [&](const double*, double* rates) {
+            parts_[i].internal_rates(element.end, rates);
+          };
+          if (!advance_trapezoidal<N>(at.step, element.start.internal(), before.data(), rates_at_end, own))
+            return i;
+        }
+      }
+    }
+    return elements.end;
+  }
+  [[nodiscard]] double internal_loss_rate(const EvaluationContext& at, Range elements) const override {
+    double sum = 0.0;
+    if constexpr (requires(const P& part, const ElementView<D>& element) {
+                    part.internal_loss_rate(element);
+                  }) {
+      for (Index i = elements.begin; i < elements.end; ++i) sum += parts_[i].internal_loss_rate(view(at, i));
+    }
+    return sum;
+  }
+  [[nodiscard]] double internal_loss(const StepContext& at, Range elements) const override {
+    if constexpr (requires(const P& part, const ElementStep<D>& element) { part.internal_loss(element); }) {
+      double sum = 0.0;
+      for (Index i = elements.begin; i < elements.end; ++i) sum += parts_[i].internal_loss(step(at, i));
+      return sum;
+    } else {
+      return ForceKind::internal_loss(at, elements);
+    }
   }
   void fingerprint(Fingerprint& print) const override {
     for (const P& part : parts_) {
@@ -203,7 +311,29 @@ public:
   }
 
 private:
+  /// Internal variables of an element.
+  static constexpr int N = [] {
+    if constexpr (requires { P::internal_size; }) {
+      return static_cast<int>(P::internal_size);
+    } else {
+      return 0;
+    }
+  }();
+  static constexpr bool has_mean_loads =
+      requires(const P& part, const ElementStep<D>& step, ElementLoads<D>& out) {
+    part.mean_loads(step, out);
+  };
+
+  [[nodiscard]] ElementView<D> view(const EvaluationContext& at, Index element) const {
+    if constexpr (N > 0) return ElementView<D>(at, at.state.z + internal_[element]);
+    return ElementView<D>(at);
+  }
+  [[nodiscard]] ElementStep<D> step(const StepContext& at, Index element) const {
+    return {view(at.start, element), view(at.end, element), view(at.middle, element), at.step};
+  }
+
   std::vector<P> parts_;
+  std::vector<Index> internal_;  // first internal variable of each element, empty if they have none
 };
 
 }  // namespace carom

@@ -28,6 +28,15 @@ struct EvaluationContext {
   Index island;                  ///< the island the elements belong to
 };
 
+/// A step of the time stepping, as elements see it: its two ends and the state halfway (mean velocities and
+/// internal variables, positions advanced by half the step).
+struct StepContext {
+  const EvaluationContext& start;
+  const EvaluationContext& end;
+  const EvaluationContext& middle;  ///< up to date only if some kind uses_middle()
+  double step;                      ///< h [s]
+};
+
 /// One entry of the derivative of the loads of an element. Entries at the same place add up.
 struct LoadDerivative {
   Index row = 0;             ///< velocity coordinate the load acts on
@@ -77,6 +86,39 @@ public:
                                          const Loads& loads) const {
     evaluate(at, elements, loads);
     return potential(at, elements);
+  }
+
+  /// Adds the mean loads of a range of elements over a step, for the rule `energy_momentum`: a force along
+  /// which the elements' potentials change by exactly its work. Unless overridden the loads halfway, exact to
+  /// second order.
+  virtual void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const {
+    evaluate(at.middle, elements, loads);
+  }
+  /// True if evaluate_mean() or internal_loss() looks at the state halfway.
+  [[nodiscard]] virtual bool uses_middle() const { return true; }
+
+  /// Internal variables of each element (State::z); elements of a kind have equally many.
+  [[nodiscard]] virtual Index internal_size() const { return 0; }
+  /// Tells where the internal variables of each element begin in State::z. Called once, on an arranged kind.
+  virtual void place_internal(std::span<const Index> /*first*/) {}
+  /// Writes the internal variables of an element at the start of a run.
+  virtual void initial_internal(Index /*element*/, double* /*z*/) const {}
+  /// Writes dz/dt of a range of elements into `rates`, an array over all of State::z.
+  virtual void internal_rates(const EvaluationContext& /*at*/, Range /*elements*/, double* /*rates*/) const {}
+  /// Writes the internal variables at the end of a step, `z` = `at.end.state.z`, by the trapezoidal rule
+  /// with the motion given; `z` holds a guess. Returns the first element for which that does not succeed,
+  /// elements.end if there is none.
+  [[nodiscard]] virtual Index advance_internal(const StepContext& /*at*/, Range elements,
+                                               double* /*z*/) const {
+    return elements.end;
+  }
+  /// Power lost inside a range of elements, beside what their loads book [W].
+  [[nodiscard]] virtual double internal_loss_rate(const EvaluationContext& /*at*/, Range /*elements*/) const {
+    return 0.0;
+  }
+  /// Energy lost inside a range of elements over a step [J].
+  [[nodiscard]] virtual double internal_loss(const StepContext& at, Range elements) const {
+    return at.step * internal_loss_rate(at.middle, elements);
   }
   /// Adds all that distinguishes this kind's elements (functions cannot).
   virtual void fingerprint(Fingerprint& print) const = 0;

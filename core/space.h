@@ -56,6 +56,8 @@ struct Space<2> {
   static void advance_orientation(const double* from, const double* delta, double* to) {
     to[0] = from[0] + delta[0];
   }
+  /// Angle of the turn under which levers move by delta x (mean lever).
+  static double rational_turn(double delta) { return 2.0 * std::atan(0.5 * delta); }
   /// Tangent of a contact: the normal turned clockwise by 90 degrees (Johansson 1999, figure 1).
   static std::array<Vec<2>, 1> tangent_frame(const Vec<2>& n) { return {Vec<2>(n[1], -n[0])}; }
   /// Row of a contact velocity a.(v + omega x r) with respect to the spin.

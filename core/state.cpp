@@ -10,6 +10,7 @@ namespace carom {
 State::State(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {
   q.assign(layout_->q_size(), 0.0);
   v.assign(layout_->v_size(), 0.0);
+  z.assign(layout_->z_size(), 0.0);
 }
 
 const BodySlot& State::slot(BodyId body) const {
@@ -22,6 +23,28 @@ ConstVectorMap State::position(BodyId body) const { return {q.data() + slot(body
 VectorMap State::position(BodyId body) { return {q.data() + slot(body).q, layout_->dimension()}; }
 ConstVectorMap State::velocity(BodyId body) const { return {v.data() + slot(body).v, layout_->dimension()}; }
 VectorMap State::velocity(BodyId body) { return {v.data() + slot(body).v, layout_->dimension()}; }
+
+namespace {
+
+const InternalSlot& internal_slot(const std::shared_ptr<const Layout>& layout, ElementId element) {
+  if (!layout) {
+    throw ModelError(
+        "internal variables of an element: the state belongs to no model; allowed: a state of a simulation");
+  }
+  return layout->internal(element);
+}
+
+}  // namespace
+
+ConstVectorMap State::internal(ElementId element) const {
+  const InternalSlot& slot = internal_slot(layout_, element);
+  return {z.data() + slot.first, static_cast<Eigen::Index>(slot.size)};
+}
+
+VectorMap State::internal(ElementId element) {
+  const InternalSlot& slot = internal_slot(layout_, element);
+  return {z.data() + slot.first, static_cast<Eigen::Index>(slot.size)};
+}
 
 Index State::angle_index(BodyId body) const {
   const BodySlot& at = slot(body);

@@ -52,6 +52,11 @@ public:
   [[nodiscard]] double spin(BodyId body) const { return v[spin_index(body)]; }
   [[nodiscard]] double& spin(BodyId body) { return v[spin_index(body)]; }
 
+  /// Internal variables of an element, in the order and units that it documents. Throws ModelError for an
+  /// element that has none.
+  [[nodiscard]] ConstVectorMap internal(ElementId element) const;
+  [[nodiscard]] VectorMap internal(ElementId element);
+
   /// The map from identities to places. Null for a state of no model.
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
   /// The numbers, to evaluate.

@@ -5,6 +5,7 @@
 
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
+#include <carom/joints/mean_line.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,21 +51,25 @@ struct Bushing {
   /// Books spring and dashpot.
   void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
     const Placement now(*this, at);
-    const Vec<3> elastic = symmetric(stiffness) * now.deflection;
-    const Vec<3> viscous = symmetric(damping) * now.rate;
-    const auto book = [&](const Vec<3>& load, auto&& force_at, auto&& torque_on) {
-      const Vec<2> force = now.to_fixed(load.head<2>());
-      force_at(to, -force);
-      torque_on(to.body, -load[2]);
-      force_at(from, force);  // moved to the point of `to` by the torque of the distance
-      torque_on(from.body, load[2] + now.distance[0] * force[1] - now.distance[1] * force[0]);
-    };
-    book(
-        elastic, [&](const End<2>& end, const Vec<2>& force) { out.conservative(end, force); },
-        [&](BodyId body, double torque) { out.conservative_torque(body, torque); });
-    book(
-        viscous, [&](const End<2>& end, const Vec<2>& force) { out.dissipative(end, force); },
-        [&](BodyId body, double torque) { out.dissipative_torque(body, torque); });
+    book(now, symmetric(stiffness) * now.deflection, symmetric(damping) * now.rate, out);
+  }
+  /// Books spring and dashpot over a step: with the mean of the frame's axes, and the growth of d for its
+  /// rate, the loads do exactly the work by which the potential falls.
+  void mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
+    const Placement before(*this, step.start);
+    const Placement after(*this, step.end);
+    Placement mean = before;
+    mean.cosine = 0.5 * (before.cosine + after.cosine);
+    mean.sine = 0.5 * (before.sine + after.sine);
+    mean.distance = 0.5 * (before.distance + after.distance);
+    mean.deflection = 0.5 * (before.deflection + after.deflection);
+    mean.rate = (after.deflection - before.deflection) / step.step;
+    Vec<3> elastic = symmetric(stiffness) * mean.deflection;
+    Vec<3> viscous = symmetric(damping) * mean.rate;
+    const double ratio = MeanAngle(step, from.body, to.body).ratio;
+    elastic[2] *= ratio;
+    viscous[2] *= ratio;
+    book(mean, elastic, viscous, out);
   }
   /// d^T K d / 2 [J].
   [[nodiscard]] double potential(const ElementView<2>& at) const {
@@ -110,6 +115,22 @@ private:
     Vec<2> distance;
     Vec<3> deflection, rate;
   };
+
+  void book(const Placement& at, const Vec<3>& elastic, const Vec<3>& viscous, ElementLoads<2>& out) const {
+    const auto split = [&](const Vec<3>& load, auto&& force_at, auto&& torque_on) {
+      const Vec<2> force = at.to_fixed(load.head<2>());
+      force_at(to, -force);
+      torque_on(to.body, -load[2]);
+      force_at(from, force);  // moved to the point of `to` by the torque of the distance
+      torque_on(from.body, load[2] + at.distance[0] * force[1] - at.distance[1] * force[0]);
+    };
+    split(
+        elastic, [&](const End<2>& end, const Vec<2>& force) { out.conservative(end, force); },
+        [&](BodyId body, double torque) { out.conservative_torque(body, torque); });
+    split(
+        viscous, [&](const End<2>& end, const Vec<2>& force) { out.dissipative(end, force); },
+        [&](BodyId body, double torque) { out.dissipative_torque(body, torque); });
+  }
 
   // Halves differ by rounding at most (check); loads and potential must see one and the same matrix.
   static Mat<3> symmetric(const Mat<3>& matrix) { return 0.5 * (matrix + matrix.transpose()); }

@@ -48,6 +48,10 @@ public:
   void ends(Index, std::vector<BodyId>&) const override {}
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::gravity; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
+  [[nodiscard]] bool uses_middle() const override { return false; }
+  void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override {
+    evaluate(at.end, elements, loads);  // it is everywhere the same
+  }
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
   /// Nothing: the load does not depend on position or velocity.
   void derivatives(const EvaluationContext&, Index, std::vector<LoadDerivative>&) const override {}

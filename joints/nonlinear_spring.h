@@ -6,6 +6,7 @@
 #include <carom/core/errors.h>
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
+#include <carom/joints/mean_line.h>
 
 #include <algorithm>
 #include <array>
@@ -57,6 +58,17 @@ struct NonlinearSpring {
     if (line.length == 0.0) return;
     const Vec<D> elastic = force(line.length) * line.direction;
     const Vec<D> viscous = damping * line.rate * line.direction;
+    out.conservative(from, elastic);
+    out.conservative(to, -elastic);
+    out.dissipative(from, viscous);
+    out.dissipative(to, -viscous);
+  }
+  /// Books spring and dashpot over a step.
+  void mean_loads(const ElementStep<D>& step, ElementLoads<D>& out) const {
+    const MeanLine<D> line(step, from, to);
+    if (line.length == 0.0) return;
+    const Vec<D> elastic = line.mean_tension(force, potential_of) * line.direction;
+    const Vec<D> viscous = damping * (line.growth / step.step) * line.direction;
     out.conservative(from, elastic);
     out.conservative(to, -elastic);
     out.dissipative(from, viscous);

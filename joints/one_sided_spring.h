@@ -5,6 +5,7 @@
 
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
+#include <carom/joints/mean_line.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,22 @@ struct OneSidedSpring {
     const double dashpot = std::clamp(damping * side * line.rate, -spring, spring);
     const Vec<D> conservative = side * spring * line.direction;  // on `from`
     const Vec<D> dissipative = side * dashpot * line.direction;
+    out.conservative(from, conservative);
+    out.conservative(to, -conservative);
+    out.dissipative(from, dissipative);
+    out.dissipative(to, -dissipative);
+  }
+  /// Books spring and dashpot over a step.
+  void mean_loads(const ElementStep<D>& step, ElementLoads<D>& out) const {
+    const MeanLine<D> line(step, from, to);
+    const double pull = line.mean_tension(
+        [this](double length) { return side * stiffness * excess(length); },
+        [this](double length) { return 0.5 * stiffness * excess(length) * excess(length); });
+    if (pull == 0.0) return;
+    const double rate = line.growth / step.step;
+    const double dashpot = std::clamp(damping * rate, -std::abs(pull), std::abs(pull));
+    const Vec<D> conservative = pull * line.direction;  // on `from`
+    const Vec<D> dissipative = dashpot * line.direction;
     out.conservative(from, conservative);
     out.conservative(to, -conservative);
     out.dissipative(from, dissipative);

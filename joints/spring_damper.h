@@ -55,6 +55,8 @@ public:
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
   double evaluate_with_potential(const EvaluationContext& at, Range elements,
                                  const Loads& loads) const override;
+  void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override;
+  [[nodiscard]] bool uses_middle() const override { return false; }
   void derivatives(const EvaluationContext& at, Index element,
                    std::vector<LoadDerivative>& out) const override;
   [[nodiscard]] bool has_derivatives() const override { return true; }

@@ -5,6 +5,7 @@
 
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
+#include <carom/joints/mean_line.h>
 
 #include <vector>
 
@@ -39,6 +40,16 @@ struct TorsionalSpring {
     const RelativeAngle relative(at, from, to);
     const double elastic = stiffness * (relative.angle - free_angle);
     const double viscous = damping * relative.rate;
+    out.conservative_torque(from, elastic);
+    out.conservative_torque(to, -elastic);
+    out.dissipative_torque(from, viscous);
+    out.dissipative_torque(to, -viscous);
+  }
+  /// Books spring and dashpot over a step.
+  void mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
+    const MeanAngle mean(step, from, to);
+    const double elastic = stiffness * (0.5 * (mean.start + mean.end) - free_angle) * mean.ratio;
+    const double viscous = damping * mean.rate;
     out.conservative_torque(from, elastic);
     out.conservative_torque(to, -elastic);
     out.dissipative_torque(from, viscous);

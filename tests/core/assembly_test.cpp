@@ -331,8 +331,10 @@ TEST(CheckState, AcceptsTheInitialStateAndNamesWhatIsWrong) {
   }
   State state = good;
   state.q.pop_back();
-  EXPECT_MODEL_ERROR(check_state(assembly, state), "state: number of coordinates is 4 + 5", "5 + 5");
-  EXPECT_MODEL_ERROR(check_state(assembly, State()), "state: number of coordinates is 0 + 0");
+  EXPECT_MODEL_ERROR(check_state(assembly, state),
+                     "state: number of coordinates, velocities and internal variables is 4 + 5 + 0",
+                     "5 + 5 + 0");
+  EXPECT_MODEL_ERROR(check_state(assembly, State()), "is 0 + 0 + 0");
 }
 
 TEST(Assembly, InSpaceParticlesSpringsGravityAndObstaclesWork) {
