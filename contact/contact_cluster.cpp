@@ -75,6 +75,55 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   problem_.group();
 }
 
+void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) {
+  coupled_range_ = v;
+  const auto rows = static_cast<std::size_t>(problem_.rows());
+  coupled_.assign(rows * v.size(), 0.0);
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
+      double* const response = coupled_.data() + static_cast<std::size_t>(first_row_[c] + i) * v.size();
+      for (int k = 0; k < contacts_[c].columns; ++k) {
+        response[contacts_[c].v - v.begin + static_cast<Index>(k)] = contacts_[c].row(i)[k];
+      }
+      solve(response);
+    }
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
+      const int row = first_row_[c] + i;
+      for (int column = 0; column <= row; ++column) {
+        const double* const response = coupled_.data() + static_cast<std::size_t>(column) * v.size();
+        double sum = 0.0;
+        for (int k = 0; k < contacts_[c].columns; ++k) {
+          sum += contacts_[c].row(i)[k] * response[contacts_[c].v - v.begin + static_cast<Index>(k)];
+        }
+        problem_.w(row, column) = problem_.w(column, row) = sum;
+      }
+    }
+  }
+  problem_.group();
+}
+
+void ContactCluster::apply_coupled(double* velocity) const {
+  for (std::size_t row = 0; row < impulse_.size(); ++row) {
+    const double* const response = coupled_.data() + row * coupled_range_.size();
+    for (Index i = 0; i < coupled_range_.size(); ++i) {
+      velocity[coupled_range_.begin + i] += response[i] * impulse_[row];
+    }
+  }
+}
+
+void ContactCluster::add_loads(double scale, double* load) const {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
+      const double impulse = scale * impulse_[static_cast<std::size_t>(first_row_[c] + i)];
+      for (int k = 0; k < contacts_[c].columns; ++k) {
+        load[contacts_[c].v + static_cast<Index>(k)] += impulse * contacts_[c].row(i)[k];
+      }
+    }
+  }
+}
+
 void ContactCluster::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {

@@ -12,6 +12,8 @@
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 
+#include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,14 +24,23 @@ class CAROM_API ContactCluster {
 public:
   /// Takes contacts that share bodies, and the velocities v^- before the step or impact (all velocities).
   void build(const Assembly& assembly, std::span<const Contact> contacts, const double* velocity_before);
+  /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is symmetric and positive
+  /// definite over the velocities `v`, `solve` overwrites numbers over them by A^-1 times them.
+  void couple(Range v, const std::function<void(double*)>& solve);
   /// Makes b from the velocities that the step would end with if no contact acted.
   void set_free_velocity(const double* velocity_free);
   /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
   /// again since build() keeps to the modes of the answer before as long as they are one of them: an
   /// iteration around it could not settle if it jumped between them.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
+  /// Sets all impulses to zero.
+  void forget_impulses() { std::fill(impulse_.begin(), impulse_.end(), 0.0); }
   /// Adds M^-1 H^T P to the velocities.
   void apply(double* velocity) const;
+  /// Adds A^-1 H^T P to the velocities, A as given to couple().
+  void apply_coupled(double* velocity) const;
+  /// Adds `scale` H^T P to the loads.
+  void add_loads(double scale, double* load) const;
 
   /// The problem.
   [[nodiscard]] const ContactProblem& problem() const { return problem_; }
@@ -56,6 +67,8 @@ private:
   std::vector<int> first_row_;
   std::vector<double> before_, restitution_, impulse_;
   std::vector<double> response_;  // M^-1 H^T, one row of max_columns numbers per contact row
+  Range coupled_range_;
+  std::vector<double> coupled_;  // A^-1 H^T, one row over coupled_range_ per contact row
   std::vector<ContactMode> modes_;
   ContactReport report_;
   NewtonPolish polish_;

@@ -16,7 +16,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 1\n";
+constexpr std::string_view mark = "carom checkpoint 2\n";
 
 /// Numbers as bytes, lowest first, whatever the machine.
 class Writer {
@@ -98,6 +98,8 @@ void for_statistics(S& s, F&& f) {
   f(s.contact_steps);
   f(s.several_solutions);
   f(s.forces_not_unique);
+  f(s.rejected_steps);
+  f(s.steps_across_impacts);
   f(s.energy_gains);
   f(s.energy_gained);
   f(s.deepest_gap);
@@ -142,6 +144,9 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.history.step);
   if (companion.history.known > 0) out.add(companion.history.before);
   if (companion.history.known > 1) out.add(companion.history.earlier);
+  out.add(std::uint64_t{companion.loads.valid && companion.loads.mean});
+  if (companion.loads.valid && companion.loads.mean) out.add(companion.loads.total);
+  out.add(companion.next_step);
   out.add(companion.grid_start);
   out.add(companion.grid_steps);
   out.add(std::uint64_t{companion.modes.size()});
@@ -214,6 +219,18 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for (const auto* loads : {&history.before, &history.earlier}) {
     if (!loads->empty() && loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
   }
+  std::uint64_t has_mean_loads = 0;
+  in.get(has_mean_loads);
+  if (has_mean_loads > 1) in.damaged("it is unknown whether it holds loads");
+  if (has_mean_loads == 1) {
+    PresentLoads& loads = other.loads;
+    loads.valid = loads.mean = true;
+    in.get(loads.total);
+    if (loads.total.size() != state.v.size()) in.damaged("its sizes do not fit the model");
+    loads.dissipative.resize(loads.total.size());
+    loads.external.resize(loads.total.size());
+  }
+  in.get(other.next_step);
   in.get(other.grid_start);
   in.get(other.grid_steps);
   other.modes.resize(in.count());

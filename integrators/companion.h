@@ -15,9 +15,11 @@
 namespace carom {
 
 /// Loads at the present state, by cause; arrays over all velocities. A function of the state, kept so that
-/// the end of one step need not be evaluated again as the start of the next.
+/// the end of one step need not be evaluated again as the start of the next. Under the rule
+/// `energy_momentum` the mean loads of the last step instead, from which those of the next are guessed.
 struct PresentLoads {
   bool valid = false;               ///< false: to be evaluated
+  bool mean = false;                ///< mean loads of the last step
   std::vector<double> total;        ///< [N, N m]
   std::vector<double> dissipative;  ///< part of the total
   std::vector<double> external;     ///< part of the total
@@ -41,7 +43,7 @@ struct Rhythm {
   [[nodiscard]] double due() const { return start + static_cast<double>(fired + 1) * interval; }
 };
 
-/// With the state, all that a checkpoint holds (but `loads`, which follow from the state).
+/// With the state, all that a checkpoint holds (but `loads` where they follow from the state).
 struct Companion {
   EnergyLedger ledger;    ///< the energy account
   Statistics statistics;  ///< counts since the start
@@ -50,6 +52,7 @@ struct Companion {
   LoadHistory history;      ///< for the guess at the loads of the next step
   double grid_start = 0.0;  ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;                            ///< n
+  double next_step = 0.0;                                 ///< of step control; 0: as described [s]
   PresentLoads loads;                                     ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
   std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()

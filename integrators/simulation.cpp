@@ -1,6 +1,7 @@
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/simulation.h>
+#include <carom/integrators/step_controller.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
@@ -33,10 +34,13 @@ struct Simulation::Impl {
   // Everything made from the model, so that an edit can replace it as a whole.
   struct Model {
     Model(System system, const Mode& mode)
-        : assembly(std::move(system)), stepper(assembly, std::get<TimeStepping>(mode)) {}
+        : assembly(std::move(system)),
+          stepper(assembly, std::get<TimeStepping>(mode)),
+          controller(assembly, std::get<TimeStepping>(mode)) {}
 
     Assembly assembly;
     TimeStepper stepper;
+    StepController controller;
   };
 
   Impl(System system, Mode chosen)
@@ -120,6 +124,10 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
 }
 
 void Simulation::Impl::advance(double limit) {
+  if (std::get<TimeStepping>(mode).control) {
+    model->controller.step(model->stepper, state, companion, limit, report);
+    return;
+  }
   const double full = std::get<TimeStepping>(mode).step;
   const double grid_end = companion.grid_start + static_cast<double>(companion.grid_steps + 1) * full;
   if (limit < grid_end - snap * full) {
@@ -198,6 +206,11 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   State state = edited->assembly.initial_state();
   state.time = self.state.time;
   const Layout& from = *self.state.layout();
+  for (const InternalSlot& slot : state.layout()->internals()) {
+    const ElementId id{slot.serial, edited->assembly.system().token()};
+    if (!from.contains(id)) continue;
+    std::copy_n(self.state.z.begin() + from.internal(id).first, slot.size, state.z.begin() + slot.first);
+  }
   for (const BodySlot& slot : state.layout()->bodies()) {
     const BodyId id{slot.serial, edited->assembly.system().token()};
     if (!from.contains(id)) continue;
@@ -236,6 +249,8 @@ void Simulation::switch_to(Mode mode) {
   check_options(std::get<TimeStepping>(mode));
   self.mode = std::move(mode);
   self.model->stepper = TimeStepper(self.model->assembly, std::get<TimeStepping>(self.mode));
+  self.model->controller = StepController(self.model->assembly, std::get<TimeStepping>(self.mode));
+  self.companion.next_step = 0.0;
   self.restart_grid();
 }
 

@@ -7,6 +7,7 @@
 #include <carom/contact/contact_solver.h>
 #include <carom/contact/solver_chain.h>
 #include <carom/core/ids.h>
+#include <carom/integrators/time_stepping.h>
 
 #include <array>
 #include <cstdint>
@@ -33,32 +34,46 @@ struct ContactRecord {
   std::string_view solver{};                ///< solver whose answer was used
 };
 
+/// What step control did (TimeStepping::control). The step that it made was kept as two halves, which the
+/// report's other numbers span; contacts are those of the first half, then of the second.
+struct ControlReport {
+  double error = 0.0;          ///< estimated error of the step [m]; 0 across an impact
+  int rejected = 0;            ///< lengths that were tried before and given up
+  bool across_impact = false;  ///< contact kept the error from being estimated
+  double next_step = 0.0;      ///< length that will be tried next [s]; 0 without step control
+};
+
 /// What happened in the last accepted step.
 struct StepReport {
-  double time = 0.0;                 ///< at its end [s]
-  double step = 0.0;                 ///< its length [s]
-  int sweeps = 0;                    ///< of the fixed-point iteration, the most over all islands
+  double time = 0.0;                             ///< at its end [s]
+  double step = 0.0;                             ///< its length [s]
+  Iteration iteration = Iteration::fixed_point;  ///< which ran
+  int sweeps = 0;                                ///< of the iteration, the most over all islands
   double contraction = 0.0;          ///< ratio of successive changes, the largest over islands (0: none seen)
   ElementId worst_coupling{};        ///< coupling that limits the contraction most, invalid if there is none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
   double energy_gain = 0.0;          ///< energy that contact added, summed over problems that gained [J]
+  double projected = 0.0;            ///< largest displacement by which a body was moved out of obstacles [m]
+  ControlReport control;             ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
 };
 
 /// Counts and extremes since the start.
 struct Statistics {
-  std::int64_t steps = 0;              ///< accepted steps
-  std::int64_t sweeps = 0;             ///< sum over steps of StepReport::sweeps
-  int most_sweeps = 0;                 ///< the most in one step
-  double largest_contraction = 0.0;    ///< the largest StepReport::contraction
-  std::int64_t impacts = 0;            ///< contacts that closed faster than the capture speed
-  std::int64_t contact_steps = 0;      ///< contacts that took part in steps
-  std::int64_t several_solutions = 0;  ///< of contact problems with more than one end velocity
-  std::int64_t forces_not_unique = 0;  ///< contact problems with more than one set of impulses
-  std::int64_t energy_gains = 0;       ///< steps in which contact added energy
-  double energy_gained = 0.0;          ///< sum of those gains [J]
-  double deepest_gap = 0.0;            ///< the most negative gap found [m]
-  double worst_residual = 0.0;         ///< the largest certificate of a contact problem
+  std::int64_t steps = 0;                 ///< accepted steps
+  std::int64_t sweeps = 0;                ///< sum over steps of StepReport::sweeps
+  int most_sweeps = 0;                    ///< the most in one step
+  double largest_contraction = 0.0;       ///< the largest StepReport::contraction
+  std::int64_t impacts = 0;               ///< contacts that closed faster than the capture speed
+  std::int64_t contact_steps = 0;         ///< contacts that took part in steps
+  std::int64_t several_solutions = 0;     ///< of contact problems with more than one end velocity
+  std::int64_t forces_not_unique = 0;     ///< contact problems with more than one set of impulses
+  std::int64_t rejected_steps = 0;        ///< lengths that step control gave up
+  std::int64_t steps_across_impacts = 0;  ///< steps whose error step control could not estimate for contact
+  std::int64_t energy_gains = 0;          ///< steps in which contact added energy
+  double energy_gained = 0.0;             ///< sum of those gains [J]
+  double deepest_gap = 0.0;               ///< the most negative gap found [m]
+  double worst_residual = 0.0;            ///< the largest certificate of a contact problem
 };
 
 }  // namespace carom

@@ -30,6 +30,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
       options_(options),
       finder_(assembly),
       trial_(assembly.layout()),
+      start_(make_evaluation(assembly)),
       evaluation_(make_evaluation(assembly)) {
   check_options(options);
   const std::size_t size = assembly.layout()->v_size();
@@ -39,6 +40,24 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   response_.resize(size);
   ratings_.resize(assembly.islands().size());
   rated_contraction_.assign(assembly.islands().size(), -1.0);
+  if (mean_rule() || assembly.layout()->z_size() > 0) {
+    middle_ = State(assembly.layout());
+    middle_evaluation_ = make_evaluation(assembly);
+  }
+  if (options.iteration != Iteration::fixed_point) {
+    evaluated_.resize(size);
+    update_.resize(size);
+  }
+  if (options.iteration == Iteration::anderson) {
+    update_.assign(size, 1.0);
+    weights_.resize(size);
+    for (Index island = 0; island < assembly.islands().size(); ++island) {
+      assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+        kind.apply_inverse_mass(slots, update_.data() + v, weights_.data() + v);
+      });
+    }
+    for (std::size_t i = 0; i < size; ++i) weights_[i] *= assembly.length_scales()[i];
+  }
 }
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
@@ -46,50 +65,70 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   flows_ = {};
   stored_ = {};
   coupling_work_ = {};
+  projected_ = 0.0;
   report_.contacts.clear();
   report_.time = end_time;
   report_.step = step;
+  report_.iteration = options_.iteration;
   report_.sweeps = 0;
   report_.contraction = 0.0;
   report_.worst_coupling = {};
   report_.worst_coupling_rate = 0.0;
   report_.energy_gain = 0.0;
+  report_.projected = 0.0;
+  report_.control = {};
+  start_loads(state, companion);
   const auto islands = static_cast<Index>(assembly_->islands().size());
-  if (!companion.loads.valid) {
-    resize(companion.loads, trial_.v.size());
-    for (Index island = 0; island < islands; ++island) {
-      evaluate_positions(*assembly_, island, state.view(), evaluation_);
-      evaluate_loads(*assembly_, island, state.view(), evaluation_, open(companion.loads));
-      finish(companion.loads, assembly_->islands()[island].v);
-    }
-    companion.loads.valid = true;
-  }
   for (Index island = 0; island < islands; ++island) {
     advance_island(island, state, companion, step);
   }
   commit(state, companion, end_time, report);
 }
 
+void TimeStepper::start_loads(const State& state, Companion& companion) {
+  PresentLoads& loads = companion.loads;
+  if (loads.valid && loads.mean == mean_rule()) return;
+  if (loads.valid) companion.history.known = 0;  // of the other rule
+  resize(loads, trial_.v.size());
+  for (Index island = 0; island < assembly_->islands().size(); ++island) {
+    evaluate_positions(*assembly_, island, state.view(), evaluation_);
+    evaluate_loads(*assembly_, island, state.view(), evaluation_, open(loads));
+    finish(loads, assembly_->islands()[island].v);
+  }
+  loads.valid = true;
+  loads.mean = mean_rule();
+}
+
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
-  const Assembly& assembly = *assembly_;
-  evaluate_positions(assembly, island, state.view(), evaluation_);
+  evaluate_positions(*assembly_, island, state.view(), start_);
   find_contacts(island, state);
   start_iteration(island, state, companion, step);
+  if (options_.iteration == Iteration::linearly_implicit) start_implicit(island, state, companion, step);
 
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
-    solve_contacts(island, state, companion, step);
+    if (options_.iteration == Iteration::linearly_implicit) {
+      solve_implicit(island, state, step);
+    } else {
+      solve_contacts(island, state, companion, step);
+    }
     SweepChange change;
     sweep(island, state, companion, step, change);
     const auto verdict = judge.judge(change.change, change.size);
     if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
     // The first change is that from t_j: small or not, it says nothing of the guess.
     if (verdict == FixedPointJudge::Verdict::converged && judge.sweeps() > 1) break;
-    evaluate(assembly, island, trial_.view(), evaluation_);
+    if (options_.iteration == Iteration::fixed_point) {
+      evaluate_iterate(island, state, step, evaluation_.force.data());
+    } else {
+      evaluate_iterate(island, state, step, evaluated_.data());
+      improve_guess(island, judge);
+    }
   }
 
   book_couplings(island, state, companion, step);
   book_contacts(state, step);
+  if (options_.project_gaps) project(island, state, step);
   rate(island, state, step, judge.contraction());
   report_.sweeps = std::max(report_.sweeps, judge.sweeps());
   report_.contraction = std::max(report_.contraction, judge.contraction());
@@ -98,18 +137,26 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
 void TimeStepper::find_contacts(Index island, const State& state) {
   contacts_.clear();
   clusters_in_use_ = 0;
-  finder_.find(island, state.view(), evaluation_, 0.0, contacts_);
+  finder_.find(island, state.view(), start_, 0.0, contacts_);
   if (contacts_.empty()) return;
   const Range v = assembly_->islands()[island].v;
   std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
+  if (options_.iteration == Iteration::linearly_implicit) {
+    add_cluster(state, 0, contacts_.size());  // bodies answer together
+    return;
+  }
   // Obstacles are fixed, so contacts share a problem where they share a body; they come ordered by body.
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
     while (last < contacts_.size() && contacts_[last].body == contacts_[first].body) ++last;
-    if (clusters_in_use_ == clusters_.size()) clusters_.emplace_back();
-    clusters_[clusters_in_use_++].build(*assembly_, {contacts_.data() + first, last - first}, state.v.data());
+    add_cluster(state, first, last);
     first = last;
   }
+}
+
+void TimeStepper::add_cluster(const State& state, std::size_t first, std::size_t last) {
+  if (clusters_in_use_ == clusters_.size()) clusters_.emplace_back();
+  clusters_[clusters_in_use_++].build(*assembly_, {contacts_.data() + first, last - first}, state.v.data());
 }
 
 void TimeStepper::start_iteration(Index island, const State& state, const Companion& companion, double step) {
@@ -117,8 +164,11 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
   constexpr double farthest = 10.0;
   const Range q = assembly_->islands()[island].q;
   const Range v = assembly_->islands()[island].v;
+  const Range z = assembly_->islands()[island].z;
   std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
   std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
+  std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
+  if (options_.iteration == Iteration::anderson) anderson_.start(v.size());
 
   const double* const now = companion.loads.total.data();
   const LoadHistory& history = companion.history;
@@ -137,11 +187,12 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
 
 void TimeStepper::solve_contacts(Index island, const State& state, const Companion& companion, double step) {
   const double half = 0.5 * step;
+  const double* const load0 = start_of_sum(companion);
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     ContactCluster& cluster = clusters_[i];
     const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body];
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
-      response_[k] = half * (companion.loads.total[k] + evaluation_.force[k]);
+      response_[k] = half * (load0[k] + evaluation_.force[k]);
     }
     assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1},
                                                            response_.data() + body.v, free_.data() + body.v);
@@ -157,40 +208,112 @@ void TimeStepper::solve_contacts(Index island, const State& state, const Compani
 
 void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step,
                         SweepChange& change) {
+  const double* const load0 = start_of_sum(companion);
   assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     kind.sweep(slots, step,
-               {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v,
-                companion.loads.total.data() + v, evaluation_.force.data() + v,
-                clusters_in_use_ > 0 ? response_.data() + v : nullptr, trial_.q.data() + q,
-                trial_.v.data() + v, rounding_.data() + v},
+               {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
+                evaluation_.force.data() + v, clusters_in_use_ > 0 ? response_.data() + v : nullptr,
+                trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()},
                change);
   });
+}
+
+template <class F>
+auto TimeStepper::with_step(Index island, const State& state, double step, F&& f) {
+  const EvaluationContext start{*assembly_, state.view(), start_, island};
+  const EvaluationContext end{*assembly_, trial_.view(), evaluation_, island};
+  const EvaluationContext middle{*assembly_, middle_.view(), middle_evaluation_, island};
+  return f(StepContext{start, end, middle, step});
+}
+
+/// Internal variables, the state halfway where it is looked at, and the loads of the iterate.
+void TimeStepper::evaluate_iterate(Index island, const State& state, double step, double* loads) {
+  const Assembly& assembly = *assembly_;
+  evaluate_positions(assembly, island, trial_.view(), evaluation_);
+  const Island& range = assembly.islands()[island];
+  if (!range.z.empty()) {
+    const ElementId failed = with_step(island, state, step, [&](const StepContext& at) {
+      return advance_internals(assembly, island, at, trial_.z.data());
+    });
+    if (failed.valid()) fail_internal(failed, state, step);
+  }
+  if ((mean_rule() || !range.z.empty()) && uses_middle(assembly, island)) {
+    middle_.time = state.time + 0.5 * step;
+    for (Index i = range.v.begin; i < range.v.end; ++i) {
+      middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
+    }
+    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+      kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
+    });
+    for (Index i = range.v.begin; i < range.v.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
+    for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
+    evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+  }
+  if (loads == nullptr) return;
+  if (mean_rule()) {
+    with_step(island, state, step, [&](const StepContext& at) {
+      evaluate_mean_loads(assembly, island, at, {loads, loads, loads});
+    });
+  } else {
+    evaluate_loads(assembly, island, trial_.view(), evaluation_, {loads, loads, loads});
+  }
 }
 
 void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
   const Assembly& assembly = *assembly_;
   const Range v = assembly.islands()[island].v;
-  evaluate_positions(assembly, island, trial_.view(), evaluation_);
-  evaluate_loads_and_potentials(assembly, island, trial_.view(), evaluation_, open(end_), stored_);
+  evaluate_iterate(island, state, step, nullptr);
+  if (mean_rule()) {
+    with_step(island, state, step,
+              [&](const StepContext& at) { evaluate_mean_loads(assembly, island, at, open(end_)); });
+    add_stored_energies(assembly, island, trial_.view(), evaluation_, stored_);
+  } else {
+    evaluate_loads_and_potentials(assembly, island, trial_.view(), evaluation_, open(end_), stored_);
+    add_kinetic_energy(assembly, island, trial_.view(), stored_);
+  }
   finish(end_, v);
-  add_kinetic_energy(assembly, island, trial_.view(), stored_);
 
   // Work of an impulse over the step: impulse times mean velocity, exact for the kinetic energy. The total is
   // that of the impulse that acted (of the iterate before the last); its parts by cause are those of the last
   // iterate, what the iteration left open counts as conservative.
-  const PresentLoads& start = companion.loads;
+  const double* const load0 = start_of_sum(companion);
+  const PresentLoads& start = mean_rule() ? end_ : companion.loads;
   double total = 0.0, dissipative = 0.0, external = 0.0;
   for (Index i = v.begin; i < v.end; ++i) {
     const double path = 0.25 * step * (state.v[i] + trial_.v[i]);
-    total += path * (start.total[i] + evaluation_.force[i]);
+    total += path * (load0[i] + evaluation_.force[i]);
     dissipative += path * (start.dissipative[i] + end_.dissipative[i]);
     external += path * (start.external[i] + end_.external[i]);
   }
+  double inside = 0.0;
+  if (!assembly.islands()[island].z.empty()) {
+    inside = with_step(island, state, step,
+                       [&](const StepContext& at) { return internal_loss(assembly, island, at); });
+  }
   // The last iterate's loads and potentials enter the account unseen by any sweep.
-  if (!std::isfinite(dissipative + external + stored_.total())) fail_account(island, state, step);
-  coupling_work_.add(total - dissipative - external);
-  flows_[EnergyFlow::dashpot] -= dissipative;
+  if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(island, state, step);
+  coupling_work_.add(total - dissipative - external + inside);
+  flows_[EnergyFlow::dashpot] += inside - dissipative;
   flows_[EnergyFlow::external] += external;
+}
+
+void TimeStepper::project(Index island, const State& state, double step) {
+  if (contacts_.empty()) return;
+  const Assembly& assembly = *assembly_;
+  StoredEnergies before, after;
+  add_stored_energies(assembly, island, trial_.view(), evaluation_, before);
+  const GapProjection::Result result =
+      projection_.project(assembly, island, finder_, contacts_, chain_, trial_, evaluation_);
+  if (result.left != nullptr) fail_projection(*result.left, state, step);
+  if (!result.moved) return;
+  report_.projected = std::max(report_.projected, result.shift);
+  add_stored_energies(assembly, island, trial_.view(), evaluation_, after);
+  projected_ += before.potential() - after.potential();
+  for (std::size_t i = 0; i < stored_energy_count; ++i)
+    stored_.values[i] += after.values[i] - before.values[i];
+  if (mean_rule()) return;
+  evaluate_loads(assembly, island, trial_.view(), evaluation_, open(end_));
+  finish(end_, assembly.islands()[island].v);
 }
 
 void TimeStepper::book_contacts(const State& state, double step) {
@@ -262,10 +385,12 @@ void TimeStepper::rate(Index island, const State& state, double step, double con
 }
 
 void TimeStepper::commit(State& state, Companion& companion, double end_time, StepReport& report) {
+  flows_[EnergyFlow::projection] = projected_;
   flows_[EnergyFlow::coupling_discretisation] =
-      -(stored_.potential() - companion.ledger.potential() + coupling_work_.value());
+      -(stored_.potential() + projected_ - companion.ledger.potential() + coupling_work_.value());
   std::swap(state.q, trial_.q);
   std::swap(state.v, trial_.v);
+  std::swap(state.z, trial_.z);
   LoadHistory& history = companion.history;
   history.known = history.known > 0 && history.step == report_.step ? 2 : 1;
   history.step = report_.step;
@@ -273,6 +398,7 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   history.before.swap(companion.loads.total);
   std::swap(companion.loads, end_);
   companion.loads.valid = true;
+  companion.loads.mean = mean_rule();
   resize(end_, state.v.size());
   std::swap(companion.rounding, rounding_);
   state.time = end_time;

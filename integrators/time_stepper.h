@@ -10,6 +10,9 @@
 ///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2
 ///                F_{j+1} = F(q_{j+1}, v_{j+1}, t_{j+1})
 ///   until        positions and h times velocities no longer change.
+///
+/// Under the rule `energy_momentum` the mean (F_j + F_{j+1})/2 is replaced by the elements' own mean loads of
+/// the step, which are guessed and repeated in the same way.
 
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
@@ -17,9 +20,12 @@
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/integrators/anderson.h>
 #include <carom/integrators/companion.h>
 #include <carom/integrators/coupling_rating.h>
 #include <carom/integrators/fixed_point.h>
+#include <carom/integrators/gap_projection.h>
+#include <carom/integrators/implicit_solver.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/time_stepping.h>
 
@@ -46,12 +52,21 @@ public:
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 
 private:
+  void start_loads(const State& state, Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
   void find_contacts(Index island, const State& state);
+  void add_cluster(const State& state, std::size_t first, std::size_t last);
   void start_iteration(Index island, const State& state, const Companion& companion, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
   void sweep(Index island, const State& state, const Companion& companion, double step, SweepChange& change);
+  void evaluate_iterate(Index island, const State& state, double step, double* loads);
+  void improve_guess(Index island, const FixedPointJudge& judge);
+  void start_implicit(Index island, const State& state, const Companion& companion, double step);
+  void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,
+                 double step);
+  void solve_implicit(Index island, const State& state, double step);
   void book_couplings(Index island, const State& state, const Companion& companion, double step);
+  void project(Index island, const State& state, double step);
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
   void rate(Index island, const State& state, double step, double contraction);
@@ -63,8 +78,22 @@ private:
   [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state,
                                  double step);
   [[noreturn]] void fail_account(Index island, const State& state, double step);
+  [[noreturn]] void fail_internal(ElementId element, const State& state, double step) const;
+  [[noreturn]] void fail_linearisation(Index island, const State& state, double step, const char* why);
+  [[noreturn]] void fail_projection(const Contact& left, const State& state, double step) const;
   [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                                 double step) const;
+
+  /// The step of an island as elements see it, `f` called with it.
+  template <class F>
+  auto with_step(Index island, const State& state, double step, F&& f);
+  [[nodiscard]] bool mean_rule() const { return options_.force_rule == ForceRule::energy_momentum; }
+  /// What stands for the loads at the start in the sum (load0 + load1)/2: mean loads count twice.
+  [[nodiscard]] const double* start_of_sum(const Companion& companion) const {
+    return mean_rule() ? evaluation_.force.data() : companion.loads.total.data();
+  }
+  /// v_{j+1} changes by this times M^-1 times the change of what is iterated.
+  [[nodiscard]] double impulse_weight(double step) const { return mean_rule() ? step : 0.5 * step; }
 
   void commit(State& state, Companion& companion, double end_time, StepReport& report);
 
@@ -73,17 +102,28 @@ private:
   ContactFinder finder_;
   SolverChain chain_;
 
-  State trial_;                          // q_{j+1}, v_{j+1} of the sweep at hand
-  Evaluation evaluation_;                // force: loads at the end, of the iterate before
-  PresentLoads end_;                     // loads at the end, by cause, of the last iterate
-  std::vector<double> rounding_;         // what rounding cuts off v_{j+1}
-  std::vector<double> free_, response_;  // velocities without contact, changes by contact, where bodies touch
+  State trial_;                    // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
+  State middle_;                   // halfway, where elements look at it
+  Evaluation start_;               // rotation: at the start
+  Evaluation middle_evaluation_;   // rotation: halfway
+  Evaluation evaluation_;          // force: loads at the end (or mean loads), of the iterate before
+  std::vector<double> evaluated_;  // loads of the iterate, where the next guess is not simply these
+  std::vector<double> weights_;    // of loads: lengths by mass
+  AndersonAcceleration anderson_;
+  ImplicitSolver implicit_;
+  bool stale_ = false;  // the matrix is to be made anew
+  GapProjection projection_;
+  PresentLoads end_;              // loads at the end, by cause, of the last iterate
+  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}
+  std::vector<double> free_, response_,
+      update_;  // velocities without contact, changes by contact, where bodies touch
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
 
   EnergyFlows flows_;
   CompensatedSum coupling_work_;
+  double projected_ = 0.0;  // energy taken out by moving bodies
   StoredEnergies stored_;
   StepReport report_;
   std::vector<CouplingRating> ratings_;    // by island, of the last time it was rated

@@ -48,6 +48,21 @@ void check_options(const TimeStepping& options) {
     refuse("tolerance", options.tolerance, "finite and >= 0 m");
   }
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
+  if (options.control) {
+    const StepControl& control = *options.control;
+    if (!(std::isfinite(control.tolerance) && control.tolerance > 0.0)) {
+      refuse("control.tolerance", control.tolerance, "finite and > 0 m");
+    }
+    if (!(std::isfinite(control.smallest) && control.smallest > 0.0)) {
+      refuse("control.smallest", control.smallest, "finite and > 0 s");
+    }
+    if (!(std::isfinite(control.largest) && control.largest >= control.smallest)) {
+      refuse("control.largest", control.largest, "finite and >= control.smallest");
+    }
+    if (!(options.step >= control.smallest && options.step <= control.largest)) {
+      refuse("step", options.step, "between control.smallest and control.largest");
+    }
+  }
   if (!(std::isfinite(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
@@ -80,7 +95,7 @@ void TimeStepper::find_culprit(Index island, const State& state, const Companion
     sweep(island, state, companion, step, change);
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
     demand_finite_loads(island, trial_.view(), state, step);
-    evaluate(*assembly_, island, trial_.view(), evaluation_);
+    evaluate_iterate(island, state, step, evaluation_.force.data());
   }
 }
 
@@ -93,7 +108,10 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     if (!clusters_[i].changed_modes()) continue;
     for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(finder_.name(contact.key));
   }
-  if (!std::isfinite(judge.change())) find_culprit(island, state, companion, step, judge.sweeps());
+  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  if (!std::isfinite(judge.change()) && !implicit) {
+    find_culprit(island, state, companion, step, judge.sweeps());
+  }
 
   SolverFailure failure;
   failure.time = state.time;
@@ -101,9 +119,9 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   failure.residual = judge.change();
   evaluate_positions(*assembly_, island, state.view(), evaluation_);
   const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
-  std::string message = place(state, step) + "the fixed-point iteration does not contract after " +
-                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) +
-                        " m)";
+  std::string message = place(state, step) + "the " + std::string(to_string(options_.iteration)) +
+                        " iteration does not contract after " + std::to_string(judge.sweeps()) +
+                        " sweeps (last change " + to_text(judge.change()) + " m)";
   if (rating.worst.valid()) {
     failure.parts.push_back(assembly_->system().name(rating.worst));
     failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
@@ -111,6 +129,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   }
   if (rating.island_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
+    if (!implicit) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the couplings contract (rate " +
@@ -151,6 +170,43 @@ void TimeStepper::fail_account(Index island, const State& state, double step) {
   } else {
     message += "an energy is too large to be counted";
   }
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::fail_internal(ElementId element, const State& state, double step) const {
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.parts.push_back(assembly_->system().name(element));
+  const std::string message =
+      place(state, step) + "the internal variables of " + failure.parts.front() + " cannot be advanced";
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::fail_linearisation(Index island, const State& state, double step, const char* why) {
+  evaluate_positions(*assembly_, island, state.view(), evaluation_);
+  const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
+  demand_finite_loads(island, state.view(), state, step);
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.suggested_step = 0.5 * step;
+  std::string message = place(state, step) + "the matrix of the linearly implicit iteration " + why;
+  if (rating.worst.valid()) {
+    failure.parts.push_back(assembly_->system().name(rating.worst));
+    message += "; stiffest is " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void TimeStepper::fail_projection(const Contact& left, const State& state, double step) const {
+  SolverFailure failure;
+  failure.time = state.time;
+  failure.step = step;
+  failure.residual = -left.gap;
+  failure.parts.push_back(finder_.name(left.key));
+  const std::string message = place(state, step) + "project_gaps: no displacement brings " +
+                              failure.parts.front() + " out, gap " + to_text(left.gap) + " m";
   throw SolverError(message, std::move(failure));
 }
 

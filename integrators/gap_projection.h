@@ -1,0 +1,51 @@
+#pragma once
+
+/// \file
+/// Bodies that have sunk into obstacles are moved out by the smallest displacement in the sense of their
+/// masses:  minimise |d|_M  such that  g(q + d) >= 0  for the gaps g of the contacts of a body. At an
+/// estimate d the gaps are taken as linear; the multipliers y of the next estimate d' = M^-1 G^T y solve
+///     W y + g(q + d) - G d >= 0,  y >= 0,  complementary,   W = G M^-1 G^T.
+
+#include <carom/contact/contact_finder.h>
+#include <carom/contact/contact_problem.h>
+#include <carom/contact/solver_chain.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Moves the bodies of one island. Keeps memory only.
+class CAROM_API GapProjection {
+public:
+  /// Outcome of a projection.
+  struct Result {
+    bool moved = false;             ///< a body was moved
+    double shift = 0.0;             ///< largest displacement of a body, angles weighed by its size [m]
+    const Contact* left = nullptr;  ///< deepest contact that could not be opened
+  };
+
+  /// Moves bodies until the gaps of `taking_part`, in the order of the finder, are at most rounding below
+  /// zero; those that keep a body from falling back end there, still closed. The position group of
+  /// `evaluation` must be up to date, and is so afterwards.
+  Result project(const Assembly& assembly, Index island, const ContactFinder& finder,
+                 std::span<const Contact> taking_part, SolverChain& chain, State& state,
+                 Evaluation& evaluation);
+
+private:
+  void find(Index island, const ContactFinder& finder, std::span<const Contact> taking_part, double margin,
+            const State& state, const Evaluation& evaluation);
+  /// Makes a better estimate for one body; false if there is none.
+  bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
+                 State& state, double depth);
+
+  std::vector<Contact> found_, contacts_;
+  ContactProblem problem_;
+  std::vector<double> unmoved_;       // q
+  std::vector<double> displacement_;  // d, over all velocities
+  std::vector<double> response_, multipliers_, moved_;
+};
+
+}  // namespace carom

@@ -1,0 +1,111 @@
+// Problem: solve with the matrix of a linearised step, sparse as the graph of the couplings.
+
+#include <carom/core/difference_derivatives.h>
+#include <carom/integrators/implicit_solver.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace carom {
+
+struct ImplicitSolver::Factors {
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  const Assembly* assembly = nullptr;
+  Index island = none;
+  Range v;
+  std::vector<LoadDerivative> entries;
+  std::vector<Eigen::Triplet<double>> triplets;
+  Matrix matrix;
+  Eigen::SimplicialLDLT<Matrix> factors;
+};
+
+ImplicitSolver::ImplicitSolver() : factors_(std::make_unique<Factors>()) {}
+ImplicitSolver::~ImplicitSolver() = default;
+ImplicitSolver::ImplicitSolver(ImplicitSolver&&) noexcept = default;
+ImplicitSolver& ImplicitSolver::operator=(ImplicitSolver&&) noexcept = default;
+
+ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index island, const StateView& state,
+                                               const Evaluation& evaluation, double step) {
+  Factors& self = *factors_;
+  self.assembly = &assembly;
+  self.island = island;
+  self.v = assembly.islands()[island].v;
+  self.entries.clear();
+  const EvaluationContext at{assembly, state, evaluation, island};
+  std::optional<DifferenceDerivatives> differences;
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const ForceKind& force = *assembly.force_kinds()[kind];
+    const Range elements = force.is_field() ? Range{} : assembly.elements(island, kind);
+    for (Index element = elements.begin; element < elements.end; ++element) {
+      if (force.has_derivatives()) {
+        force.derivatives(at, element, self.entries);
+      } else {
+        if (!differences) differences.emplace(at);
+        differences->append(force, element, self.entries);
+      }
+    }
+  }
+
+  const auto index = [&](Index i) { return static_cast<int>(i - self.v.begin); };
+  self.triplets.clear();
+  for (const LoadDerivative& entry : self.entries) {
+    // Half to each side of the diagonal; LDLT reads the lower triangle.
+    const double value = -0.5 * (0.5 * step * entry.by_velocity + 0.25 * step * step * entry.by_position);
+    const int row = index(entry.row), column = index(entry.column);
+    if (row == column) {
+      self.triplets.emplace_back(row, column, 2.0 * value);
+    } else {
+      self.triplets.emplace_back(std::max(row, column), std::min(row, column), value);
+    }
+  }
+  std::vector<double> unit, image;
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+    const Index size = kind.v_size();
+    unit.assign(size, 0.0);
+    image.resize(size);
+    for (Index slot = slots.begin; slot < slots.end; ++slot, first += size) {
+      for (Index column = 0; column < size; ++column) {
+        unit[column] = 1.0;
+        kind.apply_mass({slot, slot + 1}, unit.data(), image.data());
+        unit[column] = 0.0;
+        for (Index row = column; row < size; ++row) {
+          self.triplets.emplace_back(index(first + row), index(first + column), image[row]);
+        }
+      }
+    }
+  });
+  const auto size = static_cast<Eigen::Index>(self.v.size());
+  self.matrix.resize(size, size);
+  self.matrix.setFromTriplets(self.triplets.begin(), self.triplets.end());
+  // The pattern is that of the graph; an element may leave out entries at times, so it is looked at again.
+  self.factors.analyzePattern(self.matrix);
+  self.factors.factorize(self.matrix);
+  if (self.factors.info() != Eigen::Success) return Outcome::singular;
+  return self.factors.vectorD().minCoeff() > 0.0 ? Outcome::definite : Outcome::indefinite;
+}
+
+void ImplicitSolver::solve(double* x) const {
+  Eigen::Map<Eigen::VectorXd> map(x, static_cast<Eigen::Index>(factors_->v.size()));
+  const Eigen::VectorXd solution = factors_->factors.solve(map);
+  map = solution;
+}
+
+void ImplicitSolver::add_stiffness_times(double scale, const double* v, double* y) const {
+  for (const LoadDerivative& entry : factors_->entries) {
+    y[entry.row] += scale * entry.by_position * v[entry.column];
+  }
+}
+
+void ImplicitSolver::apply_mass(const double* v, double* p) const {
+  factors_->assembly->for_bodies(factors_->island,
+                                 [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+                                   kind.apply_mass(slots, v + first, p + first);
+                                 });
+}
+
+}  // namespace carom

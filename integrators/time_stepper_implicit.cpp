@@ -1,0 +1,84 @@
+// Problem: guess the loads at the end of a step better than by those of the iterate before (Anderson's
+// acceleration, Newton's method with contact).
+
+#include <carom/integrators/time_stepper.h>
+
+#include <algorithm>
+
+namespace carom {
+
+void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
+  const Range v = assembly_->islands()[island].v;
+  if (options_.iteration == Iteration::anderson) {
+    const auto part = [&](std::vector<double>& numbers) {
+      return std::span<double>(numbers.data() + v.begin, v.size());
+    };
+    anderson_.next(part(evaluation_.force), part(evaluated_), part(weights_));
+    return;
+  }
+  // Newton's method contracts ever faster; with a frozen matrix by a steady ratio. Beyond this one a fresh
+  // matrix is cheaper than more sweeps.
+  constexpr double slow = 0.1;
+  stale_ = judge.sweeps() > 1 && judge.contraction() > slow;
+}
+
+/// The first guess of Newton's method: loads that would leave the velocities as they are, to be corrected by
+/// the loads at the start as they grow with the motion.
+void TimeStepper::start_implicit(Index island, const State& state, const Companion& companion, double step) {
+  const Range v = assembly_->islands()[island].v;
+  evaluate_loads(*assembly_, island, state.view(), start_,
+                 {evaluated_.data(), evaluated_.data(), evaluated_.data()});
+  for (Index i = v.begin; i < v.end; ++i) {
+    evaluation_.force[i] = mean_rule() ? 0.0 : -companion.loads.total[i];
+  }
+  for (std::size_t i = 0; i < clusters_in_use_; ++i) clusters_[i].forget_impulses();
+  linearise(island, state.view(), start_, state, step);
+  implicit_.add_stiffness_times(mean_rule() ? 0.5 * step : step, state.v.data(), evaluated_.data());
+  stale_ = false;
+}
+
+void TimeStepper::linearise(Index island, const StateView& at, const Evaluation& evaluation,
+                            const State& state, double step) {
+  const auto outcome = implicit_.factor(*assembly_, island, at, evaluation, step);
+  if (outcome == ImplicitSolver::Outcome::singular) {
+    fail_linearisation(island, state, step, "is singular");
+  }
+  if (clusters_in_use_ == 0) return;
+  if (outcome != ImplicitSolver::Outcome::definite) {
+    fail_linearisation(island, state, step, "is not definite while bodies touch");
+  }
+  clusters_.front().couple(assembly_->islands()[island].v, [this](double* x) { implicit_.solve(x); });
+}
+
+/// One step of Newton's method from the iterate (trial velocities, impulses P, guess x, loads g that they
+/// lead to):  A d = w (g - x) + H^T (P' - P),  P' from the contact problem with W = H A^-1 H^T, and the guess
+/// that leads to the new velocities,  x' = x + (M d - H^T (P' - P)) / w.
+void TimeStepper::solve_implicit(Index island, const State& state, double step) {
+  const Range v = assembly_->islands()[island].v;
+  if (stale_) linearise(island, trial_.view(), evaluation_, state, step);
+  const double weight = impulse_weight(step);
+  for (Index i = v.begin; i < v.end; ++i) update_[i] = weight * (evaluated_[i] - evaluation_.force[i]);
+  if (clusters_in_use_ > 0) {
+    ContactCluster& cluster = clusters_.front();
+    cluster.add_loads(-1.0, update_.data());
+    implicit_.solve(update_.data() + v.begin);
+    for (Index i = v.begin; i < v.end; ++i) free_[i] = trial_.v[i] + update_[i];
+    cluster.set_free_velocity(free_.data());
+    std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
+    cluster.add_loads(1.0 / weight, response_.data());  // H^T P / w, of the iterate before
+    if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+    cluster.apply_coupled(update_.data());
+    cluster.add_loads(-1.0 / weight, response_.data());
+    for (Index i = v.begin; i < v.end; ++i) {
+      evaluation_.force[i] += response_[i];
+      response_[i] = 0.0;
+    }
+    cluster.apply(response_.data());
+  } else {
+    implicit_.solve(update_.data() + v.begin);
+  }
+  implicit_.apply_mass(update_.data(), free_.data());
+  for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] += free_[i] / weight;
+}
+
+}  // namespace carom
