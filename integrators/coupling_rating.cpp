@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 namespace carom {
@@ -29,6 +28,7 @@ double step_of_half(double stiffness, double damping) {
   return root > 0.0 ? 2.0 / root : std::numeric_limits<double>::infinity();
 }
 
+/// Collects the derivatives of one element after the other. Allocates only while elements grow.
 class Rater {
 public:
   Rater(const Assembly& assembly, Index island)
@@ -45,39 +45,50 @@ public:
 
   /// Takes the derivatives of one element; returns its own rate.
   double add(const std::vector<LoadDerivative>& entries, double step) {
-    // Entries of equal place add up before their absolute value counts.
-    std::vector<LoadDerivative> sorted = entries;
-    const auto place = [this](const LoadDerivative& e) {
-      return std::tuple(e.column, body_of_[e.row - first_], e.row);
-    };
-    std::sort(sorted.begin(), sorted.end(),
-              [&](const LoadDerivative& a, const LoadDerivative& b) { return place(a) < place(b); });
-    RowMap own;
-    for (auto at = sorted.begin(); at != sorted.end();) {
-      // All rows of one body in one column: a load, which M^-1 turns into an acceleration.
-      const Index body = body_of_[at->row - first_];
-      const Index column = at->column;
-      const BodySlot& slot = assembly_.layout()->bodies()[body];
-      std::vector<double> by_position(slot.v_size, 0.0), by_velocity(slot.v_size, 0.0);
-      for (; at != sorted.end() && at->column == column && body_of_[at->row - first_] == body; ++at) {
-        by_position[at->row - slot.v] += at->by_position;
-        by_velocity[at->row - slot.v] += at->by_velocity;
-      }
-      const BodyKind& kind = *assembly_.body_kinds()[slot.kind];
-      std::vector<double> a(slot.v_size), b(slot.v_size);
-      kind.apply_inverse_mass({slot.slot, slot.slot + 1}, by_position.data(), a.data());
-      kind.apply_inverse_mass({slot.slot, slot.slot + 1}, by_velocity.data(), b.data());
-      const auto& lengths = assembly_.length_scales();
-      for (Index i = 0; i < slot.v_size; ++i) {
-        const double weight = lengths[slot.v + i] / lengths[column];
-        own.add(slot.v + i, std::abs(a[i]) * weight, std::abs(b[i]) * weight);
-      }
+    blocks_.clear();
+    size_ = 0;
+    for (const LoadDerivative& entry : entries) {
+      (void)place(entry.row);
+      (void)place(entry.column);
     }
+    // Entries of equal place add up before their absolute value counts.
+    by_position_.assign(std::size_t{size_} * size_, 0.0);
+    by_velocity_.assign(std::size_t{size_} * size_, 0.0);
+    for (const LoadDerivative& entry : entries) {
+      // Column by column, so that those of one body stand together as a load.
+      const std::size_t at = std::size_t{place(entry.column)} * size_ + place(entry.row);
+      by_position_[at] += entry.by_position;
+      by_velocity_[at] += entry.by_velocity;
+    }
+
+    const auto& lengths = assembly_.length_scales();
     double worst = 0.0;
-    for (const auto& [row, stiffness, damping] : own.rows) {
-      sums_.stiffness[row - first_] += stiffness;
-      sums_.damping[row - first_] += damping;
-      worst = std::max(worst, rate(stiffness, damping, step));
+    for (const Block& rows : blocks_) {
+      const BodySlot& slot = assembly_.layout()->bodies()[rows.body];
+      const BodyKind& kind = *assembly_.body_kinds()[slot.kind];
+      stiffness_.assign(slot.v_size, 0.0);
+      damping_.assign(slot.v_size, 0.0);
+      acceleration_.resize(slot.v_size);
+      const auto take = [&](const std::vector<double>& derivatives, std::size_t column, double length,
+                            std::vector<double>& sums) {
+        kind.apply_inverse_mass({slot.slot, slot.slot + 1}, derivatives.data() + column * size_ + rows.first,
+                                acceleration_.data());
+        for (Index i = 0; i < slot.v_size; ++i) {
+          sums[i] += std::abs(acceleration_[i]) * lengths[slot.v + i] / length;
+        }
+      };
+      for (const Block& columns : blocks_) {
+        const BodySlot& other = assembly_.layout()->bodies()[columns.body];
+        for (Index i = 0; i < other.v_size; ++i) {
+          take(by_position_, columns.first + i, lengths[other.v + i], stiffness_);
+          take(by_velocity_, columns.first + i, lengths[other.v + i], damping_);
+        }
+      }
+      for (Index i = 0; i < slot.v_size; ++i) {
+        sums_.stiffness[slot.v + i - first_] += stiffness_[i];
+        sums_.damping[slot.v + i - first_] += damping_[i];
+        worst = std::max(worst, rate(stiffness_[i], damping_[i], step));
+      }
     }
     return worst;
   }
@@ -92,28 +103,31 @@ public:
   }
 
 private:
-  struct RowMap {
-    struct Row {
-      Index row;
-      double stiffness, damping;
-    };
-    std::vector<Row> rows;
-
-    void add(Index row, double stiffness, double damping) {
-      const auto found = std::find_if(rows.begin(), rows.end(), [row](const Row& r) { return r.row == row; });
-      if (found == rows.end()) {
-        rows.push_back({row, stiffness, damping});
-      } else {
-        found->stiffness += stiffness;
-        found->damping += damping;
-      }
-    }
+  /// A body of the element at hand: its velocities stand at first, first + 1, ... of the small matrices.
+  struct Block {
+    Index body;
+    Index first;
   };
+
+  /// Place of a velocity coordinate in the small matrices.
+  Index place(Index coordinate) {
+    const Index body = body_of_[coordinate - first_];
+    const BodySlot& slot = assembly_.layout()->bodies()[body];
+    for (const Block& block : blocks_) {
+      if (block.body == body) return block.first + (coordinate - slot.v);
+    }
+    blocks_.push_back({body, size_});
+    size_ += slot.v_size;
+    return blocks_.back().first + (coordinate - slot.v);
+  }
 
   const Assembly& assembly_;
   Index first_;
   RowSums sums_;
   std::vector<Index> body_of_;
+  std::vector<Block> blocks_;
+  Index size_ = 0;
+  std::vector<double> by_position_, by_velocity_, stiffness_, damping_, acceleration_;
 };
 
 }  // namespace

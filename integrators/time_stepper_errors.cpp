@@ -109,8 +109,12 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(finder_.name(contact.key));
   }
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
-  if (!std::isfinite(judge.change()) && !implicit) {
-    find_culprit(island, state, companion, step, judge.sweeps());
+  if (!std::isfinite(judge.change())) {
+    if (implicit) {
+      demand_finite_loads(island, state.view(), state, step);
+    } else {
+      find_culprit(island, state, companion, step, judge.sweeps());
+    }
   }
 
   SolverFailure failure;

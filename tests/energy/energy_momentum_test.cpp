@@ -178,6 +178,42 @@ TEST(EnergyMomentum, WithoutFreeLengthTheForceIsLinearThroughCoincidingEnds) {
   EXPECT_NEAR(simulation.state().position(dot)[0], 0.5 * std::cos(2000.0 * std::atan(0.05)), 1e-10);
 }
 
+TEST(EnergyMomentum, InSpaceToo) {
+  System system;
+  const BodyId a =
+      system.add(spatial::Particle{.mass = 1.0, .position = {1.0, 0.1, 0.0}, .velocity = {0.2, 3.0, 1.0}});
+  const BodyId b =
+      system.add(spatial::Particle{.mass = 2.0, .position = {-0.5, 0.0, 0.3}, .velocity = {0.0, -1.5, 0.5}});
+  const BodyId c =
+      system.add(spatial::Particle{.mass = 0.5, .position = {0.0, 1.0, -0.4}, .velocity = {1.0, 0.0, -2.0}});
+  system.add(spatial::SpringDamper{.from = a, .to = b, .stiffness = 300.0, .free_length = 1.4});
+  system.add(spatial::Bumper{.from = b, .to = c, .stiffness = 500.0, .free_length = 1.5});
+  system.add(spatial::NonlinearSpring{.from = a,
+                                      .to = c,
+                                      .force = [](double l) { return 50.0 * std::sinh(l - 1.0); },
+                                      .potential_of = [](double l) { return 50.0 * std::cosh(l - 1.0); }});
+  Simulation simulation(std::move(system), rule(2e-3));
+  const auto momentum = [&simulation](int i, int j) {
+    double sum = 0.0;
+    const auto& state = simulation.state();
+    for (const BodySlot& slot : state.layout()->bodies()) {
+      const double mass = simulation.assembly().body_kinds()[slot.kind]->mass(slot.slot);
+      const double* x = state.q.data() + slot.q;
+      const double* v = state.v.data() + slot.v;
+      sum += mass * (x[i] * v[j] - x[j] * v[i]);
+    }
+    return sum;
+  };
+  const double energy = simulation.energy().total();
+  const double x = momentum(1, 2), y = momentum(2, 0), z = momentum(0, 1);
+  for (int i = 0; i < 10000; ++i) simulation.step();
+  EXPECT_NEAR(simulation.energy().total(), energy, 1e-10 * energy);
+  const double size = std::abs(x) + std::abs(y) + std::abs(z);
+  EXPECT_NEAR(momentum(1, 2), x, 1e-10 * size);
+  EXPECT_NEAR(momentum(2, 0), y, 1e-10 * size);
+  EXPECT_NEAR(momentum(0, 1), z, 1e-10 * size);
+}
+
 TEST(EnergyMomentum, ElementsWithoutAMeanForceAreTakenHalfway) {
   // An actuator and drag on plates: momentum is kept by the actuator, and the drag only loses.
   System system = mobile(0.0);
