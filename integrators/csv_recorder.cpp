@@ -1,10 +1,10 @@
+#include <carom/core/csv.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
 #include <carom/integrators/csv_recorder.h>
 #include <carom/integrators/simulation.h>
 
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <string_view>
 
@@ -13,17 +13,6 @@ namespace carom {
 namespace {
 
 constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-
-/// A name as a field of a CSV header: quoted where it needs to be.
-std::string field(const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char letter : name) {
-    if (letter == '"') quoted += '"';
-    quoted += letter;
-  }
-  return quoted + '"';
-}
 
 }  // namespace
 
@@ -34,9 +23,8 @@ struct CsvRecorder::Impl {
   void write_header(const Simulation& simulation);
   void write_row(const Simulation& simulation);
   void add(double number) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
-    line.append(text.data(), end).push_back(',');
+    append_csv(line, number);
+    line += ',';
   }
   void end_line() {
     line.back() = '\n';
@@ -64,7 +52,10 @@ void CsvRecorder::Impl::write_header(const Simulation& simulation) {
     std::string name = simulation.system().given_name(body);
     if (name.empty()) name = simulation.system().name(body);
     const bool oriented = layout.slot(body).rotation != none;
-    const auto column = [&](const std::string& quantity) { line += field(name + "." + quantity) + ","; };
+    const auto column = [&](const std::string& quantity) {
+      append_csv(line, name + "." + quantity);
+      line += ',';
+    };
     for (std::size_t i = 0; i < dimension; ++i) column(std::string(axes[i]) + " [m]");
     if (oriented) column("angle [rad]");
     for (std::size_t i = 0; i < dimension; ++i) column("v" + std::string(axes[i]) + " [m/s]");
