@@ -1,0 +1,159 @@
+#include <carom/contact/contact_finder.h>
+#include <carom/core/errors.h>
+#include <carom/core/part_check.h>
+#include <carom/core/total_momentum.h>
+#include <carom/integrators/energy_recorder.h>
+#include <carom/integrators/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+/// Deepest penetration of the present state [m].
+double deepest_penetration(const Simulation& simulation) {
+  const Assembly& assembly = simulation.assembly();
+  const StateView state = simulation.state().view();
+  const ContactFinder finder(assembly);
+  Evaluation evaluation = make_evaluation(assembly);
+  std::vector<Contact> contacts;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state, evaluation);
+    finder.find(island, state, evaluation, 0.0, contacts);
+  }
+  double deepest = 0.0;
+  for (const Contact& contact : contacts) deepest = std::max(deepest, -contact.gap);
+  return deepest;
+}
+
+double largest_coordinate(const State& state) {
+  const Layout& layout = *state.layout();
+  double largest = 0.0;
+  for (const BodySlot& slot : layout.bodies()) {
+    for (Index i = 0; i < static_cast<Index>(layout.dimension()); ++i) {
+      largest = std::max(largest, std::abs(state.q[slot.q + i]));
+    }
+  }
+  return largest;
+}
+
+/// Gathers what happens between rows and makes the rows.
+class RowMaker {
+public:
+  void take_step(const Simulation& simulation) {
+    const StepReport& report = simulation.report();
+    for (const ContactRecord& contact : report.contacts) {
+      penetration_ = std::max(penetration_, -contact.gap);
+      if (!contact.impact) continue;
+      std::string text = simulation.name(contact.key);
+      text.append(", ").append(to_string(contact.mode));
+      trace_.add(TraceEvent{report.time, std::move(text)});
+    }
+  }
+
+  void add_row(const Simulation& simulation) {
+    const EnergyLedger& energy = simulation.energy();
+    const TotalMomentum momentum = total_momentum(simulation.assembly(), simulation.state());
+    momentum_scale_ = std::max(momentum_scale_, momentum.linear_scale);
+    angular_scale_ = std::max(angular_scale_, momentum.angular_scale);
+    length_scale_ = std::max(length_scale_, largest_coordinate(simulation.state()));
+
+    TraceRow row;
+    row.time = simulation.time();
+    row.stored = energy.stored();
+    row.total = energy.total();
+    row.initial = energy.initial();
+    for (std::size_t i = 0; i < energy_flow_count; ++i) {
+      row.flows.values[i] = energy.flow(static_cast<EnergyFlow>(i));
+    }
+    row.residual = energy.residual();
+    row.energy_scale = energy.scale();
+    row.momentum = momentum.linear;
+    row.momentum_scale = momentum_scale_;
+    row.angular_momentum = momentum.angular;
+    row.angular_momentum_scale = angular_scale_;
+    // Reports tell of the states at which steps begin: the present one is missing.
+    row.penetration = std::max(penetration_, deepest_penetration(simulation));
+    row.length_scale = length_scale_;
+    trace_.add(row);
+    penetration_ = 0.0;
+  }
+
+  [[nodiscard]] const EnergyTrace& trace() const { return trace_; }
+
+private:
+  EnergyTrace trace_;
+  double penetration_ = 0.0;  // deepest since the last row
+  double momentum_scale_ = 0.0, angular_scale_ = 0.0, length_scale_ = 0.0;
+};
+
+void check(const EnergyRecorder::Options& options) {
+  const auto refuse = [](const std::string& what, const std::string& allowed) {
+    throw ModelError("energy recorder: " + what + "; allowed: " + allowed);
+  };
+  if (options.every_steps < 0) {
+    refuse("every_steps is " + std::to_string(options.every_steps), "at least 1, or 0 for none");
+  }
+  if (!(std::isfinite(options.interval) && options.interval >= 0.0)) {
+    refuse("interval is " + to_text(options.interval) + " s", "finite and > 0, or 0 for none");
+  }
+  if (options.every_steps > 0 && options.interval > 0.0) {
+    refuse("every_steps is " + std::to_string(options.every_steps) + " and interval " +
+               to_text(options.interval) + " s",
+           "one of the two");
+  }
+}
+
+}  // namespace
+
+struct EnergyRecorder::Impl {
+  RowMaker rows;
+  long steps = 0;
+};
+
+EnergyRecorder::EnergyRecorder(Simulation& simulation) : EnergyRecorder(simulation, Options{}) {}
+
+EnergyRecorder::EnergyRecorder(Simulation& simulation, const Options& options)
+    : impl_(std::make_shared<Impl>()) {
+  check(options);
+  impl_->rows.add_row(simulation);
+  // Observers come before actions: an interval's row finds the events of the step that led to it.
+  const int every = options.interval > 0.0 ? 0 : std::max(options.every_steps, 1);
+  simulation.observe([impl = impl_, every](const Simulation& run) {
+    impl->rows.take_step(run);
+    if (every > 0 && ++impl->steps % every == 0) impl->rows.add_row(run);
+  });
+  if (options.interval > 0.0) {
+    simulation.every(options.interval, [impl = impl_](Simulation& run) { impl->rows.add_row(run); });
+  }
+}
+
+const EnergyTrace& EnergyRecorder::trace() const { return impl_->rows.trace(); }
+
+EnergyTrace record_at(Simulation& simulation, const std::vector<double>& times) {
+  double before = simulation.time();
+  for (const double time : times) {
+    if (!(std::isfinite(time) && time > before)) {
+      throw ModelError("record_at: time is " + to_text(time) + " s; allowed: finite and later than " +
+                       to_text(before) + " s");
+    }
+    before = time;
+  }
+  // An observer stays with its simulation: once this function is left, it has nothing to write to.
+  const auto rows = std::make_shared<RowMaker>();
+  simulation.observe([open = std::weak_ptr<RowMaker>(rows)](const Simulation& run) {
+    if (const auto maker = open.lock()) maker->take_step(run);
+  });
+  rows->add_row(simulation);
+  for (const double time : times) {
+    simulation.run_until(time);
+    rows->add_row(simulation);
+  }
+  return rows->trace();
+}
+
+}  // namespace carom
