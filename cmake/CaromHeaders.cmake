@@ -2,13 +2,13 @@
 # <build>/include/carom with links to the folders, so that the build tree, the installed tree and a
 # subdirectory user see one path.
 
-# carom_collect_sources(sources public private): source files, and headers relative to the project, public
-# ones apart from those that match carom_private_headers.
-function(carom_collect_sources sources_out public_out private_out)
+# carom_collect_sources(folders sources public private): source files, and headers relative to the project,
+# public ones apart from those that match carom_private_headers.
+function(carom_collect_sources folders sources_out public_out private_out)
   set(sources "")
   set(public "")
   set(private "")
-  foreach(folder IN LISTS carom_folders)
+  foreach(folder IN LISTS folders)
     file(GLOB folder_sources CONFIGURE_DEPENDS LIST_DIRECTORIES false "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
     file(
       GLOB folder_headers CONFIGURE_DEPENDS LIST_DIRECTORIES false
@@ -34,26 +34,34 @@ function(carom_collect_sources sources_out public_out private_out)
   set(${private_out} "${private}" PARENT_SCOPE)
 endfunction()
 
-# carom_stage_headers(target headers): links the folders, writes <carom/carom.h>, declares the file set.
-function(carom_stage_headers target headers)
+# carom_stage_headers(target folders headers): links the folders and declares the file set.
+function(carom_stage_headers target folders headers)
   set(include_root "${PROJECT_BINARY_DIR}/include")
   file(MAKE_DIRECTORY "${include_root}/carom")
-
-  set(staged "${include_root}/carom/carom.h")
-  set(includes "")
-  set(folders "")
-  foreach(header IN LISTS headers)
-    list(APPEND staged "${include_root}/carom/${header}")
-    string(APPEND includes "#include <carom/${header}>\n")
-  endforeach()
-  foreach(folder IN LISTS carom_folders)
+  foreach(folder IN LISTS folders)
     if(IS_DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}")
       file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${include_root}/carom/${folder}" SYMBOLIC)
     endif()
   endforeach()
+  list(TRANSFORM headers PREPEND "${include_root}/carom/")
+  target_sources(
+    ${target}
+    PUBLIC FILE_SET HEADERS
+           BASE_DIRS "${include_root}"
+           FILES ${headers})
+endfunction()
+
+# carom_write_umbrella(target headers): writes <carom/carom.h>, which includes the headers, and adds it to the
+# file set.
+function(carom_write_umbrella target headers)
+  set(umbrella "${PROJECT_BINARY_DIR}/include/carom/carom.h")
+  set(includes "")
+  foreach(header IN LISTS headers)
+    string(APPEND includes "#include <carom/${header}>\n")
+  endforeach()
   file(
     CONFIGURE
-    OUTPUT "${include_root}/carom/carom.h"
+    OUTPUT "${umbrella}"
     CONTENT "#pragma once
 
 /// \\file
@@ -61,10 +69,5 @@ function(carom_stage_headers target headers)
 
 ${includes}"
     @ONLY)
-
-  target_sources(
-    ${target}
-    PUBLIC FILE_SET HEADERS
-           BASE_DIRS "${include_root}"
-           FILES ${staged})
+  target_sources(${target} PUBLIC FILE_SET HEADERS FILES "${umbrella}")
 endfunction()

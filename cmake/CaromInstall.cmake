@@ -19,6 +19,19 @@ install(
   NAMESPACE carom::
   DESTINATION ${carom_package_dir})
 
+if(TARGET carom_testing)
+  # An export of its own: only who asks for COMPONENTS testing needs GoogleTest.
+  install(
+    TARGETS carom_testing
+    EXPORT carom-testing-targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(
+    EXPORT carom-testing-targets
+    NAMESPACE carom::
+    DESTINATION ${carom_package_dir})
+endif()
+
 set(carom_static_dependencies "")
 if(carom_type STREQUAL "STATIC_LIBRARY")
   set(carom_static_dependencies "${carom_private_packages}")

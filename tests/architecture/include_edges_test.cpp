@@ -33,6 +33,7 @@ const std::regex include_line(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"])re");
 const std::regex sundials_header(
     "(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/.*");
 const std::regex logging_header("(spdlog|fmt)/.*");
+const std::regex test_header("(gtest|gmock)/.*");
 const std::regex type_query(R"(\bdynamic_(pointer_)?cast\b)");
 
 // The code without its comments.
@@ -54,6 +55,7 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
   const std::string folder = path.substr(0, path.find('/'));
   const bool may_log = path == "core/log.cpp";
   const bool may_integrate = path.starts_with("integrators/sundials");
+  const bool may_test = path == "testing/matchers.h";
   const std::string code = without_comments(content);
 
   std::vector<std::string> found;
@@ -70,6 +72,7 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
     if (std::regex_match(target, sundials_header) && !may_integrate) {
       refuse("SUNDIALS outside integrators/sundials*");
     }
+    if (std::regex_match(target, test_header) && !may_test) refuse("GoogleTest outside testing/matchers.h");
     if (!target.starts_with("carom/")) continue;
 
     const std::string own = target.substr(std::string_view("carom/").size());
@@ -133,6 +136,8 @@ TEST(IncludeEdges, GoodLinesPass) {
   EXPECT_TRUE(violations("integrators/a.cpp", "#include <carom/contact/b.h>\n").empty());
   EXPECT_TRUE(violations("core/log.cpp", "#include <spdlog/spdlog.h>\n").empty());
   EXPECT_TRUE(violations("integrators/sundials_flow.cpp", "#include <arkode/arkode_erkstep.h>\n").empty());
+  EXPECT_TRUE(violations("testing/matchers.h", "#include <gmock/gmock.h>\n").empty());
+  EXPECT_TRUE(violations("testing/a.cpp", "#include <carom/integrators/simulation.h>\n").empty());
   EXPECT_TRUE(violations("core/a.cpp", "// #include \"b.h\"\n/* no dynamic_cast\n here */\n").empty());
   EXPECT_TRUE(violations("joints/a.cpp", "auto* b = dynamic_cast<B*>(a);\n").empty());
 }
@@ -161,6 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"integrators/a.cpp", "#include <carom/bodies/shape_disc.h>"},
                     BadLine{"analysis/a.cpp", "#include <carom/joints/gravity.h>"},
                     BadLine{"core/a.cpp", "#include <carom/carom.h>"},
+                    BadLine{"integrators/a.cpp", "#include <carom/testing/trace_checks.h>"},
+                    BadLine{"testing/trace_checks.h", "#include <gmock/gmock.h>"},
                     BadLine{"core/a.cpp", "#include \"a.h\""},
                     BadLine{"core/log.h", "#include <spdlog/spdlog.h>"},
                     BadLine{"integrators/a.cpp", "#include <spdlog/spdlog.h>"},

@@ -5,9 +5,9 @@
 #include <carom/joints/gravity.h>
 #include <carom/joints/spring_damper.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

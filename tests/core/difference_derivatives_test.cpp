@@ -3,8 +3,8 @@
 #include <carom/core/difference_derivatives.h>
 #include <carom/core/force_element.h>
 
-#include "tests/loaded_model.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 // Forces between a particle and a rigid body whose derivatives are known: quadratic in position, velocity and
 // angle, so that central differences have no error but rounding; a sine for the truncation error.

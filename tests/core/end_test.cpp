@@ -3,9 +3,9 @@
 #include <carom/core/end.h>
 #include <carom/core/system.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

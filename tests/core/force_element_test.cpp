@@ -2,9 +2,9 @@
 #include <carom/bodies/rigid_body.h>
 #include <carom/core/force_element.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 

@@ -2,8 +2,8 @@
 #include <carom/bodies/rigid_body.h>
 #include <carom/joints/applied_load.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -8,8 +8,8 @@
 #include <carom/integrators/simulation.h>
 
 #include "tests/energy/ledger_check.h"
-#include "tests/loaded_model.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -19,6 +19,8 @@
 #include <vector>
 
 namespace carom_test {
+
+using carom::energy_test::LoadedModel;
 
 /// Two plates, two dots and a bystander before them, so that offsets are not zero; all moving.
 struct Bodies {

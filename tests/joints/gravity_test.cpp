@@ -3,9 +3,9 @@
 #include <carom/core/assembly.h>
 #include <carom/joints/gravity.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace {
 
 using namespace carom;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,14 +1,13 @@
 // The page docs/elements.md: the element it shows, and the test of it that it shows.
 
 #include <carom/carom.h>
+#include <carom/testing/matchers.h>
 
-#include "tests/loaded_model.h"
+#include "tests/page_blocks.h"
 #include "tests/random.h"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
 using namespace carom;
@@ -42,35 +41,20 @@ TEST(Magnet, PullsDownThePotential) {
     const BodyId bar = system.add(RigidBody{.mass = rod(1.0, 2.0), .angle = random.uniform(-3, 3)});
     const BodyId dot = system.add(Particle{.mass = 1.0, .position = random.vec<2>(3.0)});
     system.add(Magnet{.from = {bar, {1.0, 0.0}}, .to = dot, .strength = 2.0, .core = 0.5});
-    carom_test::LoadedModel model(system);
-    const std::vector<double> expected = model.minus_gradient();
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(model.conservative[i], expected[i], 1e-8);
+    EXPECT_THAT(system, carom::energy_test::conservative_loads_follow_the_potential(1e-8));
   }
 }
 // ... to here.
 
 namespace {
 
-std::string text_of(const std::string& file) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using carom_test::text_of;
 
 TEST(ElementsPage, ShowsWhatIsTestedHere) {
-  const std::string page = text_of("docs/elements.md");
   const std::string source = text_of("tests/joints/own_element_test.cpp");
-  const std::string fence = "```cpp\n";
-  int blocks = 0;
-  for (std::size_t at = page.find(fence); at != std::string::npos; at = page.find(fence, at)) {
-    at += fence.size();
-    const std::size_t end = page.find("```", at);
-    ASSERT_NE(end, std::string::npos);
-    const std::string block = page.substr(at, end - at);
-    EXPECT_NE(source.find(block), std::string::npos) << block;
-    ++blocks;
-    at = end + 3;
-  }
-  EXPECT_EQ(blocks, 2);
+  const auto blocks = carom_test::code_blocks("docs/elements.md", "cpp");
+  for (const std::string& block : blocks) EXPECT_NE(source.find(block), std::string::npos) << block;
+  EXPECT_EQ(blocks.size(), 2u);
 }
 
 TEST(ElementsPage, NamesEveryElement) {

@@ -3,9 +3,9 @@
 #include <carom/core/difference_derivatives.h>
 #include <carom/joints/spring_damper.h>
 
-#include "tests/loaded_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 namespace {
 
 using namespace carom;
-using carom_test::LoadedModel;
+using carom::energy_test::LoadedModel;
 using carom_test::Random;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();

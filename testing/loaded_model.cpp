@@ -1,0 +1,100 @@
+#include <carom/core/errors.h>
+#include <carom/core/part_check.h>
+#include <carom/core/text_table.h>
+#include <carom/testing/loaded_model.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace carom::energy_test {
+
+LoadedModel::LoadedModel(System system)
+    : assembly(std::move(system)), state(assembly.initial_state()), evaluation(make_evaluation(assembly)) {
+  update();
+}
+
+void LoadedModel::update() {
+  for (std::vector<double>* array : {&conservative, &dissipative, &external}) {
+    array->assign(assembly.layout()->v_size(), 0.0);
+  }
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    evaluate_loads(assembly, island, state.view(), evaluation,
+                   {conservative.data(), dissipative.data(), external.data()});
+  }
+}
+
+StoredEnergies LoadedModel::energies() {
+  StoredEnergies sum;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    add_stored_energies(assembly, island, state.view(), evaluation, sum);
+  }
+  return sum;
+}
+
+std::vector<double> LoadedModel::minus_gradient() {
+  constexpr double step = 1e-3;
+  std::vector<double> result;
+  const std::vector<double> q0 = state.q;
+  for (const BodySlot& slot : assembly.layout()->bodies()) {
+    const BodyKind& kind = *assembly.body_kinds()[slot.kind];
+    for (Index i = 0; i < slot.v_size; ++i) {
+      const auto potential_at = [&](double distance) {
+        std::vector<double> delta(slot.v_size, 0.0);
+        delta[i] = distance;
+        kind.advance({slot.slot, slot.slot + 1}, q0.data() + slot.q, delta.data(), state.q.data() + slot.q);
+        return energies().potential();
+      };
+      const double near = potential_at(step) - potential_at(-step);
+      const double far = potential_at(2.0 * step) - potential_at(-2.0 * step);
+      result.push_back(-(8.0 * near - far) / (12.0 * step));
+      state.q = q0;
+    }
+  }
+  static_cast<void>(energies());  // brings the rotations back
+  return result;
+}
+
+std::array<double, 3> LoadedModel::resultant(const std::vector<double>& load) const {
+  std::array<double, 3> sum{};
+  for (const BodySlot& slot : assembly.layout()->bodies()) {
+    const double* x = state.q.data() + slot.q;
+    const double* f = load.data() + slot.v;
+    sum[0] += f[0];
+    sum[1] += f[1];
+    sum[2] += x[0] * f[1] - x[1] * f[0] + (slot.v_size == 3 ? f[2] : 0.0);
+  }
+  return sum;
+}
+
+double LoadedModel::power(const std::vector<double>& load) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < load.size(); ++i) sum += load[i] * state.v[i];
+  return sum;
+}
+
+Verdict check_conservative_loads(const System& system, double tolerance) {
+  if (!(std::isfinite(tolerance) && tolerance >= 0.0)) {
+    throw ModelError("conservative loads: tolerance is " + to_text(tolerance) + "; allowed: finite and >= 0");
+  }
+  LoadedModel model(system);
+  const std::vector<double> expected = model.minus_gradient();
+  const Layout& layout = *model.assembly.layout();
+  TextTable table({"body", "velocity", "load", "-dV/dq", "apart"});
+  for (Index body = 0; body < layout.bodies().size(); ++body) {
+    const BodySlot& slot = layout.bodies()[body];
+    for (Index i = 0; i < slot.v_size; ++i) {
+      const double load = model.conservative[slot.v + i], gradient = expected[slot.v + i];
+      if (std::abs(load - gradient) <= tolerance) continue;
+      table.add({system.name(layout.id(body)), std::to_string(i), cell(load, 10), cell(gradient, 10),
+                 cell(load - gradient, 3)});
+    }
+  }
+  if (table.empty()) return {true, {}};
+  return {false, "conservative loads that are not minus the gradient of the potential, allowed " +
+                     cell(tolerance, 3) + ":\n" + table.text()};
+}
+
+}  // namespace carom::energy_test
