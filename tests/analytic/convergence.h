@@ -2,6 +2,8 @@
 
 // Orders of convergence, measured.
 
+#include <carom/testing/refinement.h>
+
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -10,19 +12,7 @@ namespace analytic {
 
 /// Slope of the least-squares line through (log size, log error).
 inline double slope(const std::vector<double>& sizes, const std::vector<double>& errors) {
-  double mean_x = 0.0, mean_y = 0.0;
-  const auto count = static_cast<double>(sizes.size());
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    mean_x += std::log(sizes[i]) / count;
-    mean_y += std::log(errors[i]) / count;
-  }
-  double xy = 0.0, xx = 0.0;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const double x = std::log(sizes[i]) - mean_x;
-    xy += x * (std::log(errors[i]) - mean_y);
-    xx += x * x;
-  }
-  return xy / xx;
+  return carom::energy_test::fitted_order(sizes, errors);
 }
 
 /// Order across impacts. An impact is noticed up to one step late, by a delay that depends on where the grid
