@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs a user's program against carom in four ways: an installed shared copy, the same from a
-# program with wider vector instructions, an installed static copy, and a subdirectory.
+# program with wider vector instructions, an installed static copy, and a subdirectory. And the energy tests of
+# docs/energy_tests.md, from an empty folder, against the installed shared copy.
 #   tests/consumer/run.sh <work dir> [<build dir of a shared carom>]
 set -euo pipefail
 
@@ -63,6 +64,42 @@ install_copy "$shared_build" "$work/shared"
 configure_and_build "$here/find_package" "$work/from-shared" \
   -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
 run "$work/from-shared/consumer"
+
+echo "consumer: energy tests from an empty folder"
+if [[ -f $work/shared/include/carom/testing/matchers.h ]]; then
+  tests=$work/energy_tests
+  cp -r "$here/energy_tests" "$tests"
+  rm -f "$tests"/*.csv
+  configure_and_build "$tests" "$tests/build" -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
+  # expect <passed> <failed> <log>: what ctest counts.
+  expect() {
+    local counts
+    counts=$(sed -nE 's/.* ([0-9]+) tests failed out of ([0-9]+)/\1 of \2/p' "$3")
+    [[ $counts == "$2 of $(($1 + $2))" ]] || fail "energy tests: $counts failed, not $2 of $(($1 + $2)), see $3"
+  }
+  energy_tests() { ctest --test-dir "$tests/build" --output-on-failure "${@:2}" >"$1" 2>&1 || true; }
+  energy_tests "$tests/first.log"
+  expect 4 1 "$tests/first.log"
+  grep -q "CAROM_REWRITE_TRACES=1 ctest -R 'Hopper.MatchesStoredTrace'" "$tests/first.log" ||
+    fail "a missing stored trace does not say how it is made"
+  CAROM_REWRITE_TRACES=1 energy_tests "$tests/rewritten.log" -R 'Hopper.MatchesStoredTrace'
+  expect 1 0 "$tests/rewritten.log"
+  energy_tests "$tests/second.log"
+  expect 5 0 "$tests/second.log"
+  # Another spring is noticed, and the trace it produces is kept beside the stored one.
+  sed -i 's/stiffness = 500.0/stiffness = 501.0/' "$tests/energy_test.cpp"
+  configure_and_build "$tests" "$tests/build"
+  energy_tests "$tests/changed.log"
+  expect 4 1 "$tests/changed.log"
+  says=$(grep -m 1 'departs first' "$source_dir/docs/energy_tests.md")
+  grep -qF -e "$says" "$tests/changed.log" || fail "a changed run does not say: $says"
+  [[ -f $tests/hopper.produced.csv ]] || fail "a changed run does not keep its trace"
+else
+  echo "consumer: left out, this build has no testing kit"
+fi
+# Without GoogleTest there is carom still, and the kit says what it lacks.
+configure_and_build "$here/find_package" "$work/without-gtest" \
+  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
 
 echo "consumer: the program of the README"
 sed -n '/^```cpp$/,/^```$/{/^```/!p}' "$source_dir/README.md" >"$work/readme.cpp"
