@@ -277,7 +277,8 @@ Outcome SolutionList::enumerate(const ContactProblem& problem) {
   count_ = end_velocities_ = 0;
   singular_ = unbounded_ = velocity_varies_ = false;
   least_residual_ = std::numeric_limits<double>::infinity();
-  if (!build_faces(problem)) return Outcome::not_solved;
+  applicable_ = build_faces(problem);
+  if (!applicable_) return Outcome::not_solved;
   trial_.assign(rows_, 0.0);
   xi_.assign(rows_, 0.0);
   set_scales(problem);

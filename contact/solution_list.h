@@ -43,6 +43,9 @@ public:
   /// applicable, or a near miss that is neither a solution nor a refutation).
   Outcome enumerate(const ContactProblem& problem);
 
+  /// Whether the last problem was of the sort that can be enumerated.
+  [[nodiscard]] bool applicable() const { return applicable_; }
+
   /// Number of solutions found: isolated ones and extreme points of sets of solutions.
   [[nodiscard]] std::size_t size() const { return count_; }
 
@@ -88,7 +91,7 @@ private:
   RankRevealingQr qr_;
   std::size_t rows_ = 0, count_ = 0, end_velocities_ = 0;
   double scale_ = 0.0, least_residual_ = std::numeric_limits<double>::infinity();
-  bool singular_ = false, unbounded_ = false, velocity_varies_ = false;
+  bool applicable_ = false, singular_ = false, unbounded_ = false, velocity_varies_ = false;
 };
 
 }  // namespace carom

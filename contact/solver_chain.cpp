@@ -34,6 +34,14 @@ bool finite(const ContactProblem& problem) {
          std::all_of(problem.vector().begin(), problem.vector().end(), good);
 }
 
+void demand_grouped(const ContactProblem& problem, std::span<const double> impulse) {
+  const auto rows = static_cast<std::size_t>(problem.rows());
+  if (impulse.size() != rows) throw std::invalid_argument("contact solver: one impulse for each row");
+  if (rows > 0 && problem.groups().empty()) {
+    throw std::invalid_argument("contact solver: the problem is not grouped");
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(SolverId solver) {
@@ -67,18 +75,49 @@ struct SolverChain::Workspace {
   struct Attempt {
     ContactReport& report;  // of the best answer
     SolverId best = SolverId::single_contact;
-    bool proved_unsolvable = false;
-    int applicable = 0;  // solvers that could be tried
+    SolverId last = SolverId::single_contact;  // asked last
+    bool proved_unsolvable = false;            // by the last one
+    int applicable = 0;                        // solvers that could be tried
   };
 
+  bool begin(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
-  bool attempt(const ContactProblem& problem, SolverId id, ContactSolver& solver, std::span<double> impulse,
-               Attempt& state);
+  bool attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse, Attempt& state);
+  bool enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
             Attempt& state);
-  void enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
+  void conclude(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
   void count(const Attempt& state);
+
+  ContactSolver& solver(SolverId id) {
+    switch (id) {
+      case SolverId::principal_pivoting:
+        return pivoting;
+      case SolverId::lemke:
+        return lemke;
+      case SolverId::projection:
+        return projection;
+      case SolverId::single_contact:
+      case SolverId::enumeration:
+        break;
+    }
+    return single;
+  }
 };
+
+// Sizes the workspace; false for a problem without rows, which is solved.
+bool SolverChain::Workspace::begin(const ContactProblem& problem, std::span<double> impulse,
+                                   ContactReport& report) {
+  const std::size_t n = impulse.size();
+  trial.resize(n);
+  trial_xi.resize(n);
+  xi.resize(n);
+  modes.resize(problem.groups().size());
+  if (n > 0) return true;
+  report.outcome = Outcome::solved;
+  report.residual = 0.0;
+  return false;
+}
 
 // The hot path: one planar contact, regular and unique. False where the long way has to be gone.
 bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::span<double> impulse,
@@ -127,9 +166,11 @@ void SolverChain::Workspace::keep(const Residual& found, SolverId id, Outcome ou
 }
 
 // Tries one solver; returns whether the search is over: an accepted answer, or a proof that there is none.
-bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id, ContactSolver& solver,
-                                     std::span<double> impulse, Attempt& state) {
-  const SolverAnswer answer = solver.solve(problem, trial);
+bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse,
+                                     Attempt& state) {
+  state.last = id;
+  if (id == SolverId::enumeration) return enumerate(problem, impulse, state);
+  const SolverAnswer answer = solver(id).solve(problem, trial);
   ContactReport& report = state.report;
   report.iterations += answer.iterations;
   if (answer.outcome == Outcome::not_solved) {
@@ -138,7 +179,6 @@ bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id,
   }
   ++state.applicable;
   report.tried = static_cast<std::uint8_t>(report.tried | 1u << static_cast<unsigned>(id));
-  ++statistics.tried[static_cast<std::size_t>(id)];
   if (answer.outcome == Outcome::no_solution) {
     report.reason = answer.reason;
     state.proved_unsolvable = finite(problem);
@@ -161,25 +201,56 @@ bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id,
   return report.residual <= accepted_residual;
 }
 
-void SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<double> impulse,
+bool SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<double> impulse,
                                        Attempt& state) {
-  if (problem.groups().size() > static_cast<std::size_t>(enumeration_groups)) return;
   const Outcome outcome = list.enumerate(problem);
-  if (outcome == Outcome::not_solved && list.size() == 0) return;
+  if (!list.applicable()) {
+    if (state.report.reason.empty()) state.report.reason = not_applicable;
+    return false;
+  }
   state.report.tried =
       static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
-  ++statistics.tried[static_cast<std::size_t>(SolverId::enumeration)];
   state.proved_unsolvable = outcome == Outcome::no_solution && finite(problem);
-  if (list.size() == 0) return;
-  std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
-  problem.velocities(trial, trial_xi);
-  keep(residual(problem, trial, trial_xi), SolverId::enumeration, outcome,
-       at_mode_boundary(problem, trial, trial_xi), impulse, state);
+  if (list.size() > 0) {
+    std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
+    problem.velocities(trial, trial_xi);
+    keep(residual(problem, trial, trial_xi), SolverId::enumeration, outcome,
+         at_mode_boundary(problem, trial, trial_xi), impulse, state);
+  }
+  return state.proved_unsolvable || state.report.residual <= accepted_residual;
+}
+
+// Judges what was found, and reads the modes off it.
+void SolverChain::Workspace::conclude(const ContactProblem& problem, std::span<double> impulse,
+                                      Attempt& state) {
+  ContactReport& report = state.report;
+  if (report.residual <= tolerated_residual) {
+    report.reason = {};
+  } else {
+    report.outcome = state.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
+    if (report.reason.empty()) report.reason = "residual too large";
+    if (state.proved_unsolvable) report.reason = "no mode is possible";
+    if (state.proved_unsolvable || report.worst_group < 0) {
+      // A proof, or nobody had anything to offer: nothing acts.
+      std::fill(impulse.begin(), impulse.end(), 0.0);
+      problem.velocities(impulse, xi);
+      const Residual found = residual(problem, impulse, xi);
+      report.residual = found.value;
+      report.worst_group = found.group;
+      report.solver = to_string(state.last);
+    }
+  }
+  for (std::size_t g = 0; g < modes.size(); ++g) {
+    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
+  }
 }
 
 void SolverChain::Workspace::count(const Attempt& state) {
   const ContactReport& report = state.report;
   ++statistics.problems;
+  for (std::size_t i = 0; i < solver_count; ++i) {
+    if (report.was_tried(static_cast<SolverId>(i))) ++statistics.tried[i];
+  }
   if (report.usable()) {
     ++statistics.accepted[static_cast<std::size_t>(state.best)];
     statistics.worst_residual = std::max(statistics.worst_residual, report.residual);
@@ -211,56 +282,37 @@ SolverChain::SolverChain(SolverChain&&) noexcept = default;
 SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
 
 ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
-  const auto n = static_cast<std::size_t>(problem.rows());
-  if (impulse.size() != n) throw std::invalid_argument("contact solver: one impulse for each row");
-  if (n > 0 && problem.groups().empty())
-    throw std::invalid_argument("contact solver: the problem is not grouped");
+  demand_grouped(problem, impulse);
   Workspace& work = *work_;
   // One report, built where the caller reads it: copying it would cost as much as solving a contact.
   ContactReport report;
-  if (n == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
+  if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
       work.solve_regular(problem, impulse, report)) {
     return report;
   }
-  work.trial.resize(n);
-  work.trial_xi.resize(n);
-  work.xi.resize(n);
-
-  if (n == 0) {
-    work.modes.clear();
-    report.outcome = Outcome::solved;
-    report.residual = 0.0;
-    return report;
-  }
+  if (!work.begin(problem, impulse, report)) return report;
   Workspace::Attempt attempt{.report = report};
-  ContactSolver& first =
-      problem.groups().size() == 1 ? static_cast<ContactSolver&>(work.single) : work.pivoting;
-  const SolverId first_id =
+  const SolverId first =
       problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
-  const bool done = work.attempt(problem, first_id, first, impulse, attempt) ||
-                    work.attempt(problem, SolverId::lemke, work.lemke, impulse, attempt) ||
-                    work.attempt(problem, SolverId::projection, work.projection, impulse, attempt);
-  if (!done && !(report.residual <= tolerated_residual)) work.enumerate(problem, impulse, attempt);
-
-  if (report.residual <= tolerated_residual) {
-    report.reason = {};
-  } else {
-    report.outcome = attempt.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
-    report.solver = {};
-    if (report.reason.empty()) report.reason = "residual too large";
-    if (attempt.proved_unsolvable) report.reason = "no mode is possible";
-    if (report.worst_group < 0) {
-      // Proved before any answer came: nothing acts.
-      std::fill(impulse.begin(), impulse.end(), 0.0);
-      problem.velocities(impulse, work.xi);
-    }
+  const bool done = work.attempt(problem, first, impulse, attempt) ||
+                    work.attempt(problem, SolverId::lemke, impulse, attempt) ||
+                    work.attempt(problem, SolverId::projection, impulse, attempt);
+  if (!done && !(report.residual <= tolerated_residual)) {
+    work.attempt(problem, SolverId::enumeration, impulse, attempt);
   }
+  work.conclude(problem, impulse, attempt);
   work.count(attempt);
+  return report;
+}
 
-  work.modes.resize(problem.groups().size());
-  for (std::size_t g = 0; g < work.modes.size(); ++g) {
-    work.modes[g] = contact_mode(problem, problem.groups()[g], impulse, work.xi);
-  }
+ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& problem,
+                                      std::span<double> impulse) {
+  demand_grouped(problem, impulse);
+  ContactReport report;
+  if (!work_->begin(problem, impulse, report)) return report;
+  Workspace::Attempt attempt{.report = report};
+  work_->attempt(problem, solver, impulse, attempt);
+  work_->conclude(problem, impulse, attempt);
   return report;
 }
 

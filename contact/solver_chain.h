@@ -30,8 +30,12 @@ inline constexpr double tolerated_residual = 1e-10;
 /// Solvers in the order in which a report counts them.
 enum class SolverId : std::uint8_t { single_contact, principal_pivoting, lemke, projection, enumeration };
 
+/// All of them, in that order.
+inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
+                                        SolverId::lemke, SolverId::projection, SolverId::enumeration};
+
 /// Number of solvers in SolverId.
-inline constexpr std::size_t solver_count = 5;
+inline constexpr std::size_t solver_count = all_solvers.size();
 
 /// Name of a solver: "single contact", "principal pivoting", "Lemke", "projection", "enumeration".
 [[nodiscard]] CAROM_API std::string_view to_string(SolverId solver);
@@ -40,12 +44,12 @@ inline constexpr std::size_t solver_count = 5;
 struct ContactReport {
   Outcome outcome = Outcome::not_solved;
   bool degenerate = false;  ///< the answer stands at a boundary between modes
-  double residual = std::numeric_limits<double>::infinity();  ///< relative, of the answer (residual.h)
+  double residual = std::numeric_limits<double>::infinity();  ///< relative, of the impulses (residual.h)
   int worst_group = -1;                                       ///< group where the residual is taken
   int iterations = 0;                                         ///< pivots and sweeps of all solvers tried
   std::uint8_t tried = 0;                                     ///< bit i: SolverId i was tried
-  std::string_view solver{};                                  ///< whose answer it is; empty if none
-  std::string_view reason{};                                  ///< static text: why not solved
+  std::string_view solver{};  ///< whose answer or proof it is; empty only for a problem without rows
+  std::string_view reason{};  ///< static text: why not solved
 
   /// Whether the impulses may be used: every outcome but no_solution and not_solved.
   [[nodiscard]] bool usable() const {
@@ -84,8 +88,14 @@ public:
   SolverChain& operator=(const SolverChain&) = delete;
 
   /// Writes the impulses [N s] of `problem` (grouped; size rows()) if the report is usable(), else the best
-  /// attempt. Throws std::invalid_argument when `impulse` has another size or the problem is not grouped.
+  /// attempt (zero where it is proved that there is none). The report's residual is that of what was written.
+  /// Throws std::invalid_argument when `impulse` has another size or the problem is not grouped.
   [[nodiscard]] ContactReport solve(const ContactProblem& problem, std::span<double> impulse);
+
+  /// The same by one solver alone, polished and judged as in the chain. A solver that is not made for the
+  /// problem answers not_solved ("not applicable") with zero impulses. The statistics are left alone.
+  [[nodiscard]] ContactReport solve_with(SolverId solver, const ContactProblem& problem,
+                                         std::span<double> impulse);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.
   [[nodiscard]] std::span<const double> velocities() const;

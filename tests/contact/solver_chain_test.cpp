@@ -184,6 +184,92 @@ TEST(SolverChain, AllocatesNothingInTheSteadyState) {
   EXPECT_EQ(counted, 0);
 }
 
+// An answer of every sort: its residual is that of the impulses written, and somebody stands by it.
+TEST(SolverChain, EveryAnswerCarriesItsResidualAndASolver) {
+  std::vector<ContactProblem> problems(5);
+  contact_test::make_problem(1.0, 0.1, 3.5, -2.0, 0.5, 0.2, problems[0]);   // regular
+  contact_test::make_problem(1.6, 1.2, 3.4, 0.1, 1.0, 2.0, problems[1]);    // several solutions
+  contact_test::make_problem(1.0, 2.0, 4.0, -2.0, -3.0, 0.8, problems[2]);  // jammed, by its modes
+  problems[3].reset(2);                                                     // two closing walls, by a ray
+  problems[3].w(0, 0) = problems[3].w(1, 1) = 1.0;
+  problems[3].w(0, 1) = problems[3].w(1, 0) = -1.0;
+  problems[3].vector()[0] = problems[3].vector()[1] = -1.0;
+  problems[3].group();
+  problems[4].reset(1);  // immovable, no number
+  problems[4].vector()[0] = std::numeric_limits<double>::quiet_NaN();
+  problems[4].group();
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    problems.push_back(contact_test::random_problem(seed, 6, 3.0, seed % 3 == 0).problem);
+  }
+  SolverChain chain;
+  int unsolved = 0;
+  for (const ContactProblem& problem : problems) {
+    std::vector<double> p(static_cast<std::size_t>(problem.rows()));
+    const ContactReport report = chain.solve(problem, p);
+    EXPECT_FALSE(report.solver.empty());
+    EXPECT_EQ(report.usable(), report.residual <= tolerated_residual);
+    EXPECT_EQ(report.usable(), report.reason.empty());
+    EXPECT_GE(report.iterations, 0);
+    // Not from the chain's velocities: those are what the residual was taken with.
+    std::vector<double> xi(p.size());
+    problem.velocities(p, xi);
+    const Residual found = residual(problem, p, xi);
+    if (report.usable()) {
+      EXPECT_NEAR(report.residual, found.value, 1e-15);  // the hot path rounds xi by itself
+    } else {
+      EXPECT_EQ(report.residual, found.value);
+    }
+    unsolved += !report.usable();
+  }
+  EXPECT_GE(unsolved, 3);
+  EXPECT_EQ(chain.statistics().no_solution + chain.statistics().not_solved, unsolved);
+}
+
+TEST(SolverChain, EverySolverAloneIsJudgedAsInTheChain) {
+  SolverChain chain;
+  std::vector<int> certified(solver_count, 0);
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto random = contact_test::random_problem(seed, 3);
+    for (const SolverId id : all_solvers) {
+      std::vector<double> p(static_cast<std::size_t>(random.problem.rows()), 7.0);
+      const ContactReport report = chain.solve_with(id, random.problem, p);
+      EXPECT_EQ(report.solver, to_string(id));
+      // Who has nothing to say writes zeros, which may be right by chance.
+      const bool silent = p == std::vector<double>(p.size(), 0.0) && !report.reason.empty();
+      EXPECT_EQ(report.usable(), report.residual <= tolerated_residual && !silent);
+      EXPECT_EQ(chain.modes().size(), random.problem.groups().size());
+      std::vector<double> xi(p.size());
+      random.problem.velocities(p, xi);
+      EXPECT_EQ(residual(random.problem, p, xi).value, report.residual);
+      certified[static_cast<std::size_t>(id)] += report.usable();
+      if (id == SolverId::single_contact) {
+        EXPECT_EQ(report.outcome, Outcome::not_solved);
+        EXPECT_EQ(report.reason, "not applicable");
+        EXPECT_FALSE(report.was_tried(id));
+        EXPECT_EQ(p, std::vector<double>(p.size(), 0.0));
+      }
+    }
+  }
+  EXPECT_EQ(certified[0], 0);
+  // Existence is guaranteed for these; Lemke and enumeration are complete there.
+  EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::lemke)], 200);
+  EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::enumeration)], 200);
+  EXPECT_GT(certified[static_cast<std::size_t>(SolverId::principal_pivoting)], 100);
+  EXPECT_GT(certified[static_cast<std::size_t>(SolverId::projection)], 100);
+  EXPECT_EQ(chain.statistics().problems, 0);
+}
+
+TEST(SolverChain, EnumerationAloneNamesWhatItCannotDo) {
+  SolverChain chain;
+  const auto random = contact_test::random_problem(4, 8);
+  ASSERT_GT(random.problem.groups().size(), 3u);
+  std::vector<double> p(static_cast<std::size_t>(random.problem.rows()));
+  EXPECT_EQ(chain.solve_with(SolverId::enumeration, random.problem, p).reason, "not applicable");
+  std::vector<double> wrong(1);
+  EXPECT_THROW(static_cast<void>(chain.solve_with(SolverId::lemke, random.problem, wrong)),
+               std::invalid_argument);
+}
+
 TEST(SolverChain, NamesOfSolvers) {
   EXPECT_EQ(to_string(SolverId::single_contact), "single contact");
   EXPECT_EQ(to_string(SolverId::principal_pivoting), "principal pivoting");
