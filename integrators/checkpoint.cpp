@@ -1,13 +1,11 @@
 #include <carom/core/errors.h>
 #include <carom/core/fingerprint.h>
 #include <carom/core/part_check.h>
+#include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 
 #include <bit>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -165,21 +163,14 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   Writer end;
   end.add(checksum(body));
 
-  const std::string unfinished = path + ".unfinished";
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  file << mark << body << std::string_view(end.bytes().data(), end.bytes().size());
-  file.close();
-  if (!file || std::rename(unfinished.c_str(), path.c_str()) != 0) {
-    std::remove(unfinished.c_str());
-    throw FileError("checkpoint '" + path + "': cannot be written");
-  }
+  std::string content(mark);
+  content.append(body).append(end.bytes().data(), end.bytes().size());
+  write_file(path, content, "checkpoint");
 }
 
 void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError("checkpoint '" + path + "': cannot be read");
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  std::string_view text(bytes.data(), bytes.size());
+  const std::string content = read_file(path, "checkpoint");
+  std::string_view text = content;
   if (!text.starts_with(mark))
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   text.remove_prefix(mark.size());
