@@ -2,10 +2,12 @@
 # <build>/include/carom with links to the folders, so that the build tree, the installed tree and a
 # subdirectory user see one path.
 
-# carom_collect_sources(folders sources public private): source files, and headers relative to the project,
-# public ones apart from those that match carom_private_headers.
-function(carom_collect_sources folders sources_out public_out private_out)
+# carom_collect_sources(folders sources programs public private): source files of the library, sources of
+# programs (named carom_*.cpp, one program each), and headers relative to the project, public ones apart from
+# those that match carom_private_headers.
+function(carom_collect_sources folders sources_out programs_out public_out private_out)
   set(sources "")
+  set(programs "")
   set(public "")
   set(private "")
   foreach(folder IN LISTS folders)
@@ -14,7 +16,13 @@ function(carom_collect_sources folders sources_out public_out private_out)
       GLOB folder_headers CONFIGURE_DEPENDS LIST_DIRECTORIES false
       RELATIVE "${PROJECT_SOURCE_DIR}"
       "${PROJECT_SOURCE_DIR}/${folder}/*.h")
-    list(APPEND sources ${folder_sources})
+    foreach(source IN LISTS folder_sources)
+      if(source MATCHES "/carom_[^/]*$")
+        list(APPEND programs "${source}")
+      else()
+        list(APPEND sources "${source}")
+      endif()
+    endforeach()
     foreach(header IN LISTS folder_headers)
       set(is_private FALSE)
       foreach(pattern IN LISTS carom_private_headers)
@@ -30,6 +38,7 @@ function(carom_collect_sources folders sources_out public_out private_out)
     endforeach()
   endforeach()
   set(${sources_out} "${sources}" PARENT_SCOPE)
+  set(${programs_out} "${programs}" PARENT_SCOPE)
   set(${public_out} "${public}" PARENT_SCOPE)
   set(${private_out} "${private}" PARENT_SCOPE)
 endfunction()

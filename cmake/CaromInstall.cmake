@@ -14,6 +14,12 @@ install(
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(carom_programs)
+  # They find the library beside themselves, wherever the copy is moved.
+  file(RELATIVE_PATH carom_library_from_programs "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set_target_properties(${carom_programs} PROPERTIES INSTALL_RPATH "$ORIGIN/${carom_library_from_programs}")
+  install(TARGETS ${carom_programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(
   EXPORT carom-targets
   NAMESPACE carom::

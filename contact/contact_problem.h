@@ -13,6 +13,7 @@
 #include <carom/core/row_set.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -60,6 +61,14 @@ public:
   /// xi = W P + b, each entry summed in twice the precision and rounded once: large impulses of contacts that
   /// share a body cancel in it.
   void velocities(std::span<const double> impulse, std::span<double> xi) const;
+
+  /// Writes the problem to a file in JSON (docs/contact_problems.md), every number exactly; what is said
+  /// beside it is in problem_file.h. Throws FileError, also where the library was built without JSON.
+  void save(const std::string& path) const;
+
+  /// Reads what save() wrote, or what somebody wrote by hand, and groups it. Throws FileError naming the
+  /// file, the field, its value and what is allowed.
+  [[nodiscard]] static ContactProblem load(const std::string& path);
 
 private:
   [[nodiscard]] std::size_t index(int row, int column) const {

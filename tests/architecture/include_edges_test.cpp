@@ -34,6 +34,7 @@ const std::regex sundials_header(
     "(sundials|cvodes?|arkode|idas?|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol)/.*");
 const std::regex logging_header("(spdlog|fmt)/.*");
 const std::regex test_header("(gtest|gmock)/.*");
+const std::regex json_header("nlohmann/.*");
 const std::regex type_query(R"(\bdynamic_(pointer_)?cast\b)");
 
 // The code without its comments.
@@ -56,6 +57,9 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
   const bool may_log = path == "core/log.cpp";
   const bool may_integrate = path.starts_with("integrators/sundials");
   const bool may_test = path == "testing/matchers.h";
+  const std::string name = path.substr(path.find('/') + 1);
+  const bool may_use_json =
+      path == "contact/problem_file.cpp" || (name.starts_with("carom_") && name.ends_with(".cpp"));
   const std::string code = without_comments(content);
 
   std::vector<std::string> found;
@@ -69,6 +73,8 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
     if (match[1] == "\"") refuse("quoted include");
     if (target.find("..") != std::string::npos) refuse("relative include");
     if (std::regex_match(target, logging_header) && !may_log) refuse("logging library outside core/log.cpp");
+    if (std::regex_match(target, json_header) && !may_use_json)
+      refuse("JSON outside contact/problem_file.cpp");
     if (std::regex_match(target, sundials_header) && !may_integrate) {
       refuse("SUNDIALS outside integrators/sundials*");
     }
@@ -135,6 +141,8 @@ TEST(IncludeEdges, GoodLinesPass) {
       violations("contact/a.h", "#include <carom/bodies/shape_disc.h>\n#include <carom/core/b.h>\n").empty());
   EXPECT_TRUE(violations("integrators/a.cpp", "#include <carom/contact/b.h>\n").empty());
   EXPECT_TRUE(violations("core/log.cpp", "#include <spdlog/spdlog.h>\n").empty());
+  EXPECT_TRUE(violations("contact/problem_file.cpp", "#include <nlohmann/json.hpp>\n").empty());
+  EXPECT_TRUE(violations("contact/carom_program.cpp", "#include <nlohmann/json.hpp>\n").empty());
   EXPECT_TRUE(violations("integrators/sundials_flow.cpp", "#include <arkode/arkode_erkstep.h>\n").empty());
   EXPECT_TRUE(violations("testing/matchers.h", "#include <gmock/gmock.h>\n").empty());
   EXPECT_TRUE(violations("testing/a.cpp", "#include <carom/integrators/simulation.h>\n").empty());
@@ -171,6 +179,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"core/a.cpp", "#include \"a.h\""},
                     BadLine{"core/log.h", "#include <spdlog/spdlog.h>"},
                     BadLine{"integrators/a.cpp", "#include <spdlog/spdlog.h>"},
+                    BadLine{"contact/problem_file.h", "#include <nlohmann/json.hpp>"},
+                    BadLine{"contact/carom_program.h", "#include <nlohmann/json_fwd.hpp>"},
                     BadLine{"integrators/a.cpp", "#include <cvode/cvode.h>"},
                     BadLine{"core/a.cpp", "#include <sundials/sundials_context.h>"},
                     BadLine{"integrators/a.cpp", "#include <carom/integrators/sundials_flow.h>"},

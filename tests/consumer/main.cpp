@@ -1,6 +1,7 @@
 // A user's program, built against a copy of carom from outside its tree: a pair of particles on a spring
 // falls on the floor, pulled by a force element of the user's own. What crosses the library's boundary is
-// here: parts, a state in both directions, a user's virtual functions, an exception.
+// here: parts, a state in both directions, a user's virtual functions, an exception, a file: a contact
+// problem is saved to the path given as first argument.
 
 #include <carom/carom.h>
 
@@ -41,7 +42,7 @@ void expect(bool holds, const char* what) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   constexpr double g = 9.81;
 
   System system;
@@ -79,5 +80,17 @@ int main() {
   expect(simulation.state().position(lower).y() > -0.02, "the floor holds");
   expect(energy.total() < energy.initial(), "the impact takes energy");
   expect(std::abs(energy.residual()) < 1e-10 * energy.scale(), "the energy account closes");
+
+  if (count > 1) {
+    ContactProblem problem;  // a particle strikes a floor
+    problem.reset(2);
+    problem.w(0, 0) = problem.w(1, 1) = 1.0;
+    problem.vector()[0] = -1.0;
+    problem.vector()[1] = 0.5;
+    problem.sets()[1] = {.kind = SetKind::bounded_interval, .bound = 0, .coefficient = 0.2};
+    problem.group();
+    problem.save(arguments[1]);
+    expect(ContactProblem::load(arguments[1]).w(1, 1) == 1.0, "a contact problem is read back");
+  }
   return failures == 0 ? 0 : 1;
 }

@@ -38,7 +38,7 @@ configure_and_build() {
 install_copy() {
   cmake --install "$1" --prefix "$2.first" >"$2.log" || fail "cannot install $1"
   mv "$2.first" "$2"
-  if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector)' "$2/include"; then
+  if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector|nlohmann)' "$2/include"; then
     fail "installed headers show a private dependency"
   fi
   if grep -rqF -e "$source_dir/" -e "$2.first" "$2/include" "$2"/lib*/cmake "$2"/lib/*/cmake 2>/dev/null; then
@@ -47,13 +47,20 @@ install_copy() {
 }
 
 run() {
-  "$1" || fail "$1 failed"
+  "$@" || fail "$* failed"
+}
+
+# run_program <prefix>: the installed program solves the problem that the installed consumer saved.
+run_program() {
+  run "$1/bin/carom-solve-contact" "$work/problem.json" >"$1/program.out"
+  grep -q 'by single contact' "$1/program.out" || fail "carom-solve-contact names no solver"
 }
 
 library_options=(-DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF)
 
 # Users of a shared copy need none of its private dependencies.
-without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON)
+without_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
+without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON "$without_json")
 
 echo "consumer: installed shared copy"
 if [[ -z $shared_build ]]; then
@@ -63,7 +70,8 @@ fi
 install_copy "$shared_build" "$work/shared"
 configure_and_build "$here/find_package" "$work/from-shared" \
   -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
-run "$work/from-shared/consumer"
+run "$work/from-shared/consumer" "$work/problem.json"
+run_program "$work/shared"
 
 echo "consumer: energy tests from an empty folder"
 if [[ -f $work/shared/include/carom/testing/matchers.h ]]; then
@@ -121,8 +129,9 @@ fi
 echo "consumer: installed static copy"
 configure_and_build "$source_dir" "$work/static-build" -DBUILD_SHARED_LIBS=OFF "${library_options[@]}"
 install_copy "$work/static-build" "$work/static"
-configure_and_build "$here/find_package" "$work/from-static" -DCMAKE_PREFIX_PATH="$work/static"
-run "$work/from-static/consumer"
+configure_and_build "$here/find_package" "$work/from-static" -DCMAKE_PREFIX_PATH="$work/static" "$without_json"
+run "$work/from-static/consumer" "$work/problem.json"
+run_program "$work/static"
 
 echo "consumer: subdirectory"
 configure_and_build "$here/add_subdirectory" "$work/subdirectory" -DCAROM_SOURCE="$source_dir"
