@@ -25,7 +25,6 @@ constexpr int polish_steps = 3;
 constexpr int rescue_steps = 30;
 
 constexpr std::string_view not_applicable = "not applicable";
-constexpr std::string_view single_contact_name = "single contact";
 
 // A proof about numbers that are none is no proof.
 bool finite(const ContactProblem& problem) {
@@ -43,22 +42,6 @@ void demand_grouped(const ContactProblem& problem, std::span<const double> impul
 }
 
 }  // namespace
-
-std::string_view to_string(SolverId solver) {
-  switch (solver) {
-    case SolverId::single_contact:
-      return single_contact_name;
-    case SolverId::principal_pivoting:
-      return "principal pivoting";
-    case SolverId::lemke:
-      return "Lemke";
-    case SolverId::projection:
-      return "projection";
-    case SolverId::enumeration:
-      return "enumeration";
-  }
-  return "unknown solver";
-}
 
 struct SolverChain::Workspace {
   SingleContactSolver single;
@@ -138,7 +121,7 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   report.worst_group = 0;
   report.iterations = 1;
   report.tried = 1u << id;
-  report.solver = single_contact_name;
+  report.solver = solver_names[id];
   ++statistics.problems;
   ++statistics.tried[id];
   ++statistics.accepted[id];

@@ -4,13 +4,13 @@
 /// From a contact problem to impulses that have been judged: solvers are tried in turn, each answer is
 /// checked by the one residual (residual.h) before it is used, and what happened is reported.
 
+#include <carom/contact/chain_statistics.h>
 #include <carom/contact/contact_mode.h>
 #include <carom/contact/contact_problem.h>
 #include <carom/contact/contact_solver.h>
 #include <carom/contact/residual.h>
 #include <carom/core/export.h>
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -26,19 +26,6 @@ inline constexpr double accepted_residual = 1e-12;
 /// When no solver came below accepted_residual, the best answer is taken if its residual is up to this.
 /// The iterative last resort stops there; 1e-10 of the impulse scale is still far below any step's error.
 inline constexpr double tolerated_residual = 1e-10;
-
-/// Solvers in the order in which a report counts them.
-enum class SolverId : std::uint8_t { single_contact, principal_pivoting, lemke, projection, enumeration };
-
-/// All of them, in that order.
-inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
-                                        SolverId::lemke, SolverId::projection, SolverId::enumeration};
-
-/// Number of solvers in SolverId.
-inline constexpr std::size_t solver_count = all_solvers.size();
-
-/// Name of a solver: "single contact", "principal pivoting", "Lemke", "projection", "enumeration".
-[[nodiscard]] CAROM_API std::string_view to_string(SolverId solver);
 
 /// What is known of one solved (or unsolved) contact problem.
 struct ContactReport {
@@ -57,21 +44,6 @@ struct ContactReport {
   }
   /// Whether a solver was tried.
   [[nodiscard]] bool was_tried(SolverId id) const { return (tried >> static_cast<unsigned>(id) & 1u) != 0; }
-};
-
-/// Counts since construction or reset.
-struct ChainStatistics {
-  std::int64_t problems = 0;                          ///< problems solved or not
-  std::array<std::int64_t, solver_count> accepted{};  ///< answers used, by solver
-  std::array<std::int64_t, solver_count> tried{};     ///< attempts, by solver
-  std::int64_t fall_backs = 0;                        ///< problems whose first solver was not accepted
-  std::int64_t tolerated = 0;                         ///< answers above accepted_residual that were used
-  std::int64_t several_solutions = 0;                 ///< outcomes by name
-  std::int64_t forces_not_unique = 0;
-  std::int64_t degenerate = 0;
-  std::int64_t no_solution = 0;
-  std::int64_t not_solved = 0;
-  double worst_residual = 0.0;  ///< largest residual of an answer that was used
 };
 
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -140,8 +141,36 @@ TEST(SolverChain, StatisticsAddUp) {
   EXPECT_EQ(accepted + s.no_solution + s.not_solved, problems);
   EXPECT_GT(s.accepted[static_cast<std::size_t>(SolverId::principal_pivoting)], 0);
   EXPECT_GT(s.accepted[static_cast<std::size_t>(SolverId::lemke)], 0);
+  ChainStatistics twice = s;
+  twice += s;
+  EXPECT_EQ(twice.problems, 2 * problems);
+  EXPECT_EQ(twice.tried[2], 2 * s.tried[2]);
+  EXPECT_EQ(twice.accepted[1], 2 * s.accepted[1]);
+  EXPECT_EQ(twice.fall_backs, 2 * s.fall_backs);
+  EXPECT_EQ(twice.worst_residual, s.worst_residual);
   chain.reset_statistics();
   EXPECT_EQ(chain.statistics().problems, 0);
+}
+
+TEST(SolverChain, StatisticsAreATable) {
+  ChainStatistics statistics;
+  statistics.problems = 12;
+  statistics.tried = {10, 2, 1, 0, 0};
+  statistics.accepted = {10, 1, 1, 0, 0};
+  statistics.fall_backs = 1;
+  statistics.worst_residual = 2.5e-16;
+  std::ostringstream out;
+  out << 0.125 << "\n" << statistics << 0.125;
+  EXPECT_EQ(out.str(),
+            "0.125\n"
+            "  contact problems                      12\n"
+            "  solver                             tried      accepted\n"
+            "  single contact                        10            10\n"
+            "  principal pivoting                     2             1\n"
+            "  Lemke                                  1             1\n"
+            "  first solver not accepted              1\n"
+            "  worst residual                 2.500e-16\n"
+            "0.125");
 }
 
 // Same problem, same bits, whatever was solved before.

@@ -1,0 +1,55 @@
+#pragma once
+
+/// \file
+/// Which contact solvers there are, and how often each was asked and believed.
+
+#include <carom/core/export.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iosfwd>
+#include <string_view>
+
+namespace carom {
+
+/// Solvers in the order in which a report counts them.
+enum class SolverId : std::uint8_t { single_contact, principal_pivoting, lemke, projection, enumeration };
+
+/// All of them, in that order.
+inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
+                                        SolverId::lemke, SolverId::projection, SolverId::enumeration};
+
+/// Number of solvers in SolverId.
+inline constexpr std::size_t solver_count = all_solvers.size();
+
+/// Their names, in that order.
+inline constexpr std::array<std::string_view, solver_count> solver_names{
+    "single contact", "principal pivoting", "Lemke", "projection", "enumeration"};
+
+/// Name of a solver.
+[[nodiscard]] CAROM_API std::string_view to_string(SolverId solver);
+
+/// Counts since construction or reset.
+struct ChainStatistics {
+  std::int64_t problems = 0;                          ///< problems solved or not
+  std::array<std::int64_t, solver_count> accepted{};  ///< answers used, by solver
+  std::array<std::int64_t, solver_count> tried{};     ///< attempts, by solver
+  std::int64_t fall_backs = 0;                        ///< problems whose first solver was not accepted
+  std::int64_t tolerated = 0;                         ///< answers above accepted_residual that were used
+  std::int64_t several_solutions = 0;                 ///< outcomes by name
+  std::int64_t forces_not_unique = 0;
+  std::int64_t degenerate = 0;
+  std::int64_t no_solution = 0;
+  std::int64_t not_solved = 0;
+  double worst_residual = 0.0;  ///< largest residual of an answer that was used
+
+  /// Adds the counts of others; the worst residual is the larger one.
+  CAROM_API ChainStatistics& operator+=(const ChainStatistics& other);
+  friend bool operator==(const ChainStatistics&, const ChainStatistics&) = default;
+};
+
+/// Writes the counts as a table; outcomes that never came are left out.
+CAROM_API std::ostream& operator<<(std::ostream& out, const ChainStatistics& statistics);
+
+}  // namespace carom
