@@ -30,8 +30,6 @@ void DifferenceDerivatives::loads(const ForceKind& kind, Index element, std::vec
 }
 
 void DifferenceDerivatives::append(const ForceKind& kind, Index element, std::vector<LoadDerivative>& out) {
-  // Cube root of the rounding unit: the best step of a central difference for numbers of size one.
-  constexpr double relative_step = 6e-6;
   const Layout& layout = *at_.assembly.layout();
   std::vector<BodyId> ends;
   kind.ends(element, ends);
@@ -57,7 +55,7 @@ void DifferenceDerivatives::append(const ForceKind& kind, Index element, std::ve
     for (Index i = 0; i < slot.v_size; ++i, ++c) {
       const Index column = slot.v + i;
       const double velocity = v_[column];
-      const double velocity_step = relative_step * std::max(1.0, std::abs(velocity));
+      const double velocity_step = difference_step * std::max(1.0, std::abs(velocity));
       v_[column] = velocity + velocity_step;
       loads(kind, element, faster_);
       v_[column] = velocity - velocity_step;
@@ -70,14 +68,14 @@ void DifferenceDerivatives::append(const ForceKind& kind, Index element, std::ve
         loads(kind, element, result);
         delta[i] = 0.0;
       };
-      move(relative_step, ahead_);
-      move(-relative_step, behind_);
+      move(difference_step, ahead_);
+      move(-difference_step, behind_);
       std::copy_n(at_.state.q + slot.q, slot.q_size, q_.data() + slot.q);
 
       for (std::size_t r = 0; r < columns_.size(); ++r) {
         LoadDerivative& entry = out[first + r * columns_.size() + c];
         entry.by_velocity = (faster_[r] - slower_[r]) / (2.0 * velocity_step);
-        entry.by_position = (ahead_[r] - behind_[r]) / (2.0 * relative_step);
+        entry.by_position = (ahead_[r] - behind_[r]) / (2.0 * difference_step);
       }
     }
     if (slot.rotation != none) {

@@ -3,14 +3,43 @@
 /// \file
 /// Actuators: forces and torques between two ends by laws of time and motion.
 
+#include <carom/core/difference_derivatives.h>
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace carom {
+
+/// The law of an actuator: f(t, x, dx/dt).
+using ActuatorLaw = std::function<double(double time, double coordinate, double rate)>;
+
+/// The law of an actuator by its coordinate and its rate: as given, else by central differences.
+struct ActuatorSlopes {
+  /// \param by_coordinate derivative by x, may be empty; then the step is 6e-6 times `size`
+  /// \param by_rate derivative by dx/dt, may be empty; then the step is 6e-6 times max(1, |dx/dt|)
+  ActuatorSlopes(const ActuatorLaw& law, const ActuatorLaw& by_coordinate, const ActuatorLaw& by_rate,
+                 double time, double x, double rate, double size)
+      : by_x(by_coordinate
+                 ? by_coordinate(time, x, rate)
+                 : difference_quotient([&](double moved) { return law(time, moved, rate); }, x, size)),
+        by_speed(by_rate ? by_rate(time, x, rate)
+                         : difference_quotient([&](double faster) { return law(time, x, faster); }, rate,
+                                               std::max(1.0, std::abs(rate)))) {}
+
+  double by_x;      ///< df/dx
+  double by_speed;  ///< df/d(dx/dt)
+};
+
+/// Demands that a law and its derivatives, where they are given, are finite at the start.
+inline void check_actuator_law(const PartCheck& check, const ActuatorLaw& law, const std::string& name,
+                               const std::string& unit, const std::string& place, double x, double rate) {
+  if (law) check.finite(law(0.0, x, rate), name + " at time 0, " + place, unit);
+}
 
 namespace generic {
 
@@ -25,7 +54,11 @@ struct LinearActuator {
   End<D> from{};  ///< required
   End<D> to{};    ///< required
   /// f, positive where it pushes apart [N] (required).
-  std::function<double(double time, double length, double rate)> force{};
+  ActuatorLaw force{};
+  /// df/dl [N/m] and df/d(dl/dt) [N s/m]; what is not given is found by a central difference of `force` with
+  /// the step 6e-6 l, 6e-6 max(1 m/s, |dl/dt|).
+  ActuatorLaw force_by_length{};
+  ActuatorLaw force_by_rate{};
 
   /// The bodies it joins.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
@@ -38,9 +71,13 @@ struct LinearActuator {
     if (!force) check.refuse("force", "not given", "a function of time, length and rate");
     const auto start = LineOfAction<D>::described(check.system(), from, to);
     if (start.length == 0.0) return;
-    check.finite(
-        force(0.0, start.length, start.rate),
-        "force at time 0, length " + to_text(start.length) + " m, rate " + to_text(start.rate) + " m/s", "N");
+    const std::string place = "length " + to_text(start.length) + " m, rate " + to_text(start.rate) + " m/s";
+    const auto try_law = [&](const ActuatorLaw& law, const char* name, const char* unit) {
+      check_actuator_law(check, law, name, unit, place, start.length, start.rate);
+    };
+    try_law(force, "force", "N");
+    try_law(force_by_length, "force_by_length", "N/m");
+    try_law(force_by_rate, "force_by_rate", "N s/m");
   }
   /// Books the loads.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const {
@@ -49,6 +86,16 @@ struct LinearActuator {
     const Vec<D> push = force(at.time(), line.length, line.rate) * line.direction;
     out.external(from, -push);
     out.external(to, push);
+  }
+  /// Derivatives: the law's, the line's in closed form.
+  void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
+    const LineOfAction<D> line(at, from, to);
+    if (line.length == 0.0) return;
+    const double push = force(at.time(), line.length, line.rate);
+    // The step is relative to l, so that the law is asked for lengths > 0 only.
+    const ActuatorSlopes slopes(force, force_by_length, force_by_rate, at.time(), line.length, line.rate,
+                                line.length);
+    line.add_pull(out, from, to, -push, -slopes.by_x, -slopes.by_speed);
   }
   /// Adds the ends (a function cannot be hashed).
   void fingerprint(Fingerprint& print) const {
@@ -73,7 +120,11 @@ struct RotaryActuator {
   BodyId from{};  ///< a rigid body or ground (required)
   BodyId to{};    ///< a rigid body or ground (required)
   /// m, counter-clockwise on `to` [N m] (required).
-  std::function<double(double time, double angle, double rate)> torque{};
+  ActuatorLaw torque{};
+  /// dm/da [N m/rad] and dm/d(da/dt) [N m s/rad]; what is not given is found by a central difference of
+  /// `torque` with the step 6e-6 max(1 rad, |a|), 6e-6 max(1 rad/s, |da/dt|).
+  ActuatorLaw torque_by_angle{};
+  ActuatorLaw torque_by_rate{};
 
   /// The bodies it joins.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
@@ -83,10 +134,14 @@ struct RotaryActuator {
     check_angular_ends(check, from, to);
     if (!torque) check.refuse("torque", "not given", "a function of time, angle and rate");
     const RelativeAngle start(check.system(), from, to);
-    check.finite(
-        torque(0.0, start.angle, start.rate),
-        "torque at time 0, angle " + to_text(start.angle) + " rad, rate " + to_text(start.rate) + " rad/s",
-        "N m");
+    const std::string place =
+        "angle " + to_text(start.angle) + " rad, rate " + to_text(start.rate) + " rad/s";
+    const auto try_law = [&](const ActuatorLaw& law, const char* name, const char* unit) {
+      check_actuator_law(check, law, name, unit, place, start.angle, start.rate);
+    };
+    try_law(torque, "torque", "N m");
+    try_law(torque_by_angle, "torque_by_angle", "N m/rad");
+    try_law(torque_by_rate, "torque_by_rate", "N m s/rad");
   }
   /// Books the loads.
   void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
@@ -94,6 +149,13 @@ struct RotaryActuator {
     const double turn = torque(at.time(), relative.angle, relative.rate);
     out.external_torque(from, -turn);
     out.external_torque(to, turn);
+  }
+  /// Derivatives: the law's.
+  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
+    const RelativeAngle now(at, from, to);
+    const ActuatorSlopes slopes(torque, torque_by_angle, torque_by_rate, at.time(), now.angle, now.rate,
+                                std::max(1.0, std::abs(now.angle)));
+    out.opposite_torques(from, to, slopes.by_x, slopes.by_speed);
   }
   /// Adds nothing that the bodies' identities do not tell (a function cannot be hashed).
   void fingerprint(Fingerprint&) const {}

@@ -35,6 +35,10 @@ struct AppliedForce {
   }
   /// Books the load.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const { out.external(on, force(at.time())); }
+  /// Derivatives: the lever of a point off the centre turns.
+  void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
+    out.force(on, force(at.time()), Mat<D>::Zero(), Mat<D>::Zero());
+  }
   /// Adds the end (a function cannot be hashed).
   void fingerprint(Fingerprint& print) const { add_to(print, on); }
 };
@@ -66,6 +70,8 @@ struct AppliedTorque {
   void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
     out.external_torque(on, torque(at.time()));
   }
+  /// Derivatives: none, the torque depends on time alone.
+  void derivatives(const ElementView<2>&, ElementDerivatives<2>&) const {}
   /// Adds nothing that the body's identity does not tell (a function cannot be hashed).
   void fingerprint(Fingerprint&) const {}
 };

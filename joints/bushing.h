@@ -71,6 +71,24 @@ struct Bushing {
     viscous[2] *= ratio;
     book(mean, elastic, viscous, out);
   }
+  /// Derivatives. With B = dd/ds over the coordinates s of both bodies, the load is -B^T w, w = K d + C
+  /// dd/dt; it changes with d, with dd/dt = B ds/dt, and with B.
+  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
+    const Tangent now(*this, at);
+    const Mat<3> k = symmetric(stiffness), c = symmetric(damping);
+    const Mat<3, 6> b = now.of_deflection(), b_rate = now.of_rate();
+    const Mat<6> by_position =
+        -b.transpose() * (k * b + c * b_rate) - now.bending(k * now.deflection + c * now.rate);
+    const Mat<6> by_velocity = -b.transpose() * c * b;
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        if (now.bodies[row / 3] == none || now.bodies[column / 3] == none) continue;
+        out.entry(now.bodies[row / 3] + static_cast<Index>(row % 3),
+                  now.bodies[column / 3] + static_cast<Index>(column % 3), by_position(row, column),
+                  by_velocity(row, column));
+      }
+    }
+  }
   /// d^T K d / 2 [J].
   [[nodiscard]] double potential(const ElementView<2>& at) const {
     const Vec<3> d = Placement(*this, at).deflection;
@@ -131,6 +149,65 @@ private:
         viscous, [&](const End<2>& end, const Vec<2>& force) { out.dissipative(end, force); },
         [&](BodyId body, double torque) { out.dissipative_torque(body, torque); });
   }
+  // How d and its rate change with s = (x, y, angle of `from`; x, y, angle of `to`). With u from the centre
+  // of `from` to the point of `to`, r the lever of that point and J the turn by a right angle,
+  //     dd = R^T (dx_to - dx_from + J r dangle_to - J u dangle_from),   d(R^T) = -R^T J dangle_from.
+  struct Tangent : Placement {
+    Tangent(const Bushing& part, const ElementView<2>& at) : Placement(part, at) {
+      u = distance + at.attach(part.from).lever(at.context().evaluation);
+      r = at.attach(part.to).lever(at.context().evaluation);
+      const auto motion = [&](BodyId body, int i) {
+        if (body == ground) return;
+        const Index v = bodies[i] = at.oriented(body).v;
+        velocity.segment<3>(3 * i) = Eigen::Map<const Vec<3>>(at.context().state.v + v);
+      };
+      motion(part.from.body, 0);
+      motion(part.to.body, 1);
+    }
+    // dd/ds.
+    [[nodiscard]] Mat<3, 6> of_deflection() const {
+      Mat<3, 6> b = Mat<3, 6>::Zero();
+      for (int i = 0; i < 2; ++i) {
+        b.block<2, 1>(0, i) = -to_frame(Vec<2>::Unit(i));
+        b.block<2, 1>(0, 3 + i) = to_frame(Vec<2>::Unit(i));
+      }
+      b.block<2, 1>(0, 2) = -to_frame(turned(u));
+      b.block<2, 1>(0, 5) = to_frame(turned(r));
+      b(2, 2) = -1.0;
+      b(2, 5) = 1.0;
+      return b;
+    }
+    // d(dd/dt)/ds, dd/dt = (dd/ds) ds/dt.
+    [[nodiscard]] Mat<3, 6> of_rate() const {
+      const double spin_from = velocity[2], spin_to = velocity[5];
+      Mat<3, 6> b = Mat<3, 6>::Zero();
+      for (int i = 0; i < 2; ++i) {
+        b.block<2, 1>(0, i) = spin_from * to_frame(turned(Vec<2>::Unit(i)));
+        b.block<2, 1>(0, 3 + i) = -b.block<2, 1>(0, i);
+      }
+      const Vec<2> apart = velocity.segment<2>(3) - velocity.head<2>();
+      b.block<2, 1>(0, 2) = to_frame(spin_to * r - spin_from * u - turned(apart));
+      b.block<2, 1>(0, 5) = (spin_from - spin_to) * to_frame(r);
+      return b;
+    }
+    // d(B^T w)/ds at constant w.
+    [[nodiscard]] Mat<6> bending(const Vec<3>& w) const {
+      const Vec<2> force = to_fixed(w.head<2>());
+      Mat<6> h = Mat<6>::Zero();
+      h.block<2, 1>(0, 2) = -turned(force);
+      h.block<2, 1>(3, 2) = turned(force);
+      h(5, 2) = force.dot(r);
+      h.block<1, 6>(2, 0) = h.block<6, 1>(0, 2).transpose().eval();
+      h(2, 2) = -force.dot(u);
+      h(5, 5) = -force.dot(r);
+      return h;
+    }
+    static Vec<2> turned(const Vec<2>& a) { return {-a[1], a[0]}; }
+
+    Vec<2> u, r;
+    Vec<6> velocity = Vec<6>::Zero();  // ds/dt
+    Index bodies[2] = {none, none};    // first velocity coordinate
+  };
 
   // Halves differ by rounding at most (check); loads and potential must see one and the same matrix.
   static Mat<3> symmetric(const Mat<3>& matrix) { return 0.5 * (matrix + matrix.transpose()); }

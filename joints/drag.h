@@ -36,6 +36,15 @@ struct Drag {
     const Vec<D> velocity = at.velocity(on);
     out.dissipative(on, -(linear + quadratic * velocity.norm()) * velocity);
   }
+  /// Derivatives.
+  void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
+    const Vec<D> velocity = at.velocity(on);
+    const double speed = velocity.norm();
+    const double resistance = linear + quadratic * speed;
+    Mat<D> by_velocity = -resistance * Mat<D>::Identity();
+    if (speed > 0.0) by_velocity -= (quadratic / speed) * velocity * velocity.transpose();
+    out.force(on, -resistance * velocity, Mat<D>::Zero(), by_velocity);
+  }
   /// Adds the end and the numbers.
   void fingerprint(Fingerprint& print) const {
     add_to(print, on);

@@ -31,12 +31,22 @@ struct FollowerLoad {
     check.finite({start.data(), 2}, "force at time 0", "N");
   }
   /// Books the load.
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    const double* rotation = at.context().evaluation.rotation.data() + at.oriented(on.body).rotation;
-    out.external(on, Space<2>::rotate(rotation, force(at.time())));
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const { out.external(on, turned(at)); }
+  /// Derivatives: the force turns with its body. Its moment does not change, since its lever turns as well.
+  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
+    const Vec<2> now = turned(at);
+    const Index v = at.oriented(on.body).v;
+    out.entry(v, v + 2, -now[1], 0.0);
+    out.entry(v + 1, v + 2, now[0], 0.0);
   }
   /// Adds the end (a function cannot be hashed).
   void fingerprint(Fingerprint& print) const { add_to(print, on); }
+
+private:
+  [[nodiscard]] Vec<2> turned(const ElementView<2>& at) const {
+    const double* rotation = at.context().evaluation.rotation.data() + at.oriented(on.body).rotation;
+    return Space<2>::rotate(rotation, force(at.time()));
+  }
 };
 
 }  // namespace carom::planar

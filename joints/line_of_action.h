@@ -3,6 +3,7 @@
 /// \file
 /// Two ends as an element between them sees them: along a line, or as an angle.
 
+#include <carom/core/element_derivatives.h>
 #include <carom/core/end.h>
 #include <carom/core/force_element.h>
 #include <carom/core/system.h>
@@ -30,7 +31,8 @@ namespace generic {
 /// Where the ends coincide there is no direction: it is zero, and so is the rate.
 template <int D>
 struct LineOfAction {
-  LineOfAction(const Vec<D>& distance, const Vec<D>& relative_velocity) : length(distance.norm()) {
+  LineOfAction(const Vec<D>& distance, const Vec<D>& relative_velocity)
+      : length(distance.norm()), velocity(relative_velocity) {
     if (length == 0.0) return;
     direction = distance / length;
     rate = direction.dot(relative_velocity);
@@ -63,9 +65,24 @@ struct LineOfAction {
     return {distance, velocity};
   }
 
+  /// Books the derivatives of an element that pulls its ends together with the tension T(l, dl/dt) [N]: the
+  /// force on `to` is -T d/l. Nothing where there is no direction. Ends: End<D> or Attachment<D>. \param
+  /// by_length dT/dl [N/m] \param by_rate dT/d(dl/dt) [N s/m]
+  template <class E>
+  void add_pull(ElementDerivatives<D>& out, const E& from, const E& to, double tension, double by_length,
+                double by_rate) const {
+    if (length == 0.0) return;
+    const Mat<D> along = direction * direction.transpose();
+    const Mat<D> turning = (Mat<D>::Identity() - along) / length;  // d(direction)/d(distance)
+    const Mat<D> by_distance =
+        -by_length * along - by_rate * direction * (turning * velocity).transpose() - tension * turning;
+    out.opposite_forces(from, to, -tension * direction, by_distance, -by_rate * along);
+  }
+
   double length = 0.0;                ///< [m]
   double rate = 0.0;                  ///< [m/s]
   Vec<D> direction = Vec<D>::Zero();  ///< from `from` to `to`
+  Vec<D> velocity = Vec<D>::Zero();   ///< of `to` relative to `from` [m/s]
 };
 
 }  // namespace generic

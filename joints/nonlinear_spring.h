@@ -3,6 +3,7 @@
 /// \file
 /// Spring given by a function of its length and the potential of that function.
 
+#include <carom/core/difference_derivatives.h>
 #include <carom/core/errors.h>
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
@@ -34,10 +35,12 @@ struct NonlinearSpring {
   std::function<double(double length)> force{};         ///< T, positive where it pulls [N] (required)
   std::function<double(double length)> potential_of{};  ///< V, with dV/dl = T [J] (required)
   double damping = 0.0;                                 ///< c >= 0 [N s/m]
+  /// dT/dl [N/m]; if not given, by a central difference of `force` with the step 6e-6 l.
+  std::function<double(double length)> force_by_length{};
 
   /// The bodies it joins.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends, functions or numbers that cannot be. Both functions are tried at the length
+  /// Throws ModelError for ends, functions or numbers that cannot be. The functions are tried at the length
   /// that the bodies are described with, unless it is 0. Whether they fit is not looked at:
   /// check_potential().
   void check(const PartCheck& check) const {
@@ -51,6 +54,8 @@ struct NonlinearSpring {
     if (length == 0.0) return;
     check.finite(force(length), "force at length " + to_text(length) + " m", "N");
     check.finite(potential_of(length), "potential_of at length " + to_text(length) + " m", "J");
+    if (!force_by_length) return;
+    check.finite(force_by_length(length), "force_by_length at length " + to_text(length) + " m", "N/m");
   }
   /// Books spring and dashpot.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const {
@@ -73,6 +78,12 @@ struct NonlinearSpring {
     out.conservative(to, -elastic);
     out.dissipative(from, viscous);
     out.dissipative(to, -viscous);
+  }
+  /// Derivatives: the law's, the line's in closed form.
+  void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
+    const LineOfAction<D> line(at, from, to);
+    if (line.length == 0.0) return;
+    line.add_pull(out, from, to, force(line.length) + damping * line.rate, slope(line.length), damping);
   }
   /// V(l) [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {
@@ -138,6 +149,12 @@ struct NonlinearSpring {
              " m is " + to_text(growth[at]) + " J; allowed: the work of force, " + to_text(work[at]) +
              " J, within " + to_text(tolerance * width * largest) + " J");
     }
+  }
+
+private:
+  // dT/dl. The step is relative to l, so that the law is asked for lengths > 0 only.
+  [[nodiscard]] double slope(double length) const {
+    return force_by_length ? force_by_length(length) : difference_quotient(force, length, length);
   }
 };
 

@@ -58,7 +58,7 @@ struct OneSidedSpring {
     const LineOfAction<D> line(at, from, to);
     const double spring = stiffness * excess(line.length);
     if (spring == 0.0) return;
-    const double dashpot = std::clamp(damping * side * line.rate, -spring, spring);
+    const double dashpot = std::clamp(wanted(line), -spring, spring);
     const Vec<D> conservative = side * spring * line.direction;  // on `from`
     const Vec<D> dissipative = side * dashpot * line.direction;
     out.conservative(from, conservative);
@@ -82,6 +82,18 @@ struct OneSidedSpring {
     out.dissipative(from, dissipative);
     out.dissipative(to, -dissipative);
   }
+  /// Derivatives. At an edge between slack, free and clipped, those of one side.
+  void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
+    const LineOfAction<D> line(at, from, to);
+    const double spring = stiffness * excess(line.length);
+    const double dashpot = wanted(line);
+    if (spring == 0.0 || dashpot <= -spring) return;
+    if (dashpot > spring) {  // clipped: the spring counts twice
+      line.add_pull(out, from, to, side * 2.0 * spring, 2.0 * stiffness, 0.0);
+    } else {
+      line.add_pull(out, from, to, side * (spring + dashpot), stiffness, damping);
+    }
+  }
   /// k x^2 / 2 [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {
     const double x = excess((at.position(to) - at.position(from)).norm());
@@ -99,6 +111,8 @@ struct OneSidedSpring {
 private:
   static constexpr double side = Pulls ? 1.0 : -1.0;
 
+  // c dx/dt, before it is clipped.
+  [[nodiscard]] double wanted(const LineOfAction<D>& line) const { return damping * side * line.rate; }
   [[nodiscard]] double excess(double length) const { return std::max(0.0, side * (length - free_length)); }
 };
 

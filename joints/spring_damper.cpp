@@ -1,5 +1,6 @@
 #include <carom/core/assembly.h>
 #include <carom/core/compensated_sum.h>
+#include <carom/joints/line_of_action.h>
 #include <carom/joints/spring_damper.h>
 
 #include <algorithm>
@@ -161,65 +162,18 @@ void SpringDamperKind<D>::derivatives(const EvaluationContext& at, Index element
   const Ends ends = ends_of(spring);
   const Vec<D> from = ends.from.lever(at.evaluation);
   const Vec<D> to = ends.to.lever(at.evaluation);
-  const Vec<D> d = ends.to.position(at.state, to) - ends.from.position(at.state, from);
-  const Vec<D> rate = ends.to.velocity(at.state, to) - ends.from.velocity(at.state, from);
-  const double length = d.norm();
-
-  // Derivatives of the force on `to` by d and by its rate.
-  Mat<D> by_d = Mat<D>::Zero();
-  Mat<D> by_rate = Mat<D>::Zero();
-  Vec<D> force = Vec<D>::Zero();
-  if (length == 0.0) {
-    if (spring.free_length == 0.0) by_d = -spring.stiffness * Mat<D>::Identity();
-  } else {
-    const Vec<D> u = d / length;
-    const Mat<D> across = (Mat<D>::Identity() - u * u.transpose()) / length;  // d u / d d
-    const double length_rate = u.dot(rate);
-    const double tension = spring.stiffness * (length - spring.free_length) + spring.damping * length_rate;
-    force = -tension * u;
-    by_d = -spring.stiffness * u * u.transpose() - spring.damping * u * (across * rate).transpose() -
-           tension * across;
-    by_rate = -spring.damping * u * u.transpose();
+  const LineOfAction<D> line(ends.to.position(at.state, to) - ends.from.position(at.state, from),
+                             ends.to.velocity(at.state, to) - ends.from.velocity(at.state, from));
+  const ElementView<D> view(at);
+  ElementDerivatives<D> list(view, out);
+  if (line.length == 0.0 && spring.free_length == 0.0) {
+    // Linear through zero: the spring has a derivative where it has no direction.
+    list.opposite_forces(ends.from, ends.to, Vec<D>::Zero(), -spring.stiffness * Mat<D>::Identity(),
+                         Mat<D>::Zero());
   }
-
-  // Columns: translations and spin of both bodies. `motion` is d(end)/d(column), `turn` the change of the
-  // end's velocity with the angle.
-  struct Column {
-    Index v;
-    Vec<D> motion, turn;
-    double sign;
-  };
-  std::vector<Column> columns;
-  const auto add_columns = [&](const Attachment<D>& end, const Vec<D>& lever, double sign) {
-    if (end.q == none) return;
-    for (int i = 0; i < D; ++i) {
-      columns.push_back({end.v + static_cast<Index>(i), Vec<D>::Unit(i), Vec<D>::Zero(), sign});
-    }
-    if constexpr (Space<D>::has_orientation) {
-      if (end.rotation == none) return;
-      const double one = 1.0;
-      const double spin = at.state.v[end.v + D];
-      columns.push_back({end.v + D, Space<D>::lever_velocity(&one, lever), -spin * lever, sign});
-    }
-  };
-  add_columns(ends.from, from, -1.0);
-  add_columns(ends.to, to, 1.0);
-  for (const Column& row : columns) {
-    for (const Column& column : columns) {
-      const Vec<D> change = column.sign * (by_d * column.motion + by_rate * column.turn);
-      out.push_back({row.v, column.v, row.sign * row.motion.dot(change),
-                     row.sign * column.sign * row.motion.dot(by_rate * column.motion)});
-    }
-  }
-  if constexpr (Space<D>::has_orientation) {
-    // The lever arm of the torque turns with the body: d(r x f)/d(angle) at constant f is -r.f.
-    const auto add_turning_lever = [&](const Attachment<D>& end, const Vec<D>& lever, double sign) {
-      if (end.q == none || end.rotation == none) return;
-      out.push_back({end.v + D, end.v + D, -sign * lever.dot(force), 0.0});
-    };
-    add_turning_lever(ends.from, from, -1.0);
-    add_turning_lever(ends.to, to, 1.0);
-  }
+  line.add_pull(list, ends.from, ends.to,
+                spring.stiffness * (line.length - spring.free_length) + spring.damping * line.rate,
+                spring.stiffness, spring.damping);
 }
 
 template <int D>

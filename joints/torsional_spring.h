@@ -55,6 +55,10 @@ struct TorsionalSpring {
     out.dissipative_torque(from, viscous);
     out.dissipative_torque(to, -viscous);
   }
+  /// Derivatives.
+  void derivatives(const ElementView<2>&, ElementDerivatives<2>& out) const {
+    out.opposite_torques(from, to, -stiffness, -damping);
+  }
   /// k (a - A)^2 / 2 [J].
   [[nodiscard]] double potential(const ElementView<2>& at) const {
     const double twist = RelativeAngle(at, from, to).angle - free_angle;

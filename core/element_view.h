@@ -1,0 +1,89 @@
+#pragma once
+
+/// \file
+/// What a user's force element sees of the state.
+
+#include <carom/core/assembly.h>
+#include <carom/core/end.h>
+#include <carom/core/errors.h>
+#include <carom/core/force_kind.h>
+
+namespace carom {
+
+/// What an element sees: time, positions and velocities of ends. Shapes: D numbers, SI units.
+template <int D>
+class ElementView {
+public:
+  /// \param internal first internal variable of the element, null if it has none
+  explicit ElementView(const EvaluationContext& context, const double* internal = nullptr)
+      : context_(&context), internal_(internal) {}
+
+  /// Time [s].
+  [[nodiscard]] double time() const { return context_->state.time; }
+  /// Position of an end [m].
+  [[nodiscard]] Vec<D> position(const End<D>& end) const {
+    const Attachment<D> at = attach(end);
+    return at.position(context_->state, at.lever(context_->evaluation));
+  }
+  /// Velocity of an end [m/s].
+  [[nodiscard]] Vec<D> velocity(const End<D>& end) const {
+    const Attachment<D> at = attach(end);
+    return at.velocity(context_->state, at.lever(context_->evaluation));
+  }
+  /// Angle of a planar rigid body [rad].
+  [[nodiscard]] double angle(BodyId body) const requires(D == 2) {
+    return context_->state.q[oriented(body).q + D];
+  }
+  /// Spin of a planar rigid body [rad/s].
+  [[nodiscard]] double spin(BodyId body) const requires(D == 2) {
+    return context_->state.v[oriented(body).v + D];
+  }
+
+  /// Internal variables of the element, as many as its internal_size.
+  [[nodiscard]] const double* internal() const { return internal_; }
+
+  /// Places of an end in the arrays. Throws ModelError for a body outside the element's island, and for a
+  /// point off the centre of a body without orientation.
+  [[nodiscard]] Attachment<D> attach(const End<D>& end) const {
+    if (end.body != ground && slot(end.body).rotation == none && !end.point.isZero(0.0))
+      refuse_orientation(end.body);
+    return {end, *context_->assembly.layout()};
+  }
+  /// Slot of a body that must have an orientation. Throws ModelError otherwise.
+  [[nodiscard]] const BodySlot& oriented(BodyId body) const {
+    const BodySlot& place = slot(body);
+    if (place.rotation == none) refuse_orientation(body);
+    return place;
+  }
+  /// The context it looks at.
+  [[nodiscard]] const EvaluationContext& context() const { return *context_; }
+
+private:
+  [[nodiscard]] const BodySlot& slot(BodyId body) const {
+    const Layout& layout = *context_->assembly.layout();
+    const Index index = layout.index(body);
+    const Range island = context_->assembly.islands()[context_->island].bodies;
+    if (index < island.begin || index >= island.end) {
+      throw ModelError("force element: acts on or looks at " + context_->assembly.system().name(body) +
+                       ", which it does not name; allowed: a body among its bodies()");
+    }
+    return layout.bodies()[index];
+  }
+  [[noreturn]] void refuse_orientation(BodyId body) const {
+    throw ModelError(context_->assembly.system().name(body) + ": has no orientation; allowed: a rigid body");
+  }
+
+  const EvaluationContext* context_;
+  const double* internal_;
+};
+
+/// What an element sees of a step of the time stepping.
+template <int D>
+struct ElementStep {
+  ElementView<D> start;   ///< at its start
+  ElementView<D> end;     ///< at its end
+  ElementView<D> middle;  ///< halfway: mean velocities, positions advanced by half the step
+  double step = 0.0;      ///< h [s]
+};
+
+}  // namespace carom
