@@ -4,7 +4,7 @@
 
 #include <carom/core/difference_derivatives.h>
 
-#include "tests/loaded_model.h"
+#include <carom/testing/loaded_model.h>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace carom_test {
+
+using carom::energy_test::LoadedModel;
 
 enum class By { element, differences };
 

@@ -1,8 +1,9 @@
-// The page docs/elements.md: the element it shows, and the test of it that it shows.
+// The page docs/elements.md: the elements it shows, and the test of one that it shows.
 
 #include <carom/carom.h>
 #include <carom/testing/matchers.h>
 
+#include "tests/derivative_check.h"
 #include "tests/page_blocks.h"
 #include "tests/random.h"
 
@@ -44,17 +45,43 @@ TEST(Magnet, PullsDownThePotential) {
     EXPECT_THAT(system, carom::energy_test::conservative_loads_follow_the_potential(1e-8));
   }
 }
+// ... to here, and from here...
+struct SmoothMagnet : Magnet {
+  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
+    const Vec<2> d = at.position(to) - at.position(from);
+    const double square = d.squaredNorm() + core * core, pull = strength * std::pow(square, -1.5);
+    const Mat<2> by_distance = 3.0 * pull / square * d * d.transpose() - pull * Mat<2>::Identity();
+    out.opposite_forces(from, to, -pull * d, by_distance, Mat<2>::Zero());
+  }
+};
 // ... to here.
 
 namespace {
 
 using carom_test::text_of;
 
+TEST(SmoothMagnet, DerivativesMeetDifferences) {
+  carom_test::Random random(2);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    System system;
+    const BodyId bar = system.add(
+        RigidBody{.mass = rod(1.0, 2.0), .angle = random.uniform(-3, 3), .spin = random.uniform(-3, 3)});
+    const BodyId dot = system.add(Particle{.mass = 1.0, .position = random.vec<2>(3.0)});
+    SmoothMagnet magnet;
+    magnet.from = {bar, {1.0, 0.0}};
+    magnet.to = dot;
+    magnet.strength = 2.0;
+    magnet.core = 0.5;
+    system.add(magnet);
+    carom_test::expect_derivatives_meet_differences(carom::energy_test::LoadedModel(system));
+  }
+}
+
 TEST(ElementsPage, ShowsWhatIsTestedHere) {
   const std::string source = text_of("tests/joints/own_element_test.cpp");
   const auto blocks = carom_test::code_blocks("docs/elements.md", "cpp");
   for (const std::string& block : blocks) EXPECT_NE(source.find(block), std::string::npos) << block;
-  EXPECT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks.size(), 3u);
 }
 
 TEST(ElementsPage, NamesEveryElement) {

@@ -1,8 +1,8 @@
 #include <carom/bodies/particle.h>
 #include <carom/bodies/rigid_body.h>
-#include <carom/core/difference_derivatives.h>
 #include <carom/joints/spring_damper.h>
 
+#include "tests/derivative_check.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
 #include <carom/testing/loaded_model.h>
@@ -21,6 +21,9 @@ namespace {
 
 using namespace carom;
 using carom::energy_test::LoadedModel;
+using carom_test::By;
+using carom_test::expect_derivatives_meet_differences;
+using carom_test::load_derivatives;
 using carom_test::Random;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -139,45 +142,16 @@ TEST(SpringDamper, ForceIsMinusTheGradientOfThePotential) {
 
 TEST(SpringDamper, DerivativesMeetDifferences) {
   for_random_springs(122, 0.7, [](LoadedModel& model, const planar::SpringDamper&) {
-    const ForceKind& kind = *model.assembly.force_kinds()[0];
-    EXPECT_TRUE(kind.has_derivatives());
-    const auto matrices = [&](bool own) {
-      const Index island = model.assembly.elements(0, 0).empty() ? 1 : 0;
-      const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, island};
-      std::vector<LoadDerivative> entries;
-      if (own) {
-        kind.derivatives(at, 0, entries);
-      } else {
-        difference_derivatives(kind, at, 0, entries);
-      }
-      const auto size = static_cast<Eigen::Index>(model.state.v.size());
-      Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, 2 * size);
-      for (const LoadDerivative& entry : entries) {
-        result(entry.row, entry.column) += entry.by_position;
-        result(entry.row, size + entry.column) += entry.by_velocity;
-      }
-      return result;
-    };
-    const Eigen::MatrixXd own = matrices(true), differences = matrices(false);
-    EXPECT_GT(own.cwiseAbs().maxCoeff(), 0.01);
-    // Central differences: rounding epsilon * 30 N / 6e-6 m = 1e-9, truncation (6e-6)^2 of the third
-    // derivative.
-    EXPECT_LE((own - differences).cwiseAbs().maxCoeff(), 4e-9) << own << "\n\n" << differences;
+    expect_derivatives_meet_differences(model);
+    EXPECT_GT(load_derivatives(model, By::element).cwiseAbs().maxCoeff(), 0.01);
   });
 }
 
 TEST(SpringDamper, StiffnessMatrixIsSymmetricWithoutDamping) {
   for_random_springs(123, 0.0, [](LoadedModel& model, const planar::SpringDamper&) {
-    const Index island = model.assembly.elements(0, 0).empty() ? 1 : 0;
-    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, island};
-    std::vector<LoadDerivative> entries;
-    model.assembly.force_kinds()[0]->derivatives(at, 0, entries);
-    const auto size = static_cast<Eigen::Index>(model.state.v.size());
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-    for (const LoadDerivative& entry : entries) {
-      matrix(entry.row, entry.column) += entry.by_position;
-      EXPECT_EQ(entry.by_velocity, 0.0);
-    }
+    const Eigen::MatrixXd own = load_derivatives(model, By::element);
+    const Eigen::MatrixXd matrix = own.leftCols(own.rows());
+    EXPECT_EQ(own.rightCols(own.rows()).norm(), 0.0);
     EXPECT_LE((matrix - matrix.transpose()).cwiseAbs().maxCoeff(),
               64 * epsilon * matrix.cwiseAbs().maxCoeff());
   });
@@ -341,19 +315,7 @@ TEST(SpringDamper, InSpaceForceAndDerivativesMeetDifferences) {
                             .free_length = 1.5});
     LoadedModel model(system);
     expect_loads_near(model.conservative, model.minus_gradient(), 1e-10);
-    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, 0};
-    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6, 12), differences = own;
-    std::vector<LoadDerivative> entries;
-    model.assembly.force_kinds()[0]->derivatives(at, 0, entries);
-    for (const auto& e : entries)
-      own(e.row, e.column) += e.by_position, own(e.row, 6 + e.column) += e.by_velocity;
-    entries.clear();
-    difference_derivatives(*model.assembly.force_kinds()[0], at, 0, entries);
-    for (const auto& e : entries) {
-      differences(e.row, e.column) += e.by_position;
-      differences(e.row, 6 + e.column) += e.by_velocity;
-    }
-    EXPECT_LE((own - differences).cwiseAbs().maxCoeff(), 4e-9);
+    expect_derivatives_meet_differences(model);
   }
 }
 
