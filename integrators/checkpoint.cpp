@@ -104,6 +104,22 @@ void for_statistics(S& s, F&& f) {
   f(s.worst_residual);
 }
 
+/// Likewise those of the contact solvers.
+template <class S, class F>
+void for_contact_statistics(S& s, F&& f) {
+  f(s.problems);
+  for (auto& count : s.accepted) f(count);
+  for (auto& count : s.tried) f(count);
+  f(s.fall_backs);
+  f(s.tolerated);
+  f(s.several_solutions);
+  f(s.forces_not_unique);
+  f(s.degenerate);
+  f(s.no_solution);
+  f(s.not_solved);
+  f(s.worst_residual);
+}
+
 void add(Writer& out, const FeatureKey& key) {
   out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
   out.add(std::uint64_t{key.serial});
@@ -137,6 +153,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(state.z);
   for (const double number : companion.ledger.save()) out.add(number);
   for_statistics(companion.statistics, [&out](const auto& number) { out.add(number); });
+  for_contact_statistics(companion.contact_statistics, [&out](const auto& number) { out.add(number); });
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
@@ -199,6 +216,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for (double& number : ledger) in.get(number);
   other.ledger.load(ledger);
   for_statistics(other.statistics, [&in](auto& number) { in.get(number); });
+  for_contact_statistics(other.contact_statistics, [&in](auto& number) { in.get(number); });
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   LoadHistory& history = other.history;

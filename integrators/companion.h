@@ -3,6 +3,7 @@
 /// \file
 /// Everything beside the state that can influence a later step or is accumulated along a run.
 
+#include <carom/contact/chain_statistics.h>
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_solver.h>
 #include <carom/core/energy_ledger.h>
@@ -45,8 +46,9 @@ struct Rhythm {
 
 /// With the state, all that a checkpoint holds (but `loads` where they follow from the state).
 struct Companion {
-  EnergyLedger ledger;    ///< the energy account
-  Statistics statistics;  ///< counts since the start
+  EnergyLedger ledger;                 ///< the energy account
+  Statistics statistics;               ///< counts since the start
+  ChainStatistics contact_statistics;  ///< of the contact solvers in accepted steps
   std::vector<double>
       rounding;             ///< what rounding cut off the velocities: carried on, so that it does not add up
   LoadHistory history;      ///< for the guess at the loads of the next step

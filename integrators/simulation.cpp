@@ -261,6 +261,7 @@ double Simulation::time() const { return impl_->state.time; }
 const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
 const StepReport& Simulation::report() const { return impl_->report; }
 const Statistics& Simulation::statistics() const { return impl_->companion.statistics; }
+const ChainStatistics& Simulation::contact_statistics() const { return impl_->companion.contact_statistics; }
 const Companion& Simulation::companion() const { return impl_->companion; }
 const Mode& Simulation::mode() const { return impl_->mode; }
 std::string Simulation::name(const ContactKey& key) const { return impl_->model->stepper.finder().name(key); }

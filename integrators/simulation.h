@@ -66,8 +66,10 @@ public:
   [[nodiscard]] const EnergyLedger& energy() const;    ///< the energy account
   [[nodiscard]] const StepReport& report() const;      ///< what happened in the last step
   [[nodiscard]] const Statistics& statistics() const;  ///< counts since the start
-  [[nodiscard]] const Companion& companion() const;    ///< all that can influence a later step
-  [[nodiscard]] const Mode& mode() const;              ///< the mode and its options
+  /// Counts of the contact solvers since the start, over all sweeps of accepted steps.
+  [[nodiscard]] const ChainStatistics& contact_statistics() const;
+  [[nodiscard]] const Companion& companion() const;  ///< all that can influence a later step
+  [[nodiscard]] const Mode& mode() const;            ///< the mode and its options
 
   /// "particle 'lower' on half-plane #0".
   [[nodiscard]] std::string name(const ContactKey& key) const;

@@ -78,6 +78,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.projected = 0.0;
   report_.control = {};
   start_loads(state, companion);
+  if (chain_.statistics().problems > 0) chain_.reset_statistics();  // of a step that failed
   const auto islands = static_cast<Index>(assembly_->islands().size());
   for (Index island = 0; island < islands; ++island) {
     advance_island(island, state, companion, step);
@@ -418,6 +419,10 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
     if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
     statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
     statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
+  }
+  if (chain_.statistics().problems > 0) {
+    companion.contact_statistics += chain_.statistics();
+    chain_.reset_statistics();
   }
   if (report_.energy_gain > 0.0) {
     ++statistics.energy_gains;

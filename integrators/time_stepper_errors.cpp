@@ -1,5 +1,6 @@
 // Problem: say what went wrong in a step, with names, and what would help.
 
+#include <carom/integrators/failure_file.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
@@ -66,6 +67,7 @@ void check_options(const TimeStepping& options) {
   if (!(std::isfinite(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
+  check_failure_directory(options.failure_directory, "time stepping");
 }
 
 void TimeStepper::demand_finite_loads(Index island, const StateView& at, const State& state, double step) {
@@ -157,6 +159,7 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   message += to_string(cluster.report().outcome);
   if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
   message += ", residual " + to_text(cluster.report().residual);
+  message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));
 }
 
@@ -217,9 +220,9 @@ void TimeStepper::fail_projection(const Contact& left, const State& state, doubl
 void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                               double step) const {
   SolverFailure failure = failure_of(cluster, finder_, state, step);
-  const std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " +
-                              to_text(gain) +
-                              " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+  std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " +
+                        to_text(gain) + " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+  message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));
 }
 

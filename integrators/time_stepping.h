@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace carom {
@@ -71,6 +72,10 @@ struct TimeStepping {
   bool project_gaps = false;
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
+
+  /// An existing directory where the contact problem of a SolverError is written to a file
+  /// (docs/contact_problems.md), whose name the message tells. Empty: nothing is written.
+  std::string failure_directory{};
 };
 
 }  // namespace carom

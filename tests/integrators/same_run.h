@@ -36,6 +36,16 @@ inline std::vector<std::uint64_t> bits_of(const carom::Simulation& simulation) {
   }
   for (const double number : {s.largest_contraction, s.energy_gained, s.deepest_gap, s.worst_residual})
     append_bits(bits, number);
+  const carom::ChainStatistics& c = simulation.contact_statistics();
+  for (const std::int64_t count : {c.problems, c.fall_backs, c.tolerated, c.several_solutions,
+                                   c.forces_not_unique, c.degenerate, c.no_solution, c.not_solved}) {
+    bits.push_back(static_cast<std::uint64_t>(count));
+  }
+  for (std::size_t i = 0; i < carom::solver_count; ++i) {
+    bits.push_back(static_cast<std::uint64_t>(c.accepted[i]));
+    bits.push_back(static_cast<std::uint64_t>(c.tried[i]));
+  }
+  append_bits(bits, c.worst_residual);
   const carom::Companion& companion = simulation.companion();
   append_bits(bits, companion.rounding);
   append_bits(bits, companion.grid_start);
