@@ -1,5 +1,5 @@
 #include <carom/bodies/particle.h>
-#include <carom/core/compensated_sum.h>
+#include <carom/core/pair.h>
 
 namespace carom::generic {
 
@@ -10,7 +10,10 @@ void ParticleKind<D>::add(const Particle<D>& part, const PartCheck& check) {
   check.finite({part.velocity.data(), D}, "velocity", "m/s");
   check.material(part.material);
   masses_.push_back(part.mass);
-  parts_.push_back(part);
+  position_.push_back(part.position);
+  velocity_.push_back(part.velocity);
+  contact_.push_back(part.contact ? 1 : 0);
+  material_.push_back(part.material);
 }
 
 template <int D>
@@ -20,26 +23,25 @@ std::unique_ptr<BodyKind> ParticleKind<D>::clone() const {
 
 template <int D>
 std::unique_ptr<BodyKind> ParticleKind<D>::arranged(std::span<const Index> order) const {
-  auto copy = std::make_unique<ParticleKind>();
-  copy->masses_.reserve(order.size());
-  copy->parts_.reserve(order.size());
-  for (const Index slot : order) {
-    copy->masses_.push_back(masses_[slot]);
-    copy->parts_.push_back(parts_[slot]);
-  }
-  return copy;
+  auto packed = std::make_unique<ParticleKind>();
+  for (const Index slot : order) packed->masses_.push_back(masses_[slot]);
+  packed->masses_.shrink();
+  return packed;
 }
 
 template <int D>
 void ParticleKind<D>::remove(Index slot) {
-  masses_.erase(masses_.begin() + slot);
-  parts_.erase(parts_.begin() + slot);
+  masses_.erase(slot);
+  position_.erase(slot);
+  velocity_.erase(slot);
+  contact_.erase(slot);
+  material_.erase(slot);
 }
 
 template <int D>
 void ParticleKind<D>::initial(Index slot, double* q, double* v) const {
-  Eigen::Map<Vec<D>>{q} = parts_[slot].position;
-  Eigen::Map<Vec<D>>{v} = parts_[slot].velocity;
+  Eigen::Map<Vec<D>>{q} = position_[slot];
+  Eigen::Map<Vec<D>>{v} = velocity_[slot];
 }
 
 template <int D>
@@ -48,26 +50,87 @@ void ParticleKind<D>::advance(Range slots, const double* q0, const double* delta
   for (Index i = 0; i < numbers; ++i) q1[i] = q0[i] + delta[i];
 }
 
-template <int D>
-void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
-  const double half = 0.5 * step;
-  SweepChange seen = change;
-  Index at = 0;
-  for (Index slot = slots.begin; slot < slots.end; ++slot) {
-    const double inverse = half / masses_[slot];
-    for (int i = 0; i < D; ++i, ++at) {
-      const double change_of_v =
-          inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
-      const double v = a.v0[at] + change_of_v;
-      const double q = a.q0[at] + half * (a.v0[at] + v);
-      a.cut[at] = change_of_v - (v - a.v0[at]);
-      seen.take((v - a.v1[at]) * step, v * step);
-      seen.take(q - a.q1[at], q);
-      a.v1[at] = v;
-      a.q1[at] = q;
+namespace {
+
+/// What a sweep changed, two numbers at a time.
+class PairChange {
+public:
+  void take(Pair difference, Pair number) {
+    difference = magnitude(difference);
+    change_ = larger(difference, change_);
+    size_ = larger(magnitude(number), size_);
+    // A maximum may drop what is no number, a sum keeps it.
+    sum_ += difference;
+  }
+  void add_to(SweepChange& change) const {
+    const double numbers = sum_[0] + sum_[1];
+    for (int lane = 0; lane < 2; ++lane) {
+      change.take(numbers != numbers ? numbers : change_[lane], numbers != numbers ? numbers : size_[lane]);
     }
   }
-  change = seen;
+
+private:
+  Pair change_{}, size_{}, sum_{};
+};
+
+/// One sweep over two numbers. \param half h / 2, \param inverse h / (2 m)
+template <bool Response>
+inline void sweep_pair(const SweepArrays& a, Index at, Pair step, Pair half, Pair inverse, PairChange& seen) {
+  const Pair v0 = load_pair(a.v0 + at);
+  Pair change_of_v =
+      inverse * (load_pair(a.load0 + at) + load_pair(a.load1 + at)) + load_pair(a.carried + at);
+  if constexpr (Response) change_of_v += load_pair(a.response + at);
+  const Pair v = v0 + change_of_v;
+  const Pair q = load_pair(a.q0 + at) + half * (v0 + v);
+  store_pair(a.cut + at, change_of_v - (v - v0));
+  seen.take((v - load_pair(a.v1 + at)) * step, v * step);
+  seen.take(q - load_pair(a.q1 + at), q);
+  store_pair(a.v1 + at, v);
+  store_pair(a.q1 + at, q);
+}
+
+inline void sweep_number(const SweepArrays& a, Index at, double step, double inverse, SweepChange& seen) {
+  const double change_of_v =
+      inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
+  const double v = a.v0[at] + change_of_v;
+  const double q = a.q0[at] + 0.5 * step * (a.v0[at] + v);
+  a.cut[at] = change_of_v - (v - a.v0[at]);
+  seen.take((v - a.v1[at]) * step, v * step);
+  seen.take(q - a.q1[at], q);
+  a.v1[at] = v;
+  a.q1[at] = q;
+}
+
+/// Particles whose numbers can be taken two by two: all of one mass, or planar. Returns how many numbers
+/// were done.
+template <int D, bool Response>
+Index sweep_pairs(Range slots, const Column<double>& masses, double step, const SweepArrays& a,
+                  SweepChange& change) {
+  const double half = 0.5 * step;
+  const Index numbers = slots.size() * D;
+  PairChange seen;
+  Index at = 0;
+  if (masses.uniform()) {
+    const Pair inverse = both(half / masses[0]);
+    for (; at + 1 < numbers; at += 2) sweep_pair<Response>(a, at, both(step), both(half), inverse, seen);
+  } else if constexpr (D == 2) {
+    const double* const mass = masses.data() + slots.begin;
+    for (; at < numbers; at += 2) {
+      sweep_pair<Response>(a, at, both(step), both(half), both(half / mass[at / 2]), seen);
+    }
+  }
+  seen.add_to(change);
+  return at;
+}
+
+}  // namespace
+
+template <int D>
+void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
+  const Index numbers = slots.size() * D;
+  Index at = a.response ? sweep_pairs<D, true>(slots, masses_, step, a, change)
+                        : sweep_pairs<D, false>(slots, masses_, step, a, change);
+  for (; at < numbers; ++at) sweep_number(a, at, step, 0.5 * step / masses_[slots.begin + at / D], change);
 }
 
 template <int D>
@@ -86,21 +149,54 @@ void ParticleKind<D>::apply_mass(Range slots, const double* v, double* p) const 
 
 template <int D>
 double ParticleKind<D>::kinetic_energy(Range slots, const double* v) const {
-  CompensatedSum sum;
-  for (Index slot = slots.begin; slot < slots.end; ++slot, v += D) {
+  const double* const mass = masses_.data() + masses_.stride() * slots.begin;
+  const Index stride = masses_.stride();
+  PairSum sum;
+  Index i = 0;
+  for (; i + 1 < slots.size(); i += 2, v += 2 * D) {
+    Pair square = both(0.0);
+    for (int d = 0; d < D; ++d) square += Pair{v[d] * v[d], v[D + d] * v[D + d]};
+    sum.add(0.5 * load_pair(mass + i * stride) * square);
+  }
+  if (i < slots.size()) {
     double square = 0.0;
-    for (int i = 0; i < D; ++i) square += v[i] * v[i];
-    sum.add(0.5 * masses_[slot] * square);
+    for (int d = 0; d < D; ++d) square += v[d] * v[d];
+    sum.add(Pair{0.5 * mass[i * stride] * square, 0.0});
   }
   return sum.value();
 }
 
 template <int D>
+void ParticleKind<D>::add_weight(Range slots, const double* g, double* load) const {
+  for (Index slot = slots.begin; slot < slots.end; ++slot, load += D) {
+    for (int d = 0; d < D; ++d) load[d] += masses_[slot] * g[d];
+  }
+}
+
+template <int D>
+double ParticleKind<D>::weight_potential(Range slots, const double* g, const double* q) const {
+  const double* const mass = masses_.data() + masses_.stride() * slots.begin;
+  const Index stride = masses_.stride();
+  const auto height = [g](const double* x) {
+    double sum = 0.0;
+    for (int d = 0; d < D; ++d) sum += g[d] * x[d];
+    return sum;
+  };
+  PairSum sum;
+  Index i = 0;
+  for (; i + 1 < slots.size(); i += 2, q += 2 * D) {
+    sum.add(-load_pair(mass + i * stride) * Pair{height(q), height(q + D)});
+  }
+  if (i < slots.size()) sum.add(Pair{-mass[i * stride] * height(q), 0.0});
+  return sum.value();
+}
+
+template <int D>
 void ParticleKind<D>::fingerprint(Fingerprint& print) const {
-  for (const Particle<D>& part : parts_) {
-    print.add(part.mass);
-    print.add(std::uint64_t{part.contact});
-    print.add(std::uint64_t{part.material.serial});
+  for (Index slot = 0; slot < size(); ++slot) {
+    print.add(masses_[slot]);
+    print.add(std::uint64_t{contact_[slot]});
+    print.add(std::uint64_t{material_[slot].serial});
   }
 }
 

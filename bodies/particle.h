@@ -4,12 +4,13 @@
 /// Particles: bodies with a position only.
 
 #include <carom/core/body_kind.h>
+#include <carom/core/column.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
 #include <carom/core/space.h>
 
+#include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace carom {
 
@@ -46,14 +47,14 @@ public:
   void remove(Index slot) override;
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(masses_.size()); }
+  [[nodiscard]] Index size() const override { return masses_.size(); }
   [[nodiscard]] Index q_size() const override { return D; }
   [[nodiscard]] Index v_size() const override { return D; }
   [[nodiscard]] bool has_orientation() const override { return false; }
   [[nodiscard]] double mass(Index slot) const override { return masses_[slot]; }
   [[nodiscard]] double length_scale(Index, Index) const override { return 1.0; }
-  [[nodiscard]] bool has_contact_point(Index slot) const override { return parts_[slot].contact; }
-  [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  [[nodiscard]] bool has_contact_point(Index slot) const override { return contact_[slot] != 0; }
+  [[nodiscard]] MaterialId material(Index slot) const override { return material_[slot]; }
   void initial(Index slot, double* q, double* v) const override;
   void rotations(Range, const double*, double*) const override {}
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
@@ -61,11 +62,16 @@ public:
   void apply_inverse_mass(Range slots, const double* f, double* a) const override;
   void apply_mass(Range slots, const double* v, double* p) const override;
   [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;
+  void add_weight(Range slots, const double* g, double* load) const override;
+  [[nodiscard]] double weight_potential(Range slots, const double* g, const double* q) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:
-  std::vector<double> masses_;
-  std::vector<Particle<D>> parts_;
+  Column<double> masses_;
+  // The description; empty in an arranged kind.
+  Column<Vec<D>> position_, velocity_;
+  Column<std::uint8_t> contact_;
+  Column<MaterialId> material_;
 };
 
 extern template class ParticleKind<2>;

@@ -21,23 +21,22 @@ void RigidBodyKind<2>::add(const RigidBody<2>& part, const PartCheck& check) {
   check.finite(part.angle, "angle", "rad");
   check.finite({part.velocity.data(), 2}, "velocity", "m/s");
   check.finite(part.spin, "spin", "rad/s");
+  masses_.push_back({part.mass.mass, part.mass.inertia, gyration_radius});
   parts_.push_back(part);
 }
 
 std::unique_ptr<BodyKind> RigidBodyKind<2>::clone() const { return std::make_unique<RigidBodyKind>(*this); }
 
 std::unique_ptr<BodyKind> RigidBodyKind<2>::arranged(std::span<const Index> order) const {
-  auto copy = std::make_unique<RigidBodyKind>();
-  copy->parts_.reserve(order.size());
-  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
-  return copy;
+  auto packed = std::make_unique<RigidBodyKind>();
+  packed->masses_.reserve(order.size());
+  for (const Index slot : order) packed->masses_.push_back(masses_[slot]);
+  return packed;
 }
 
-void RigidBodyKind<2>::remove(Index slot) { parts_.erase(parts_.begin() + slot); }
-
-double RigidBodyKind<2>::length_scale(Index slot, Index i) const {
-  const MassProperties<2>& mass = parts_[slot].mass;
-  return i < 2 ? 1.0 : std::sqrt(mass.inertia / mass.mass);
+void RigidBodyKind<2>::remove(Index slot) {
+  masses_.erase(masses_.begin() + slot);
+  parts_.erase(parts_.begin() + slot);
 }
 
 void RigidBodyKind<2>::initial(Index slot, double* q, double* v) const {
@@ -64,10 +63,10 @@ void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, Swe
   const double half = 0.5 * step;
   Index at = 0;
   for (Index slot = slots.begin; slot < slots.end; ++slot) {
-    const MassProperties<2>& mass = parts_[slot].mass;
+    const Inertia& mass = masses_[slot];
     for (Index i = 0; i < 3; ++i, ++at) {
       const double inverse = half / (i < 2 ? mass.mass : mass.inertia);
-      const double length = i < 2 ? 1.0 : length_scale(slot, i);
+      const double length = i < 2 ? 1.0 : mass.gyration_radius;
       const double change_of_v =
           inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
       const double v = a.v0[at] + change_of_v;
@@ -85,7 +84,7 @@ void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, Swe
 
 void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* a) const {
   for (Index slot = slots.begin; slot < slots.end; ++slot, f += 3, a += 3) {
-    const MassProperties<2>& mass = parts_[slot].mass;
+    const Inertia& mass = masses_[slot];
     a[0] = f[0] / mass.mass;
     a[1] = f[1] / mass.mass;
     a[2] = f[2] / mass.inertia;
@@ -94,7 +93,7 @@ void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* 
 
 void RigidBodyKind<2>::apply_mass(Range slots, const double* v, double* p) const {
   for (Index slot = slots.begin; slot < slots.end; ++slot, v += 3, p += 3) {
-    const MassProperties<2>& mass = parts_[slot].mass;
+    const Inertia& mass = masses_[slot];
     p[0] = v[0] * mass.mass;
     p[1] = v[1] * mass.mass;
     p[2] = v[2] * mass.inertia;
@@ -104,17 +103,32 @@ void RigidBodyKind<2>::apply_mass(Range slots, const double* v, double* p) const
 double RigidBodyKind<2>::kinetic_energy(Range slots, const double* v) const {
   CompensatedSum sum;
   for (Index slot = slots.begin; slot < slots.end; ++slot, v += 3) {
-    const MassProperties<2>& mass = parts_[slot].mass;
+    const Inertia& mass = masses_[slot];
     sum.add(0.5 * mass.mass * (v[0] * v[0] + v[1] * v[1]));
     sum.add(0.5 * mass.inertia * v[2] * v[2]);
   }
   return sum.value();
 }
 
+void RigidBodyKind<2>::add_weight(Range slots, const double* g, double* load) const {
+  for (Index slot = slots.begin; slot < slots.end; ++slot, load += 3) {
+    load[0] += masses_[slot].mass * g[0];
+    load[1] += masses_[slot].mass * g[1];
+  }
+}
+
+double RigidBodyKind<2>::weight_potential(Range slots, const double* g, const double* q) const {
+  CompensatedSum sum;
+  for (Index slot = slots.begin; slot < slots.end; ++slot, q += 3) {
+    sum.add(-masses_[slot].mass * (g[0] * q[0] + g[1] * q[1]));
+  }
+  return sum.value();
+}
+
 void RigidBodyKind<2>::fingerprint(Fingerprint& print) const {
-  for (const RigidBody<2>& part : parts_) {
-    print.add(part.mass.mass);
-    print.add(part.mass.inertia);
+  for (const Inertia& mass : masses_) {
+    print.add(mass.mass);
+    print.add(mass.inertia);
   }
 }
 

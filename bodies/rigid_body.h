@@ -50,12 +50,14 @@ public:
   void remove(Index slot) override;
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(masses_.size()); }
   [[nodiscard]] Index q_size() const override { return 3; }
   [[nodiscard]] Index v_size() const override { return 3; }
   [[nodiscard]] bool has_orientation() const override { return true; }
-  [[nodiscard]] double mass(Index slot) const override { return parts_[slot].mass.mass; }
-  [[nodiscard]] double length_scale(Index slot, Index i) const override;
+  [[nodiscard]] double mass(Index slot) const override { return masses_[slot].mass; }
+  [[nodiscard]] double length_scale(Index slot, Index i) const override {
+    return i < 2 ? 1.0 : masses_[slot].gyration_radius;
+  }
   [[nodiscard]] bool has_contact_point(Index) const override { return false; }
   [[nodiscard]] MaterialId material(Index) const override { return {}; }
   void initial(Index slot, double* q, double* v) const override;
@@ -65,10 +67,16 @@ public:
   void apply_inverse_mass(Range slots, const double* f, double* a) const override;
   void apply_mass(Range slots, const double* v, double* p) const override;
   [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;
+  void add_weight(Range slots, const double* g, double* load) const override;
+  [[nodiscard]] double weight_potential(Range slots, const double* g, const double* q) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:
-  std::vector<RigidBody<2>> parts_;
+  struct Inertia {
+    double mass, inertia, gyration_radius;
+  };
+  std::vector<Inertia> masses_;
+  std::vector<RigidBody<2>> parts_;  // the description; empty in an arranged kind
 };
 
 }  // namespace generic

@@ -11,11 +11,14 @@ ContactFinder::ContactFinder(const Assembly& assembly) : assembly_(&assembly) {
   make_law_table();
 
   of_island_.reserve(assembly.islands().size());
-  Index next = 0;
+  Index centre = 0, feature = 0;
   for (const Island& island : assembly.islands()) {
-    const Index first = next;
-    while (next < features_.size() && features_[next].body < island.bodies.end) ++next;
-    of_island_.push_back({first, next});
+    Touching touching{{centre, centre}, {feature, feature}};
+    while (centre < centres_.size() && centres_[centre].bodies.end <= island.bodies.end) ++centre;
+    while (feature < features_.size() && features_[feature].body < island.bodies.end) ++feature;
+    touching.centres.end = centre;
+    touching.features.end = feature;
+    of_island_.push_back(touching);
   }
 }
 
@@ -27,22 +30,38 @@ void ContactFinder::collect_obstacles() {
   }
 }
 
-void ContactFinder::add_feature(Index body, const FeatureKey& key, const RoundedPoint& point,
-                                MaterialId material) {
+Index ContactFinder::row_of(MaterialId material) {
   const auto found = std::find(materials_.begin(), materials_.end(), material);
   const auto row = static_cast<Index>(found - materials_.begin());
   if (found == materials_.end()) materials_.push_back(material);
-  features_.push_back({body, row, key, point.centre, point.radius});
+  return row;
+}
+
+void ContactFinder::collect_centres() {
+  const Layout& layout = *assembly_->layout();
+  const auto& registry = assembly_->system().body_kinds();
+  for (const Island& island : assembly_->islands()) {
+    Index last_kind = none;
+    for (Index body = island.bodies.begin; body < island.bodies.end; ++body) {
+      const BodySlot slot = layout.bodies()[body];
+      const auto place = registry.place(slot.serial);
+      const BodyKind& kind = *registry.entries()[place.entry].kind;
+      if (!kind.has_contact_point(place.slot)) continue;
+      const Index material = row_of(kind.material(place.slot));
+      if (slot.kind == last_kind && centres_.back().bodies.end == body &&
+          centres_.back().material == material) {
+        ++centres_.back().bodies.end;
+      } else {
+        centres_.push_back({{body, body + 1}, material});
+      }
+      last_kind = slot.kind;
+    }
+  }
 }
 
 void ContactFinder::collect_features() {
+  collect_centres();
   const Layout& layout = *assembly_->layout();
-  for (Index body = 0; body < layout.bodies().size(); ++body) {
-    const BodySlot& slot = layout.bodies()[body];
-    const BodyKind& kind = *assembly_->body_kinds()[slot.kind];
-    if (!kind.has_contact_point(slot.slot)) continue;
-    add_feature(body, {FeatureKey::Owner::body, slot.serial, 0}, {}, kind.material(slot.slot));
-  }
   const auto& registry = assembly_->system().shape_kinds();
   std::vector<RoundedPoint> points;
   for (const Index serial : registry.serials()) {
@@ -52,7 +71,11 @@ void ContactFinder::collect_features() {
     points.clear();
     kind.rounded_points(place.slot, points);
     for (Index i = 0; i < points.size(); ++i) {
-      add_feature(body, {FeatureKey::Owner::shape, serial, i}, points[i], kind.material(place.slot));
+      features_.push_back({body,
+                           row_of(kind.material(place.slot)),
+                           {FeatureKey::Owner::shape, serial, i},
+                           points[i].centre,
+                           points[i].radius});
     }
   }
   std::stable_sort(features_.begin(), features_.end(),
@@ -68,10 +91,15 @@ void ContactFinder::make_law_table() {
         laws_.push_back(*law);
         continue;
       }
-      const auto feature = std::find_if(features_.begin(), features_.end(), [&](const Feature& candidate) {
-        return candidate.material == material;
-      });
-      const ContactKey key{feature->key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
+      const auto uses = [material](const auto& candidate) { return candidate.material == material; };
+      const auto centre = std::find_if(centres_.begin(), centres_.end(), uses);
+      const auto feature = std::find_if(features_.begin(), features_.end(), uses);
+      const bool is_centre =
+          centre != centres_.end() && (feature == features_.end() || centre->bodies.begin <= feature->body);
+      const FeatureKey of = is_centre ? FeatureKey{FeatureKey::Owner::body,
+                                                   assembly_->layout()->id(centre->bodies.begin).serial, 0}
+                                      : feature->key;
+      const ContactKey key{of, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
       throw ModelError("contact of " + name(key) +
                        ": law is not given; allowed: a Surface on the obstacle or between the two materials");
     }
@@ -102,49 +130,77 @@ void ContactFinder::find(Index island, const StateView& state, const Evaluation&
 }
 
 template <int D>
-void ContactFinder::find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
-                            std::vector<Contact>& out) const {
+void ContactFinder::add(const BodySlot& body, const Feature& feature, const StateView& state,
+                        const Evaluation& evaluation, double margin, std::vector<Contact>& out) const {
   using Map = Eigen::Map<Vec<D>>;
   using ConstMap = Eigen::Map<const Vec<D>>;
-  const auto& bodies = assembly_->layout()->bodies();
-  for (Index i = of_island_[island].begin; i < of_island_[island].end; ++i) {
-    const Feature& feature = features_[i];
-    const BodySlot& body = bodies[feature.body];
-    Vec<D> arm = Vec<D>::Zero();
-    if constexpr (Space<D>::has_orientation) {
-      if (body.rotation != none) {
-        arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
-                               Vec<D>(ConstMap(feature.centre.data())));
-      }
+  Vec<D> arm = Vec<D>::Zero();
+  if constexpr (Space<D>::has_orientation) {
+    if (body.rotation != none) {
+      arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
+                             Vec<D>(ConstMap(feature.centre.data())));
     }
-    const Vec<D> centre = ConstMap(state.q + body.q) + arm;
-    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-      const Obstacle& obstacle = obstacles_[o];
-      const Gap gap = obstacle.kind->gap(obstacle.slot, centre.data());
-      if (!(gap.distance - feature.radius <= margin)) continue;
+  }
+  const Vec<D> centre = ConstMap(state.q + body.q) + arm;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const Obstacle& obstacle = obstacles_[o];
+    const Gap gap = obstacle.kind->gap(obstacle.slot, centre.data());
+    if (!(gap.distance - feature.radius <= margin)) continue;
 
-      Contact& contact = out.emplace_back();
-      contact.key = {feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
-      contact.body = feature.body;
-      contact.v = body.v;
-      contact.columns = static_cast<int>(body.v_size);
-      contact.rows = D;
-      contact.gap = gap.distance - feature.radius;
-      contact.law = laws_[feature.material * obstacles_.size() + o];
-      const Vec<D> normal = ConstMap(gap.normal.data());
-      const auto tangents = Space<D>::tangent_frame(normal);
-      for (int row = 0; row < D; ++row) {
-        const Vec<D> direction = row == 0 ? normal : tangents[static_cast<std::size_t>(row - 1)];
-        Map(contact.row(row)) = direction;
-        if constexpr (Space<D>::has_orientation) {
-          if (body.rotation != none) {
-            const Vec<D> lever = arm - feature.radius * normal;
-            Eigen::Map<Vec<Space<D>::spin_size>>(contact.row(row) + D) = Space<D>::spin_row(direction, lever);
-          }
+    Contact& contact = out.emplace_back();
+    contact.key = {feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
+    contact.body = feature.body;
+    contact.v = body.v;
+    contact.columns = static_cast<int>(body.v_size);
+    contact.rows = D;
+    contact.gap = gap.distance - feature.radius;
+    contact.law = laws_[feature.material * obstacles_.size() + o];
+    const Vec<D> normal = ConstMap(gap.normal.data());
+    const auto tangents = Space<D>::tangent_frame(normal);
+    for (int row = 0; row < D; ++row) {
+      const Vec<D> direction = row == 0 ? normal : tangents[static_cast<std::size_t>(row - 1)];
+      Map(contact.row(row)) = direction;
+      if constexpr (Space<D>::has_orientation) {
+        if (body.rotation != none) {
+          const Vec<D> lever = arm - feature.radius * normal;
+          Eigen::Map<Vec<Space<D>::spin_size>>(contact.row(row) + D) = Space<D>::spin_row(direction, lever);
         }
       }
     }
   }
+}
+
+template <int D>
+void ContactFinder::find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
+                            std::vector<Contact>& out) const {
+  // Centres are looked at so many at a time; one by one only where any of them touches.
+  constexpr Index at_once = 64;
+  const auto& bodies = assembly_->layout()->bodies();
+  const Touching& touching = of_island_[island];
+  Index next = touching.features.begin;
+  const auto add_features_before = [&](Index body) {
+    for (; next < touching.features.end && features_[next].body < body; ++next) {
+      add<D>(bodies[features_[next].body], features_[next], state, evaluation, margin, out);
+    }
+  };
+  for (Index i = touching.centres.begin; i < touching.centres.end; ++i) {
+    const Centres& centres = centres_[i];
+    for (Index first = centres.bodies.begin; first < centres.bodies.end; first += at_once) {
+      const Index last = std::min(first + at_once, centres.bodies.end);
+      const BodySlot slot = bodies[first];
+      const auto touches = [&](const Obstacle& obstacle) {
+        return obstacle.kind->any_within(obstacle.slot, state.q + slot.q, slot.q_size, last - first, margin);
+      };
+      if (std::none_of(obstacles_.begin(), obstacles_.end(), touches)) continue;
+      for (Index body = first; body < last; ++body) {
+        add_features_before(body);
+        const BodySlot at = bodies[body];
+        add<D>(at, {body, centres.material, {FeatureKey::Owner::body, at.serial, 0}, {}, 0.0}, state,
+               evaluation, margin, out);
+      }
+    }
+  }
+  add_features_before(none);
 }
 
 }  // namespace carom

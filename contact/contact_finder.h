@@ -29,12 +29,22 @@ public:
   [[nodiscard]] std::string name(const ContactKey& key) const;
 
 private:
+  // A point of a shape.
   struct Feature {
     Index body;      // in the order of assembly
     Index material;  // row of the law table
     FeatureKey key;
     std::array<double, 3> centre;
     double radius;
+  };
+  // Neighbouring bodies of one kind and island that touch at their centres.
+  struct Centres {
+    Range bodies;
+    Index material;
+  };
+  // What touches in one island: ranges of centres_ and features_.
+  struct Touching {
+    Range centres, features;
   };
   struct Obstacle {
     const ObstacleKind* kind;
@@ -44,16 +54,21 @@ private:
 
   void collect_obstacles();
   void collect_features();
-  void add_feature(Index body, const FeatureKey& key, const RoundedPoint& point, MaterialId material);
+  [[nodiscard]] Index row_of(MaterialId material);
+  void collect_centres();
   void make_law_table();
+  template <int D>
+  void add(const BodySlot& body, const Feature& feature, const StateView& state, const Evaluation& evaluation,
+           double margin, std::vector<Contact>& out) const;
   template <int D>
   void find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
                std::vector<Contact>& out) const;
 
   const Assembly* assembly_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Feature> features_;      // ordered by body
-  std::vector<Range> of_island_;       // features of each island
+  std::vector<Centres> centres_;   // ordered by body
+  std::vector<Feature> features_;  // ordered by body
+  std::vector<Touching> of_island_;
   std::vector<MaterialId> materials_;  // rows of the law table
   std::vector<Surface> laws_;          // row-major: material, obstacle
 };

@@ -33,6 +33,19 @@ Gap HalfSpaceKind<D>::gap(Index slot, const double* point) const {
 }
 
 template <int D>
+bool HalfSpaceKind<D>::any_within(Index slot, const double* points, Index stride, Index count,
+                                  double margin) const {
+  const HalfSpace<D>& part = parts_[slot];
+  bool any = false;
+  for (Index i = 0; i < count; ++i, points += stride) {
+    double distance = 0.0;
+    for (int d = 0; d < D; ++d) distance += part.normal[d] * (points[d] - part.point[d]);
+    any |= distance <= margin;
+  }
+  return any;
+}
+
+template <int D>
 void HalfSpaceKind<D>::fingerprint(Fingerprint& print) const {
   for (const HalfSpace<D>& part : parts_) {
     print.add({part.point.data(), static_cast<std::size_t>(D)});

@@ -48,6 +48,8 @@ public:
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
   [[nodiscard]] Gap gap(Index slot, const double* point) const override;
+  [[nodiscard]] bool any_within(Index slot, const double* points, Index stride, Index count,
+                                double margin) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:

@@ -32,14 +32,12 @@ private:
 
 Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
-  order_bodies();
-  order_elements();
+  order_elements(order_bodies());
   place_internals();
 }
 
-void Assembly::order_bodies() {
+std::vector<Index> Assembly::order_bodies() {
   const auto& registry = system_.body_kinds();
-  const std::vector<Index> serials = registry.serials();
   Unions unions(registry.next_serial());
   std::vector<BodyId> ends;
   for (const auto& entry : system_.force_kinds().entries()) {
@@ -53,20 +51,23 @@ void Assembly::order_bodies() {
 
   // Islands by their first body, then kinds, then order of insertion.
   struct Key {
-    Index island, kind, serial;
+    Index island, kind, serial, slot;
     auto operator<=>(const Key&) const = default;
   };
   std::vector<Key> keys;
-  keys.reserve(serials.size());
-  for (const Index serial : serials)
-    keys.push_back({unions.find(serial), registry.place(serial).entry, serial});
+  for (Index kind = 0; kind < registry.entries().size(); ++kind) {
+    const auto& serials = registry.entries()[kind].serials;
+    for (Index slot = 0; slot < serials.size(); ++slot) {
+      keys.push_back({unions.find(serials[slot]), kind, serials[slot], slot});
+    }
+  }
   std::sort(keys.begin(), keys.end());
 
   const auto kinds = static_cast<Index>(registry.entries().size());
   std::vector<std::vector<Index>> order(kinds);
   std::vector<BodySlot> slots;
   slots.reserve(keys.size());
-  island_of_body_.assign(registry.next_serial(), none);
+  std::vector<Index> island_of_body(registry.next_serial(), none);
   Index q = 0, v = 0, rotation = 0, root = none;
   for (const Key& key : keys) {
     const BodyKind& kind = *registry.entries()[key.kind].kind;
@@ -88,28 +89,39 @@ void Assembly::order_bodies() {
     slots.push_back(slot);
     q += slot.q_size;
     v += slot.v_size;
-    order[key.kind].push_back(registry.place(key.serial).slot);
+    order[key.kind].push_back(key.slot);
     Island& island = islands_.back();
     island.bodies.end = body + 1;
     island.q.end = q;
     island.v.end = v;
     ++body_slots_[(islands_.size() - 1) * kinds + key.kind].end;
-    island_of_body_[key.serial] = static_cast<Index>(islands_.size() - 1);
+    island_of_body[key.serial] = static_cast<Index>(islands_.size() - 1);
   }
   for (Index k = 0; k < kinds; ++k) body_kinds_.push_back(registry.entries()[k].kind->arranged(order[k]));
 
-  layout_ = std::make_shared<const Layout>(system_.dimension(), system_.token(), std::move(slots));
-  masses_.reserve(keys.size());
-  length_scales_.reserve(layout_->v_size());
-  for (const BodySlot& slot : layout_->bodies()) {
-    masses_.push_back(body_kinds_[slot.kind]->mass(slot.slot));
-    for (Index i = 0; i < slot.v_size; ++i) {
-      length_scales_.push_back(body_kinds_[slot.kind]->length_scale(slot.slot, i));
-    }
-  }
+  layout_ = std::make_shared<const Layout>(system_.dimension(), system_.token(), slots);
+  return island_of_body;
 }
 
-void Assembly::order_elements() {
+std::vector<double> Assembly::masses() const {
+  std::vector<double> masses;
+  masses.reserve(layout_->bodies().size());
+  for (const BodySlot& slot : layout_->bodies()) masses.push_back(body_kinds_[slot.kind]->mass(slot.slot));
+  return masses;
+}
+
+std::vector<double> Assembly::length_scales() const {
+  std::vector<double> lengths;
+  lengths.reserve(layout_->v_size());
+  for (const BodySlot& slot : layout_->bodies()) {
+    for (Index i = 0; i < slot.v_size; ++i) {
+      lengths.push_back(body_kinds_[slot.kind]->length_scale(slot.slot, i));
+    }
+  }
+  return lengths;
+}
+
+void Assembly::order_elements(const std::vector<Index>& island_of_body) {
   const auto& entries = system_.force_kinds().entries();
   const auto kinds = static_cast<Index>(entries.size());
   element_slots_.assign(islands_.size() * kinds, {});
@@ -121,23 +133,24 @@ void Assembly::order_elements() {
       ends.clear();
       kind.ends(slot, ends);
       std::erase(ends, ground);
-      keys.emplace_back(ends.empty() ? 0 : island_of_body_[ends[0].serial], slot);
+      keys.emplace_back(ends.empty() ? 0 : island_of_body[ends[0].serial], slot);
     }
     std::sort(keys.begin(), keys.end());
-    std::vector<Index> order, serials;
+    std::vector<Index> order;
+    order.reserve(keys.size());
     for (const auto& [island, slot] : keys) {
       Range& range = element_slots_[island * kinds + k];
       if (range.empty()) range.begin = range.end = static_cast<Index>(order.size());
       ++range.end;
       order.push_back(slot);
-      serials.push_back(entries[k].serials[slot]);
     }
     if (kind.is_field()) {
       for (Index island = 0; island < islands_.size(); ++island)
         element_slots_[island * kinds + k] = {0, kind.size()};
     }
     force_kinds_.push_back(kind.arranged(order, *layout_));
-    element_serials_.push_back(std::move(serials));
+    if (std::is_sorted(order.begin(), order.end())) order = {};
+    element_order_.push_back(std::move(order));
   }
 }
 
@@ -162,14 +175,15 @@ void Assembly::place_internals() {
   for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
     if (!first[kind].empty()) force_kinds_[kind]->place_internal(first[kind]);
   }
-  layout_ = std::make_shared<const Layout>(layout_->dimension(), system_.token(), layout_->bodies(),
-                                           std::move(internals));
+  layout_ = std::make_shared<const Layout>(*layout_, std::move(internals));
 }
 
 State Assembly::initial_state() const {
   State state(layout_);
   for (const BodySlot& slot : layout_->bodies()) {
-    body_kinds_[slot.kind]->initial(slot.slot, state.q.data() + slot.q, state.v.data() + slot.v);
+    const auto place = system_.body_kinds().place(slot.serial);
+    system_.body_kinds().entries()[place.entry].kind->initial(place.slot, state.q.data() + slot.q,
+                                                              state.v.data() + slot.v);
   }
   Index z = 0;
   for (Index island = 0; island < islands_.size(); ++island) {

@@ -34,12 +34,13 @@ public:
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
   /// Islands, in the order of assembly.
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
-  /// Masses of the bodies, in the order of assembly [kg].
-  [[nodiscard]] const std::vector<double>& masses() const { return masses_; }
-  /// Lengths by which changes of the velocity coordinates are weighed (BodyKind::length_scale).
-  [[nodiscard]] const std::vector<double>& length_scales() const { return length_scales_; }
+  /// Masses of the bodies, in the order of assembly [kg]. Made at each call.
+  [[nodiscard]] std::vector<double> masses() const;
+  /// Lengths by which changes of the velocity coordinates are weighed (BodyKind::length_scale). Made at each
+  /// call.
+  [[nodiscard]] std::vector<double> length_scales() const;
 
-  /// Kinds of bodies, arranged.
+  /// Kinds of bodies, arranged: what running needs. The description stands in system().
   [[nodiscard]] const std::vector<std::unique_ptr<BodyKind>>& body_kinds() const { return body_kinds_; }
   /// Slots of a kind that belong to an island.
   [[nodiscard]] Range body_slots(Index island, Index kind) const {
@@ -53,7 +54,9 @@ public:
   }
   /// Identity of an arranged element.
   [[nodiscard]] ElementId element_id(Index kind, Index slot) const {
-    return {element_serials_[kind][slot], system_.token()};
+    const std::vector<Index>& order = element_order_[kind];
+    const auto& described = system_.force_kinds().entries()[kind].serials;
+    return {described[order.empty() ? slot : order[slot]], system_.token()};
   }
 
   /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of an island, kind by kind.
@@ -63,7 +66,7 @@ public:
     for (Index kind = 0; kind < body_kinds_.size(); ++kind) {
       const Range slots = body_slots(island, kind);
       if (slots.empty()) continue;
-      const BodySlot& first = layout_->bodies()[body];
+      const BodySlot first = layout_->bodies()[body];
       f(*body_kinds_[kind], slots, first.q, first.v, first.rotation);
       body += slots.size();
     }
@@ -73,20 +76,19 @@ public:
   [[nodiscard]] State initial_state() const;
 
 private:
-  void order_bodies();
-  void order_elements();
+  // Returns the island of each body, by serial number.
+  std::vector<Index> order_bodies();
+  void order_elements(const std::vector<Index>& island_of_body);
   void place_internals();
 
   System system_;
   std::shared_ptr<const Layout> layout_;
   std::vector<Island> islands_;
-  std::vector<Index> island_of_body_;
-  std::vector<double> masses_, length_scales_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
   std::vector<Range> body_slots_;
   std::vector<std::unique_ptr<ForceKind>> force_kinds_;
   std::vector<Range> element_slots_;
-  std::vector<std::vector<Index>> element_serials_;
+  std::vector<std::vector<Index>> element_order_;  // by kind: described slots, empty if the order is the same
 };
 
 /// Fills the position group of `out` for one island.

@@ -53,7 +53,8 @@ public:
 
   /// A copy.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> clone() const = 0;
-  /// A copy with the bodies named by `order`, in that order.
+  /// What running needs of the bodies named by `order`, in that order. Starting values, contact points and
+  /// materials are asked of the described kind only and need not be copied.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const = 0;
   /// Removes the body at a slot; later ones move up.
   virtual void remove(Index slot) = 0;
@@ -95,6 +96,10 @@ public:
   virtual void apply_mass(Range slots, const double* v, double* p) const = 0;
   /// Kinetic energy of a range [J].
   [[nodiscard]] virtual double kinetic_energy(Range slots, const double* v) const = 0;
+  /// Adds the weight of a range in the uniform field g [m/s^2] to generalised loads [N].
+  virtual void add_weight(Range slots, const double* g, double* load) const = 0;
+  /// Potential energy -sum m g.x of a range in that field [J].
+  [[nodiscard]] virtual double weight_potential(Range slots, const double* g, const double* q) const = 0;
   /// Adds all that distinguishes this kind's bodies.
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

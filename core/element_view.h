@@ -50,7 +50,7 @@ public:
     return {end, *context_->assembly.layout()};
   }
   /// Slot of a body that must have an orientation. Throws ModelError otherwise.
-  [[nodiscard]] const BodySlot& oriented(BodyId body) const {
+  [[nodiscard]] BodySlot oriented(BodyId body) const {
     const BodySlot& place = slot(body);
     if (place.rotation == none) refuse_orientation(body);
     return place;
@@ -59,7 +59,7 @@ public:
   [[nodiscard]] const EvaluationContext& context() const { return *context_; }
 
 private:
-  [[nodiscard]] const BodySlot& slot(BodyId body) const {
+  [[nodiscard]] BodySlot slot(BodyId body) const {
     const Layout& layout = *context_->assembly.layout();
     const Index index = layout.index(body);
     const Range island = context_->assembly.islands()[context_->island].bodies;

@@ -68,6 +68,10 @@ public:
   [[nodiscard]] virtual bool is_field() const { return false; }
   /// Appends the bodies an element acts on (ground included, nothing for a field).
   virtual void ends(Index element, std::vector<BodyId>& out) const = 0;
+  /// True if elements may book external loads.
+  [[nodiscard]] virtual bool books_external() const { return true; }
+  /// True if elements may book dissipative loads.
+  [[nodiscard]] virtual bool books_dissipative() const { return true; }
   /// Form of energy that potential() counts as.
   [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
 

@@ -32,6 +32,14 @@ public:
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
   /// Distance of a point from the obstacle. \param point 2 or 3 numbers [m]
   [[nodiscard]] virtual Gap gap(Index slot, const double* point) const = 0;
+  /// True if gap() finds any of `count` points, `stride` numbers apart, at a distance <= `margin` [m].
+  [[nodiscard]] virtual bool any_within(Index slot, const double* points, Index stride, Index count,
+                                        double margin) const {
+    for (Index i = 0; i < count; ++i) {
+      if (gap(slot, points + i * stride).distance <= margin) return true;
+    }
+    return false;
+  }
   /// Adds all that distinguishes this kind's obstacles.
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

@@ -4,7 +4,10 @@
 /// Storage of the parts of one role: kinds in the order in which they first came, parts of one kind together.
 
 #include <carom/core/ids.h>
+#include <carom/core/serial_list.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <typeindex>
 #include <typeinfo>
@@ -21,7 +24,7 @@ public:
   struct Entry {
     std::type_index type;
     std::unique_ptr<K> kind;
-    std::vector<Index> serials;
+    SerialList serials;
   };
   /// Place of a part.
   struct Place {
@@ -30,7 +33,7 @@ public:
   };
 
   Registry() = default;
-  Registry(const Registry& other) : places_(other.places_) {
+  Registry(const Registry& other) : next_serial_(other.next_serial_) {
     entries_.reserve(other.entries_.size());
     for (const Entry& entry : other.entries_)
       entries_.push_back({entry.type, entry.kind->clone(), entry.serials});
@@ -38,7 +41,7 @@ public:
   Registry(Registry&&) noexcept = default;
   Registry& operator=(Registry other) noexcept {
     std::swap(entries_, other.entries_);
-    std::swap(places_, other.places_);
+    std::swap(next_serial_, other.next_serial_);
     return *this;
   }
   ~Registry() = default;
@@ -57,31 +60,30 @@ public:
       kind->add(part, check);
       entries_.push_back({type, std::move(kind), {}});
     }
-    std::vector<Index>& serials = entries_[at].serials;
-    places_.push_back({at, static_cast<Index>(serials.size())});
-    serials.push_back(static_cast<Index>(places_.size() - 1));
+    entries_[at].serials.push_back(next_serial_++);
   }
 
   /// Serial number the next part will get.
-  [[nodiscard]] Index next_serial() const { return static_cast<Index>(places_.size()); }
+  [[nodiscard]] Index next_serial() const { return next_serial_; }
 
   /// True if the part was added and not removed.
-  [[nodiscard]] bool contains(Index serial) const {
-    return serial < places_.size() && places_[serial].slot != none;
+  [[nodiscard]] bool contains(Index serial) const { return place(serial).slot != none; }
+  /// Place of a part; `none` if it is not contained.
+  [[nodiscard]] Place place(Index serial) const {
+    for (Index entry = 0; entry < entries_.size(); ++entry) {
+      const Index slot = entries_[entry].serials.find(serial);
+      if (slot != none) return {entry, slot};
+    }
+    return {};
   }
-  /// Place of a part that is contained.
-  [[nodiscard]] Place place(Index serial) const { return places_[serial]; }
   /// Kind of a part that is contained.
-  [[nodiscard]] const K& kind_of(Index serial) const { return *entries_[places_[serial].entry].kind; }
+  [[nodiscard]] const K& kind_of(Index serial) const { return *entries_[place(serial).entry].kind; }
 
   /// Removes a part that is contained. Its serial number is not used again.
   void remove(Index serial) {
-    const Place at = places_[serial];
-    Entry& entry = entries_[at.entry];
-    entry.kind->remove(at.slot);
-    entry.serials.erase(entry.serials.begin() + at.slot);
-    for (Index slot = at.slot; slot < entry.serials.size(); ++slot) places_[entry.serials[slot]].slot = slot;
-    places_[serial] = {};
+    const Place at = place(serial);
+    entries_[at.entry].kind->remove(at.slot);
+    entries_[at.entry].serials.erase(at.slot);
   }
 
   /// Kinds in the order in which they first came.
@@ -90,15 +92,17 @@ public:
   /// Serial numbers of all parts, in the order in which they came.
   [[nodiscard]] std::vector<Index> serials() const {
     std::vector<Index> all;
-    for (Index serial = 0; serial < places_.size(); ++serial) {
-      if (contains(serial)) all.push_back(serial);
+    for (const Entry& entry : entries_) {
+      const auto middle = static_cast<std::ptrdiff_t>(all.size());
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) all.push_back(entry.serials[slot]);
+      std::inplace_merge(all.begin(), all.begin() + middle, all.end());
     }
     return all;
   }
 
 private:
   std::vector<Entry> entries_;
-  std::vector<Place> places_;
+  Index next_serial_ = 0;
 };
 
 }  // namespace carom

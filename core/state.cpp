@@ -13,7 +13,7 @@ State::State(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) 
   z.assign(layout_->z_size(), 0.0);
 }
 
-const BodySlot& State::slot(BodyId body) const {
+BodySlot State::slot(BodyId body) const {
   if (!layout_)
     throw ModelError("state of a body: the state belongs to no model; allowed: a state of a simulation");
   return layout_->slot(body);

@@ -63,7 +63,7 @@ public:
   [[nodiscard]] StateView view() const { return {time, q.data(), v.data(), z.data()}; }
 
 private:
-  [[nodiscard]] const BodySlot& slot(BodyId body) const;
+  [[nodiscard]] BodySlot slot(BodyId body) const;
   [[nodiscard]] Index angle_index(BodyId body) const;
   [[nodiscard]] Index spin_index(BodyId body) const;
 

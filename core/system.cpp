@@ -172,7 +172,9 @@ std::uint64_t System::fingerprint() const {
       if (entry.serials.empty()) continue;  // all its parts were removed
       print.add(entry.kind->label());
       print.add(std::uint64_t{entry.serials.size()});
-      for (const Index serial : entry.serials) print.add(std::uint64_t{serial});
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+        print.add(std::uint64_t{entry.serials[slot]});
+      }
       entry.kind->fingerprint(print);
     }
   };

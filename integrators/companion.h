@@ -22,8 +22,8 @@ struct PresentLoads {
   bool valid = false;               ///< false: to be evaluated
   bool mean = false;                ///< mean loads of the last step
   std::vector<double> total;        ///< [N, N m]
-  std::vector<double> dissipative;  ///< part of the total
-  std::vector<double> external;     ///< part of the total
+  std::vector<double> dissipative;  ///< part of the total; empty if no element books any
+  std::vector<double> external;     ///< part of the total; empty if no element books any
 };
 
 /// Loads at the starts of the last steps, by which those at the end of the next are guessed.

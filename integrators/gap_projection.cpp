@@ -45,7 +45,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
   constexpr int most_passes = 20;
   const double depth = rounding_depth(assembly, island, state);
   const Island& range = assembly.islands()[island];
-  const auto& lengths = assembly.length_scales();
+  if (lengths_.size() != state.v.size()) lengths_ = assembly.length_scales();
   unmoved_.assign(state.q.begin(), state.q.end());
   displacement_.assign(state.v.size(), 0.0);
   Result result;
@@ -78,7 +78,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
     if (!improved) return result;
     result.moved = true;
     for (Index i = range.v.begin; i < range.v.end; ++i) {
-      result.shift = std::max(result.shift, std::abs(displacement_[i]) * lengths[i]);
+      result.shift = std::max(result.shift, std::abs(displacement_[i]) * lengths_[i]);
     }
     evaluate_positions(assembly, island, state.view(), evaluation);
   }

@@ -45,6 +45,7 @@ private:
   ContactProblem problem_;
   std::vector<double> unmoved_;       // q
   std::vector<double> displacement_;  // d, over all velocities
+  std::vector<double> lengths_;       // of the assembly
   std::vector<double> response_, multipliers_, moved_;
 };
 

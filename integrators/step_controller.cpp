@@ -21,7 +21,9 @@ bool same_contacts(const StepReport& a, const StepReport& b) {
 }  // namespace
 
 StepController::StepController(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), options_(options) {}
+    : assembly_(&assembly), options_(options) {
+  if (options.control) lengths_ = assembly.length_scales();
+}
 
 void StepController::step(TimeStepper& stepper, State& state, Companion& companion, double limit,
                           StepReport& report) {
@@ -100,18 +102,17 @@ bool StepController::try_step(TimeStepper& stepper, const State& state, const Co
 double StepController::error(double step) const {
   constexpr double share = 1.0 / 3.0;  // of the halves in the difference: C h^3/4 of 3 C h^3/4
   double largest = 0.0;
-  const auto& lengths = assembly_->length_scales();
-  const auto take = [&](double difference, double length) {
+    const auto take = [&](double difference, double length) {
     largest = std::max(largest, std::abs(difference) * length);
   };
   for (const BodySlot& body : assembly_->layout()->bodies()) {
     // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
     for (Index i = 0; i < body.q_size; ++i) {
-      const double length = i < body.v_size ? lengths[body.v + i] : 1.0;
+      const double length = i < body.v_size ? lengths_[body.v + i] : 1.0;
       take(whole_.state.q[body.q + i] - halves_.state.q[body.q + i], length);
     }
     for (Index i = 0; i < body.v_size; ++i) {
-      take(step * (whole_.state.v[body.v + i] - halves_.state.v[body.v + i]), lengths[body.v + i]);
+      take(step * (whole_.state.v[body.v + i] - halves_.state.v[body.v + i]), lengths_[body.v + i]);
     }
   }
   return share * largest;

@@ -11,6 +11,8 @@
 #include <carom/integrators/time_stepper.h>
 #include <carom/integrators/time_stepping.h>
 
+#include <vector>
+
 namespace carom {
 
 /// Chooses lengths of steps. Owns workspaces only.
@@ -35,6 +37,7 @@ private:
 
   const Assembly* assembly_;
   TimeStepping options_;
+  std::vector<double> lengths_;
   Run whole_, halves_;
   StepReport of_whole_, first_, second_;
 };

@@ -1,3 +1,4 @@
+#include <carom/core/pair.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
@@ -8,19 +9,36 @@ namespace carom {
 
 namespace {
 
-void resize(PresentLoads& loads, std::size_t size) {
-  loads.total.resize(size);
-  loads.dissipative.resize(size);
-  loads.external.resize(size);
+/// Where elements book. The conservative part goes into `total`, to which finish() adds the others; so do
+/// those that no element books, whose arrays are empty.
+Loads open(std::vector<double>& total, std::vector<double>& dissipative, std::vector<double>& external) {
+  return {total.data(), dissipative.empty() ? total.data() : dissipative.data(),
+          external.empty() ? total.data() : external.data()};
 }
 
-/// Where elements book: the conservative part goes into `total`, to which finish() adds the others.
-Loads open(PresentLoads& loads) {
-  return {loads.total.data(), loads.dissipative.data(), loads.external.data()};
+void add(std::vector<double>& total, const std::vector<double>& part, Range v) {
+  if (part.empty()) return;
+  for (Index i = v.begin; i < v.end; ++i) total[i] += part[i];
 }
 
-void finish(PresentLoads& loads, Range v) {
-  for (Index i = v.begin; i < v.end; ++i) loads.total[i] += loads.dissipative[i] + loads.external[i];
+void finish(std::vector<double>& total, const std::vector<double>& dissipative,
+            const std::vector<double>& external, Range v) {
+  add(total, dissipative, v);
+  add(total, external, v);
+}
+
+/// Work of the impulse of loads a and b at the ends of a step: impulse times mean velocity, exact for the
+/// kinetic energy [J].
+double work(const double* a, const double* b, const State& start, const State& end, Range v, double step) {
+  Pair pairs = both(0.0);
+  Index i = v.begin;
+  for (; i + 1 < v.end; i += 2) {
+    pairs += (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) *
+             (load_pair(a + i) + load_pair(b + i));
+  }
+  double sum = pairs[0] + pairs[1];
+  if (i < v.end) sum += (start.v[i] + end.v[i]) * (a[i] + b[i]);
+  return 0.25 * step * sum;
 }
 
 }  // namespace
@@ -30,19 +48,22 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
       options_(options),
       finder_(assembly),
       trial_(assembly.layout()),
-      start_(make_evaluation(assembly)),
       evaluation_(make_evaluation(assembly)) {
   check_options(options);
   const std::size_t size = assembly.layout()->v_size();
-  resize(end_, size);
+  start_.rotation.resize(assembly.layout()->rotation_size());
+  for (const auto& kind : assembly.force_kinds()) {
+    books_dissipative_ = books_dissipative_ || kind->books_dissipative();
+    books_external_ = books_external_ || kind->books_external();
+  }
+  if (books_dissipative_) dissipative_.resize(size);
+  if (books_external_) external_.resize(size);
   rounding_.resize(size);
-  free_.resize(size);
-  response_.resize(size);
   ratings_.resize(assembly.islands().size());
   rated_contraction_.assign(assembly.islands().size(), -1.0);
   if (mean_rule() || assembly.layout()->z_size() > 0) {
     middle_ = State(assembly.layout());
-    middle_evaluation_ = make_evaluation(assembly);
+    middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
   }
   if (options.iteration != Iteration::fixed_point) {
     evaluated_.resize(size);
@@ -56,7 +77,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
         kind.apply_inverse_mass(slots, update_.data() + v, weights_.data() + v);
       });
     }
-    for (std::size_t i = 0; i < size; ++i) weights_[i] *= assembly.length_scales()[i];
+    const std::vector<double> lengths = assembly.length_scales();
+    for (std::size_t i = 0; i < size; ++i) weights_[i] *= lengths[i];
   }
 }
 
@@ -90,11 +112,14 @@ void TimeStepper::start_loads(const State& state, Companion& companion) {
   PresentLoads& loads = companion.loads;
   if (loads.valid && loads.mean == mean_rule()) return;
   if (loads.valid) companion.history.known = 0;  // of the other rule
-  resize(loads, trial_.v.size());
+  loads.total.resize(trial_.v.size());
+  loads.dissipative.resize(books_dissipative_ ? trial_.v.size() : 0);
+  loads.external.resize(books_external_ ? trial_.v.size() : 0);
   for (Index island = 0; island < assembly_->islands().size(); ++island) {
     evaluate_positions(*assembly_, island, state.view(), evaluation_);
-    evaluate_loads(*assembly_, island, state.view(), evaluation_, open(loads));
-    finish(loads, assembly_->islands()[island].v);
+    evaluate_loads(*assembly_, island, state.view(), evaluation_,
+                   open(loads.total, loads.dissipative, loads.external));
+    finish(loads.total, loads.dissipative, loads.external, assembly_->islands()[island].v);
   }
   loads.valid = true;
   loads.mean = mean_rule();
@@ -141,6 +166,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   finder_.find(island, state.view(), start_, 0.0, contacts_);
   if (contacts_.empty()) return;
   const Range v = assembly_->islands()[island].v;
+  response_.resize(trial_.v.size());
   std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
   if (options_.iteration == Iteration::linearly_implicit) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together
@@ -189,19 +215,20 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
 void TimeStepper::solve_contacts(Index island, const State& state, const Companion& companion, double step) {
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
+  // The velocities without contact stand for a while where the sweep will write what it rounds off.
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     ContactCluster& cluster = clusters_[i];
     const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body];
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
       response_[k] = half * (load0[k] + evaluation_.force[k]);
     }
-    assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1},
-                                                           response_.data() + body.v, free_.data() + body.v);
+    assembly_->body_kinds()[body.kind]->apply_inverse_mass(
+        {body.slot, body.slot + 1}, response_.data() + body.v, rounding_.data() + body.v);
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
-      free_[k] += companion.rounding[k] + state.v[k];
+      rounding_[k] += companion.rounding[k] + state.v[k];
       response_[k] = 0.0;
     }
-    cluster.set_free_velocity(free_.data());
+    cluster.set_free_velocity(rounding_.data());
     if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
     cluster.apply(response_.data());
   }
@@ -263,29 +290,26 @@ void TimeStepper::evaluate_iterate(Index island, const State& state, double step
 void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
   const Assembly& assembly = *assembly_;
   const Range v = assembly.islands()[island].v;
+  // The total is that of the impulse that acted (of the iterate before the last); its parts by cause are
+  // those of the last iterate, what the iteration left open counts as conservative.
+  const double total = work(start_of_sum(companion), evaluation_.force.data(), state, trial_, v, step);
   evaluate_iterate(island, state, step, nullptr);
+  const Loads end = open(evaluation_.force, dissipative_, external_);
   if (mean_rule()) {
     with_step(island, state, step,
-              [&](const StepContext& at) { evaluate_mean_loads(assembly, island, at, open(end_)); });
+              [&](const StepContext& at) { evaluate_mean_loads(assembly, island, at, end); });
     add_stored_energies(assembly, island, trial_.view(), evaluation_, stored_);
   } else {
-    evaluate_loads_and_potentials(assembly, island, trial_.view(), evaluation_, open(end_), stored_);
+    evaluate_loads_and_potentials(assembly, island, trial_.view(), evaluation_, end, stored_);
     add_kinetic_energy(assembly, island, trial_.view(), stored_);
   }
-  finish(end_, v);
-
-  // Work of an impulse over the step: impulse times mean velocity, exact for the kinetic energy. The total is
-  // that of the impulse that acted (of the iterate before the last); its parts by cause are those of the last
-  // iterate, what the iteration left open counts as conservative.
-  const double* const load0 = start_of_sum(companion);
-  const PresentLoads& start = mean_rule() ? end_ : companion.loads;
-  double total = 0.0, dissipative = 0.0, external = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    const double path = 0.25 * step * (state.v[i] + trial_.v[i]);
-    total += path * (load0[i] + evaluation_.force[i]);
-    dissipative += path * (start.dissipative[i] + end_.dissipative[i]);
-    external += path * (start.external[i] + end_.external[i]);
-  }
+  finish(evaluation_.force, dissipative_, external_, v);
+  const auto part = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+    if (at_end.empty()) return 0.0;
+    return work(mean_rule() ? at_end.data() : at_start.data(), at_end.data(), state, trial_, v, step);
+  };
+  const double dissipative = part(companion.loads.dissipative, dissipative_);
+  const double external = part(companion.loads.external, external_);
   double inside = 0.0;
   if (!assembly.islands()[island].z.empty()) {
     inside = with_step(island, state, step,
@@ -313,8 +337,9 @@ void TimeStepper::project(Index island, const State& state, double step) {
   for (std::size_t i = 0; i < stored_energy_count; ++i)
     stored_.values[i] += after.values[i] - before.values[i];
   if (mean_rule()) return;
-  evaluate_loads(assembly, island, trial_.view(), evaluation_, open(end_));
-  finish(end_, assembly.islands()[island].v);
+  evaluate_loads(assembly, island, trial_.view(), evaluation_,
+                 open(evaluation_.force, dissipative_, external_));
+  finish(evaluation_.force, dissipative_, external_, assembly.islands()[island].v);
 }
 
 void TimeStepper::book_contacts(const State& state, double step) {
@@ -397,10 +422,12 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   history.step = report_.step;
   history.earlier.swap(history.before);
   history.before.swap(companion.loads.total);
-  std::swap(companion.loads, end_);
+  companion.loads.total.swap(evaluation_.force);
+  companion.loads.dissipative.swap(dissipative_);
+  companion.loads.external.swap(external_);
   companion.loads.valid = true;
   companion.loads.mean = mean_rule();
-  resize(end_, state.v.size());
+  evaluation_.force.resize(state.v.size());
   std::swap(companion.rounding, rounding_);
   state.time = end_time;
   companion.ledger.book(flows_, stored_);

@@ -106,17 +106,19 @@ private:
   State middle_;                   // halfway, where elements look at it
   Evaluation start_;               // rotation: at the start
   Evaluation middle_evaluation_;   // rotation: halfway
-  Evaluation evaluation_;          // force: loads at the end (or mean loads), of the iterate before
+  Evaluation evaluation_;          // force: loads at the end (or mean loads), of the iterate before, at last of the last
   std::vector<double> evaluated_;  // loads of the iterate, where the next guess is not simply these
   std::vector<double> weights_;    // of loads: lengths by mass
   AndersonAcceleration anderson_;
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew
   GapProjection projection_;
-  PresentLoads end_;              // loads at the end, by cause, of the last iterate
-  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}
-  std::vector<double> free_, response_,
-      update_;  // velocities without contact, changes by contact, where bodies touch
+  bool books_dissipative_ = false;  // whether any element does
+  bool books_external_ = false;
+  std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
+  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
+  std::vector<double> response_;  // changes of velocity by contact, empty until anything touches
+  std::vector<double> update_;    // changes of velocities, of the linearly implicit iteration
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;

@@ -25,14 +25,9 @@ std::unique_ptr<ForceKind> GravityKind<D>::arranged(std::span<const Index> order
 template <int D>
 void GravityKind<D>::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
   for (Index element = elements.begin; element < elements.end; ++element) {
-    const Vec<D>& g = parts_[element].acceleration;
-    const double* mass = at.assembly.masses().data() + at.assembly.islands()[at.island].bodies.begin;
+    const double* const g = parts_[element].acceleration.data();
     at.assembly.for_bodies(at.island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      double* load = loads.conservative + v;
-      const Index stride = kind.v_size();
-      for (Index i = 0; i < slots.size(); ++i, ++mass, load += stride) {
-        for (int d = 0; d < D; ++d) load[d] += *mass * g[d];
-      }
+      kind.add_weight(slots, g, loads.conservative + v);
     });
   }
 }
@@ -41,16 +36,9 @@ template <int D>
 double GravityKind<D>::potential(const EvaluationContext& at, Range elements) const {
   CompensatedSum sum;
   for (Index element = elements.begin; element < elements.end; ++element) {
-    const Vec<D>& g = parts_[element].acceleration;
-    const double* mass = at.assembly.masses().data() + at.assembly.islands()[at.island].bodies.begin;
+    const double* const g = parts_[element].acceleration.data();
     at.assembly.for_bodies(at.island, [&](const BodyKind& kind, Range slots, Index q, Index, Index) {
-      const double* position = at.state.q + q;
-      const Index stride = kind.q_size();
-      for (Index i = 0; i < slots.size(); ++i, ++mass, position += stride) {
-        double height = 0.0;
-        for (int d = 0; d < D; ++d) height += g[d] * position[d];
-        sum.add(-*mass * height);
-      }
+      sum.add(kind.weight_potential(slots, g, at.state.q + q));
     });
   }
   return sum.value();

@@ -3,8 +3,10 @@
 /// \file
 /// Linear spring with a dashpot in parallel.
 
+#include <carom/core/column.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
+#include <carom/core/pair.h>
 #include <carom/core/part.h>
 
 #include <limits>
@@ -45,12 +47,13 @@ public:
   [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
   [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
                                                     const Layout& layout) const override;
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  void remove(Index slot) override;
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] Index size() const override { return stiffness_.size(); }
   void ends(Index element, std::vector<BodyId>& out) const override;
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::elastic; }
+  [[nodiscard]] bool books_external() const override { return false; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
   double evaluate_with_potential(const EvaluationContext& at, Range elements,
@@ -63,23 +66,33 @@ public:
   void fingerprint(Fingerprint& print) const override;
 
 private:
-  /// A spring between centres of mass; ends that are not centres stand in the side table.
-  struct Spring {
-    double stiffness, damping, free_length;
-    Index from_q, from_v, to_q, to_v;
-    Index ends;  ///< place in the side table, `none` if both ends are centres of mass
+  /// Points off the centre of mass, of a described spring.
+  struct Points {
+    Index element;
+    Vec<D> from, to;
   };
+  /// Ends of an arranged spring that are not both centres of mass with equal places in q and v.
   struct Ends {
+    Index element;
     Attachment<D> from, to;
   };
 
-  [[nodiscard]] Ends ends_of(const Spring& spring) const;
+  [[nodiscard]] SpringDamper<D> described(Index element) const;
+  [[nodiscard]] Ends ends_of(Index element) const;
+  /// Calls centres(range) and other(ends) for the springs of a range, in order.
+  template <class Centres, class Other>
+  void for_springs(Range elements, Centres&& centres, Other&& other) const;
   template <bool Together, bool WithPotential>
   double sweep(const EvaluationContext& at, Range elements, const Loads& loads) const;
+  template <bool Together, bool WithPotential>
+  void sweep_centres(const StateView& state, Range elements, const Loads& loads, PairSum& potential) const;
 
-  std::vector<SpringDamper<D>> parts_;
-  std::vector<Spring> springs_;  // packed for running, empty until arranged
-  std::vector<Ends> side_table_;
+  // By element. Ends: serial numbers of the bodies as described, first coordinates and velocities arranged.
+  Column<double> stiffness_, damping_, free_length_;
+  std::vector<Index> from_, to_;
+  Index token_ = 0;             // of the bodies' identities
+  std::vector<Points> points_;  // described, by element
+  std::vector<Ends> ends_;      // arranged, by element
 };
 
 extern template class SpringDamperKind<2>;

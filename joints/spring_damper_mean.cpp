@@ -10,8 +10,8 @@ namespace carom::generic {
 template <int D>
 void SpringDamperKind<D>::evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const {
   for (Index i = elements.begin; i < elements.end; ++i) {
-    const Spring& spring = springs_[i];
-    const Ends ends = ends_of(spring);
+    const double stiffness = stiffness_[i], damping = damping_[i], free_length = free_length_[i];
+    const Ends ends = ends_of(i);
     const Vec<D> from0 = ends.from.lever(at.start.evaluation);
     const Vec<D> from1 = ends.from.lever(at.end.evaluation);
     const Vec<D> to0 = ends.to.lever(at.start.evaluation);
@@ -20,10 +20,10 @@ void SpringDamperKind<D>::evaluate_mean(const StepContext& at, Range elements, c
                            ends.to.position(at.end.state, to1) - ends.from.position(at.end.state, from1));
     // Without a free length the force is linear, at coinciding ends too.
     const Vec<D> elastic =
-        spring.free_length == 0.0
-            ? Vec<D>(spring.stiffness * line.distance)
-            : Vec<D>(spring.stiffness * (line.length - spring.free_length) * line.direction);
-    const Vec<D> viscous = spring.damping * (line.growth / at.step) * line.direction;
+        free_length == 0.0
+            ? Vec<D>(stiffness * line.distance)
+            : Vec<D>(stiffness * (line.length - free_length) * line.direction);
+    const Vec<D> viscous = damping * (line.growth / at.step) * line.direction;
     const Vec<D> from = 0.5 * (from0 + from1);
     const Vec<D> to = 0.5 * (to0 + to1);
     ends.from.add_force(loads.conservative, from, elastic);

@@ -1,0 +1,53 @@
+#pragma once
+
+/// \file
+/// One property of many parts. Parts of a kind are often alike: while all values are equal, one is stored.
+
+#include <carom/core/ids.h>
+
+#include <cstring>
+#include <vector>
+
+namespace carom {
+
+/// Values by slot. `T` is a number or a struct of numbers without padding; values count as equal if all their
+/// bits are, so that what comes out is what went in.
+template <class T>
+class Column {
+public:
+  /// Number of values.
+  [[nodiscard]] Index size() const { return size_; }
+  /// True if one value stands for all.
+  [[nodiscard]] bool uniform() const { return values_.empty(); }
+  /// Value at a slot.
+  [[nodiscard]] const T& operator[](Index slot) const { return uniform() ? common_[0] : values_[slot]; }
+  /// Values of neighbouring slots for loops that take them two by two: data()[slot * stride()] and the one
+  /// behind it. Uniform columns hold two copies and have stride 0.
+  [[nodiscard]] const T* data() const { return uniform() ? common_ : values_.data(); }
+  /// See data().
+  [[nodiscard]] Index stride() const { return uniform() ? 0 : 1; }
+
+  /// Appends a value.
+  void push_back(const T& value) {
+    if (size_ == 0) common_[0] = common_[1] = value;
+    if (uniform() && !same(value, common_[0])) values_.assign(size_, common_[0]);
+    ++size_;
+    if (!uniform() || !same(value, common_[0])) values_.push_back(value);
+  }
+  /// Removes a value; later ones move up.
+  void erase(Index slot) {
+    --size_;
+    if (!uniform()) values_.erase(values_.begin() + slot);
+  }
+  /// Gives back memory that is not in use.
+  void shrink() { values_.shrink_to_fit(); }
+
+private:
+  static bool same(const T& a, const T& b) { return std::memcmp(&a, &b, sizeof(T)) == 0; }
+
+  std::vector<T> values_;  // empty while all values are equal
+  T common_[2]{};
+  Index size_ = 0;
+};
+
+}  // namespace carom
