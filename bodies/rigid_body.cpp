@@ -61,11 +61,13 @@ void RigidBodyKind<2>::advance(Range slots, const double* q0, const double* delt
 
 void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
   const double half = 0.5 * step;
+  SweepChange seen = change;
   Index at = 0;
   for (Index slot = slots.begin; slot < slots.end; ++slot) {
     const Inertia& mass = masses_[slot];
+    const double by_mass = half / mass.mass, by_inertia = half / mass.inertia;
     for (Index i = 0; i < 3; ++i, ++at) {
-      const double inverse = half / (i < 2 ? mass.mass : mass.inertia);
+      const double inverse = i < 2 ? by_mass : by_inertia;
       const double length = i < 2 ? 1.0 : mass.gyration_radius;
       const double change_of_v =
           inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
@@ -74,12 +76,13 @@ void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a, Swe
       if (i == 2 && a.rational_turn) move = Space<2>::rational_turn(move);
       const double q = a.q0[at] + move;
       a.cut[at] = change_of_v - (v - a.v0[at]);
-      change.take((v - a.v1[at]) * step * length, v * step * length);
-      change.take((q - a.q1[at]) * length, q * length);
+      seen.take((v - a.v1[at]) * step * length, v * step * length);
+      seen.take((q - a.q1[at]) * length, q * length);
       a.v1[at] = v;
       a.q1[at] = q;
     }
   }
+  change = seen;
 }
 
 void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* a) const {

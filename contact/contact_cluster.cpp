@@ -16,6 +16,12 @@ constexpr int newton_steps = 2;
 
 constexpr std::string_view kept = "modes of the last sweep";
 
+// Whether a problem has the form of one planar contact, so that only its numbers need to be filled in.
+bool is_one_planar_contact(const ContactProblem& problem) {
+  return problem.rows() == 2 && problem.groups().size() == 1 &&
+         problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
+}
+
 }  // namespace
 
 void ContactCluster::build(const Assembly& assembly, std::span<const Contact> contacts,
@@ -23,6 +29,32 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
   contacts_ = contacts;
   solved_ = changed_modes_ = false;
+  if (contacts.size() == 1 && contacts[0].rows == 2 && is_one_planar_contact(problem_)) {
+    // The same form as before, which is the hot path.
+    const Contact& contact = contacts[0];
+    const BodySlot body = assembly.layout()->bodies()[contact.body];
+    const BodyKind& kind = *assembly.body_kinds()[body.kind];
+    for (int i = 0; i < 2; ++i) {
+      kind.apply_inverse_mass({body.slot, body.slot + 1}, contact.row(i),
+                              response_.data() + static_cast<std::size_t>(i) * stride);
+    }
+    const auto product = [&](int row, int column) {
+      const double* const response = response_.data() + static_cast<std::size_t>(column) * stride;
+      double sum = 0.0;
+      for (int k = 0; k < contact.columns; ++k) sum += contact.row(row)[k] * response[k];
+      return sum;
+    };
+    problem_.w(0, 0) = product(0, 0);
+    problem_.w(0, 1) = problem_.w(1, 0) = product(1, 0);
+    problem_.w(1, 1) = product(1, 1);
+    problem_.sets()[1].coefficient = contact.law.friction;
+    before_[0] = contact.velocity(0, velocity_before);
+    before_[1] = contact.velocity(1, velocity_before);
+    restitution_[0] = contact.law.normal_restitution;
+    restitution_[1] = contact.law.tangential_restitution;
+    impulse_[0] = impulse_[1] = 0.0;
+    return;
+  }
   first_row_.clear();
   int rows = 0;
   for (const Contact& contact : contacts) {
@@ -135,8 +167,10 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
 }
 
 const ContactReport& ContactCluster::solve(SolverChain& chain) {
-  kept_impulse_.assign(impulse_.begin(), impulse_.end());
-  kept_modes_.assign(modes_.begin(), modes_.end());
+  if (solved_) {
+    kept_impulse_.assign(impulse_.begin(), impulse_.end());
+    kept_modes_.assign(modes_.begin(), modes_.end());
+  }
   report_ = chain.solve(problem_, impulse_);
   modes_.assign(chain.modes().begin(), chain.modes().end());
   changed_modes_ = solved_ && modes_ != kept_modes_;

@@ -106,6 +106,12 @@ void ContactFinder::make_law_table() {
   }
 }
 
+bool ContactFinder::needs_rotations() const {
+  return std::any_of(features_.begin(), features_.end(), [](const Feature& feature) {
+    return feature.centre[0] != 0.0 || feature.centre[1] != 0.0 || feature.centre[2] != 0.0;
+  });
+}
+
 std::string ContactFinder::name(const ContactKey& key) const {
   const System& system = assembly_->system();
   const Index token = system.token();

@@ -25,6 +25,9 @@ public:
   void find(Index island, const StateView& state, const Evaluation& evaluation, double margin,
             std::vector<Contact>& out) const;
 
+  /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
+  [[nodiscard]] bool needs_rotations() const;
+
   /// "particle 'lower' on half-plane #0".
   [[nodiscard]] std::string name(const ContactKey& key) const;
 

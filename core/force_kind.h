@@ -72,6 +72,8 @@ public:
   [[nodiscard]] virtual bool books_external() const { return true; }
   /// True if elements may book dissipative loads.
   [[nodiscard]] virtual bool books_dissipative() const { return true; }
+  /// True if elements look at the rotations of bodies (Evaluation::rotation).
+  [[nodiscard]] virtual bool needs_rotations() const { return true; }
   /// Form of energy that potential() counts as.
   [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
 

@@ -35,12 +35,15 @@ public:
       : assembly_(assembly),
         first_(assembly.islands()[island].v.begin),
         sums_(assembly.islands()[island].v.size()),
-        lengths_(assembly.length_scales()),
         body_of_(sums_.stiffness.size()) {
     const Range bodies = assembly.islands()[island].bodies;
     for (Index body = bodies.begin; body < bodies.end; ++body) {
       const BodySlot& slot = assembly.layout()->bodies()[body];
-      for (Index i = 0; i < slot.v_size; ++i) body_of_[slot.v + i - first_] = body;
+      const BodyKind& kind = *assembly.body_kinds()[slot.kind];
+      for (Index i = 0; i < slot.v_size; ++i) {
+        body_of_[slot.v + i - first_] = body;
+        lengths_.push_back(kind.length_scale(slot.slot, i));
+      }
     }
   }
 
@@ -74,14 +77,14 @@ public:
         kind.apply_inverse_mass({slot.slot, slot.slot + 1}, derivatives.data() + column * size_ + rows.first,
                                 acceleration_.data());
         for (Index i = 0; i < slot.v_size; ++i) {
-          sums[i] += std::abs(acceleration_[i]) * lengths_[slot.v + i] / length;
+          sums[i] += std::abs(acceleration_[i]) * lengths_[slot.v + i - first_] / length;
         }
       };
       for (const Block& columns : blocks_) {
         const BodySlot& other = assembly_.layout()->bodies()[columns.body];
         for (Index i = 0; i < other.v_size; ++i) {
-          take(by_position_, columns.first + i, lengths_[other.v + i], stiffness_);
-          take(by_velocity_, columns.first + i, lengths_[other.v + i], damping_);
+          take(by_position_, columns.first + i, lengths_[other.v + i - first_], stiffness_);
+          take(by_velocity_, columns.first + i, lengths_[other.v + i - first_], damping_);
         }
       }
       for (Index i = 0; i < slot.v_size; ++i) {
@@ -124,7 +127,7 @@ private:
   const Assembly& assembly_;
   Index first_;
   RowSums sums_;
-  std::vector<double> lengths_;
+  std::vector<double> lengths_;  // by which changes are weighed (BodyKind::length_scale)
   std::vector<Index> body_of_;
   std::vector<Block> blocks_;
   Index size_ = 0;

@@ -55,7 +55,10 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   for (const auto& kind : assembly.force_kinds()) {
     books_dissipative_ = books_dissipative_ || kind->books_dissipative();
     books_external_ = books_external_ || kind->books_external();
+    loads_need_rotations_ = loads_need_rotations_ || kind->needs_rotations();
   }
+  contacts_need_rotations_ = finder_.needs_rotations();
+  start_needs_rotations_ = contacts_need_rotations_ || loads_need_rotations_;
   if (books_dissipative_) dissipative_.resize(size);
   if (books_external_) external_.resize(size);
   rounding_.resize(size);
@@ -126,7 +129,7 @@ void TimeStepper::start_loads(const State& state, Companion& companion) {
 }
 
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
-  evaluate_positions(*assembly_, island, state.view(), start_);
+  if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
   find_contacts(island, state);
   start_iteration(island, state, companion, step);
   if (options_.iteration == Iteration::linearly_implicit) start_implicit(island, state, companion, step);
@@ -257,7 +260,7 @@ auto TimeStepper::with_step(Index island, const State& state, double step, F&& f
 /// Internal variables, the state halfway where it is looked at, and the loads of the iterate.
 void TimeStepper::evaluate_iterate(Index island, const State& state, double step, double* loads) {
   const Assembly& assembly = *assembly_;
-  evaluate_positions(assembly, island, trial_.view(), evaluation_);
+  if (loads_need_rotations_) evaluate_positions(assembly, island, trial_.view(), evaluation_);
   const Island& range = assembly.islands()[island];
   if (!range.z.empty()) {
     const ElementId failed = with_step(island, state, step, [&](const StepContext& at) {
@@ -275,7 +278,7 @@ void TimeStepper::evaluate_iterate(Index island, const State& state, double step
     });
     for (Index i = range.v.begin; i < range.v.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
     for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
-    evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+    if (loads_need_rotations_) evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
   }
   if (loads == nullptr) return;
   if (mean_rule()) {
@@ -326,6 +329,7 @@ void TimeStepper::project(Index island, const State& state, double step) {
   if (contacts_.empty()) return;
   const Assembly& assembly = *assembly_;
   StoredEnergies before, after;
+  evaluate_positions(assembly, island, trial_.view(), evaluation_);
   add_stored_energies(assembly, island, trial_.view(), evaluation_, before);
   const GapProjection::Result result =
       projection_.project(assembly, island, finder_, contacts_, chain_, trial_, evaluation_);

@@ -54,6 +54,7 @@ public:
 private:
   void start_loads(const State& state, Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
+  // Rotations and sum of all loads at the trial, as far as anyone needs them.
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
   void start_iteration(Index island, const State& state, const Companion& companion, double step);
@@ -115,6 +116,9 @@ private:
   GapProjection projection_;
   bool books_dissipative_ = false;  // whether any element does
   bool books_external_ = false;
+  bool loads_need_rotations_ = false;
+  bool contacts_need_rotations_ = false;
+  bool start_needs_rotations_ = false;  // the one or the other
   std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
   std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
   std::vector<double> response_;  // changes of velocity by contact, empty until anything touches

@@ -54,6 +54,7 @@ public:
   void ends(Index element, std::vector<BodyId>& out) const override;
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::elastic; }
   [[nodiscard]] bool books_external() const override { return false; }
+  [[nodiscard]] bool needs_rotations() const override { return !ends_.empty(); }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext& at, Range elements) const override;
   double evaluate_with_potential(const EvaluationContext& at, Range elements,
