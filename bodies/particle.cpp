@@ -75,62 +75,75 @@ private:
 
 /// One sweep over two numbers. \param half h / 2, \param inverse h / (2 m)
 template <bool Response>
-inline void sweep_pair(const SweepArrays& a, Index at, Pair step, Pair half, Pair inverse, PairChange& seen) {
+inline void sweep_pair(const SweepArrays& a, Index at, Pair half, Pair inverse) {
   const Pair v0 = load_pair(a.v0 + at);
   Pair change_of_v =
       inverse * (load_pair(a.load0 + at) + load_pair(a.load1 + at)) + load_pair(a.carried + at);
   if constexpr (Response) change_of_v += load_pair(a.response + at);
   const Pair v = v0 + change_of_v;
-  const Pair q = load_pair(a.q0 + at) + half * (v0 + v);
   store_pair(a.cut + at, change_of_v - (v - v0));
-  seen.take((v - load_pair(a.v1 + at)) * step, v * step);
-  seen.take(q - load_pair(a.q1 + at), q);
+  store_pair(a.q1 + at, load_pair(a.q0 + at) + half * (v0 + v));
   store_pair(a.v1 + at, v);
-  store_pair(a.q1 + at, q);
 }
 
-inline void sweep_number(const SweepArrays& a, Index at, double step, double inverse, SweepChange& seen) {
+inline void sweep_number(const SweepArrays& a, Index at, double half, double inverse) {
   const double change_of_v =
       inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
   const double v = a.v0[at] + change_of_v;
-  const double q = a.q0[at] + 0.5 * step * (a.v0[at] + v);
   a.cut[at] = change_of_v - (v - a.v0[at]);
-  seen.take((v - a.v1[at]) * step, v * step);
-  seen.take(q - a.q1[at], q);
+  a.q1[at] = a.q0[at] + half * (a.v0[at] + v);
   a.v1[at] = v;
-  a.q1[at] = q;
 }
 
-/// Particles whose numbers can be taken two by two: all of one mass, or planar. Returns how many numbers
-/// were done.
-template <int D, bool Response>
-Index sweep_pairs(Range slots, const Column<double>& masses, double step, const SweepArrays& a,
-                  SweepChange& change) {
-  const double half = 0.5 * step;
+/// Calls f(place, factor) for pairs of numbers of particles that can be taken two by two (all of one mass, or
+/// planar), `factor` being `over_mass` divided by the mass. Returns how many numbers were done.
+template <int D, class F>
+inline Index for_pairs(Range slots, const Column<double>& masses, double over_mass, F&& f) {
   const Index numbers = slots.size() * D;
-  PairChange seen;
   Index at = 0;
   if (masses.uniform()) {
-    const Pair inverse = both(half / masses[0]);
-    for (; at + 1 < numbers; at += 2) sweep_pair<Response>(a, at, both(step), both(half), inverse, seen);
+    const Pair factor = both(over_mass / masses[0]);
+    for (; at + 1 < numbers; at += 2) f(at, factor);
   } else if constexpr (D == 2) {
     const double* const mass = masses.data() + slots.begin;
-    for (; at < numbers; at += 2) {
-      sweep_pair<Response>(a, at, both(step), both(half), both(half / mass[at / 2]), seen);
-    }
+    for (; at < numbers; at += 2) f(at, both(over_mass / mass[at / 2]));
   }
-  seen.add_to(change);
   return at;
 }
 
 }  // namespace
 
 template <int D>
-void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a, SweepChange& change) const {
+void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a) const {
+  const double half = 0.5 * step;
   const Index numbers = slots.size() * D;
-  Index at = a.response ? sweep_pairs<D, true>(slots, masses_, step, a, change)
-                        : sweep_pairs<D, false>(slots, masses_, step, a, change);
-  for (; at < numbers; ++at) sweep_number(a, at, step, 0.5 * step / masses_[slots.begin + at / D], change);
+  Index at = 0;
+  if (a.response != nullptr) {
+    at = for_pairs<D>(slots, masses_, half,
+                      [&](Index place, Pair inverse) { sweep_pair<true>(a, place, both(half), inverse); });
+  } else {
+    at = for_pairs<D>(slots, masses_, half,
+                      [&](Index place, Pair inverse) { sweep_pair<false>(a, place, both(half), inverse); });
+  }
+  for (; at < numbers; ++at) sweep_number(a, at, half, half / masses_[slots.begin + at / D]);
+}
+
+template <int D>
+void ParticleKind<D>::next_change(Range slots, double weight, double step, const LoadArrays& a,
+                                  SweepChange& change) const {
+  const Index numbers = slots.size() * D;
+  PairChange seen;
+  const Pair h = both(step);
+  Index at = for_pairs<D>(slots, masses_, weight * step, [&](Index place, Pair factor) {
+    seen.take(factor * (load_pair(a.led_to + place) - load_pair(a.made_with + place)),
+              larger(magnitude(load_pair(a.q1 + place)), magnitude(h * load_pair(a.v1 + place))));
+  });
+  seen.add_to(change);
+  for (; at < numbers; ++at) {
+    const double factor = weight * step / masses_[slots.begin + at / D];
+    change.take(factor * (a.led_to[at] - a.made_with[at]), a.q1[at]);
+    change.take(0.0, step * a.v1[at]);
+  }
 }
 
 template <int D>

@@ -63,7 +63,9 @@ public:
   void initial(Index slot, double* q, double* v) const override;
   void rotations(Range slots, const double* q, double* rotation) const override;
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
-  void sweep(Range slots, double step, const SweepArrays& arrays, SweepChange& change) const override;
+  void sweep(Range slots, double step, const SweepArrays& arrays) const override;
+  void next_change(Range slots, double weight, double step, const LoadArrays& loads,
+                   SweepChange& change) const override;
   void apply_inverse_mass(Range slots, const double* f, double* a) const override;
   void apply_mass(Range slots, const double* v, double* p) const override;
   [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;

@@ -165,7 +165,7 @@ void Assembly::place_internals() {
       if (size == 0) continue;
       const Range range = elements(island, kind);
       for (Index element = range.begin; element < range.end; ++element, z += size) {
-        internals.push_back({element_serials_[kind][element], z, size});
+        internals.push_back({element_id(kind, element).serial, z, size});
         first[kind].push_back(z);
       }
     }
@@ -297,6 +297,11 @@ void evaluate(const Assembly& assembly, Index island, const StateView& state, Ev
 void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
                          const Evaluation& evaluation, StoredEnergies& out) {
   add_kinetic_energy(assembly, island, state, out);
+  add_potentials(assembly, island, state, evaluation, out);
+}
+
+void add_potentials(const Assembly& assembly, Index island, const StateView& state,
+                    const Evaluation& evaluation, StoredEnergies& out) {
   const EvaluationContext at{assembly, state, evaluation, island};
   for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
     out[kind.stored_as()] += kind.potential(at, elements);

@@ -128,6 +128,10 @@ CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const
 /// Position group and the sum of all loads (Evaluation::force) of one island.
 CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
 
+/// Adds the potential energies of one island. The position group of `evaluation` must be up to date.
+CAROM_API void add_potentials(const Assembly& assembly, Index island, const StateView& state,
+                              const Evaluation& evaluation, StoredEnergies& out);
+
 /// Adds the stored energies of one island. The position group of `evaluation` must be up to date.
 CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
                                    const Evaluation& evaluation, StoredEnergies& out);

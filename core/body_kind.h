@@ -22,15 +22,23 @@ struct SweepArrays {
   const double* load0 = nullptr;     ///< loads at the start
   const double* load1 = nullptr;     ///< loads at the end, of the iterate before
   const double* response = nullptr;  ///< change of velocity by contact, null where nothing touches
-  double* q1 = nullptr;              ///< in: the iterate before; out: this one
-  double* v1 = nullptr;              ///< in: the iterate before; out: this one
+  double* q1 = nullptr;              ///< out: coordinates at the end
+  double* v1 = nullptr;              ///< out: velocities at the end
   double* cut = nullptr;             ///< out: what rounding cuts off v1
   /// Turn by 2 atan(h w/2) instead of h w, w the mean spin. A lever r then moves by h w x (r0 + r1)/2
   /// exactly, so that a force at the mean lever does the work of its own displacement.
   bool rational_turn = false;
 };
 
-/// How much an iterate differs from the one before, angles weighed by the radius of gyration [m].
+/// Arrays of the loads that a sweep was made with and of those that it led to, as SweepArrays.
+struct LoadArrays {
+  const double* made_with = nullptr;  ///< x
+  const double* led_to = nullptr;     ///< g
+  const double* q1 = nullptr;         ///< coordinates the sweep led to
+  const double* v1 = nullptr;         ///< velocities the sweep led to
+};
+
+/// How much an iterate would differ from the next, angles weighed by the radius of gyration [m].
 struct SweepChange {
   double change = 0.0;  ///< largest change of positions and of h times velocities; NaN if any is
   double size = 0.0;    ///< largest of the numbers themselves
@@ -89,7 +97,11 @@ public:
   virtual void advance(Range slots, const double* q0, const double* delta, double* q1) const = 0;
   /// One sweep of the implicit trapezoidal rule with step h, bodies of a range at once:
   ///     v1 = v0 + M^-1 h (load0 + load1)/2 + response,   q1 = q0 advanced by h (v0 + v1)/2.
-  virtual void sweep(Range slots, double step, const SweepArrays& arrays, SweepChange& change) const = 0;
+  virtual void sweep(Range slots, double step, const SweepArrays& arrays) const = 0;
+  /// What another sweep would change, made with g instead of x: velocities by `weight` M^-1 (g - x), and
+  /// coordinates by h/2 times that, which is less than h times it.
+  virtual void next_change(Range slots, double weight, double step, const LoadArrays& loads,
+                           SweepChange& change) const = 0;
   /// a = M^-1 f.
   virtual void apply_inverse_mass(Range slots, const double* f, double* a) const = 0;
   /// p = M v.

@@ -159,6 +159,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.history.step);
   if (companion.history.known > 0) out.add(companion.history.before);
   if (companion.history.known > 1) out.add(companion.history.earlier);
+  out.add(std::uint64_t{companion.history.sweeps.size()});
+  for (const int sweeps : companion.history.sweeps) out.add(sweeps);
   out.add(std::uint64_t{companion.loads.valid && companion.loads.mean});
   if (companion.loads.valid && companion.loads.mean) out.add(companion.loads.total);
   out.add(companion.next_step);
@@ -228,6 +230,8 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for (const auto* loads : {&history.before, &history.earlier}) {
     if (!loads->empty() && loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
   }
+  history.sweeps.resize(in.count());
+  for (int& sweeps : history.sweeps) in.get(sweeps);
   std::uint64_t has_mean_loads = 0;
   in.get(has_mean_loads);
   if (has_mean_loads > 1) in.damaged("it is unknown whether it holds loads");

@@ -32,6 +32,7 @@ struct LoadHistory {
   double step = 0.0;            ///< length of the last step; of the last two if both are known [s]
   std::vector<double> before;   ///< loads one step ago [N, N m]
   std::vector<double> earlier;  ///< loads two steps ago
+  std::vector<int> sweeps;      ///< of the last step, by island; empty if there was none
 };
 
 /// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.

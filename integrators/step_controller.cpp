@@ -102,7 +102,7 @@ bool StepController::try_step(TimeStepper& stepper, const State& state, const Co
 double StepController::error(double step) const {
   constexpr double share = 1.0 / 3.0;  // of the halves in the difference: C h^3/4 of 3 C h^3/4
   double largest = 0.0;
-    const auto take = [&](double difference, double length) {
+  const auto take = [&](double difference, double length) {
     largest = std::max(largest, std::abs(difference) * length);
   };
   for (const BodySlot& body : assembly_->layout()->bodies()) {

@@ -33,8 +33,8 @@ double work(const double* a, const double* b, const State& start, const State& e
   Pair pairs = both(0.0);
   Index i = v.begin;
   for (; i + 1 < v.end; i += 2) {
-    pairs += (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) *
-             (load_pair(a + i) + load_pair(b + i));
+    pairs +=
+        (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) * (load_pair(a + i) + load_pair(b + i));
   }
   double sum = pairs[0] + pairs[1];
   if (i < v.end) sum += (start.v[i] + end.v[i]) * (a[i] + b[i]);
@@ -68,16 +68,15 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
     middle_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
   }
-  if (options.iteration != Iteration::fixed_point) {
-    evaluated_.resize(size);
-    update_.resize(size);
-  }
+  evaluated_.resize(size);
+  sweeps_.resize(assembly.islands().size());
+  if (options.iteration == Iteration::linearly_implicit) update_.resize(size);
   if (options.iteration == Iteration::anderson) {
-    update_.assign(size, 1.0);
+    const std::vector<double> ones(size, 1.0);
     weights_.resize(size);
     for (Index island = 0; island < assembly.islands().size(); ++island) {
       assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-        kind.apply_inverse_mass(slots, update_.data() + v, weights_.data() + v);
+        kind.apply_inverse_mass(slots, ones.data() + v, weights_.data() + v);
       });
     }
     const std::vector<double> lengths = assembly.length_scales();
@@ -134,6 +133,10 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   start_iteration(island, state, companion, step);
   if (options_.iteration == Iteration::linearly_implicit) start_implicit(island, state, companion, step);
 
+  // Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only,
+  // which is expected after as many sweeps as in the last step.
+  const std::vector<int>& before = companion.history.sweeps;
+  const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
     if (options_.iteration == Iteration::linearly_implicit) {
@@ -141,19 +144,24 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
     } else {
       solve_contacts(island, state, companion, step);
     }
-    SweepChange change;
-    sweep(island, state, companion, step, change);
+    sweep(island, state, companion, step);
+    follow_iterate(island, state, step);
+    const bool by_cause = judge.sweeps() + 1 >= expected;
+    if (by_cause) {
+      evaluate_loads_by_cause(island, state, step);
+    } else {
+      evaluate_loads_together(island, state, step);
+    }
+    const SweepChange change = next_change(island, step);
     const auto verdict = judge.judge(change.change, change.size);
     if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
-    // The first change is that from t_j: small or not, it says nothing of the guess.
-    if (verdict == FixedPointJudge::Verdict::converged && judge.sweeps() > 1) break;
-    if (options_.iteration == Iteration::fixed_point) {
-      evaluate_iterate(island, state, step, evaluation_.force.data());
-    } else {
-      evaluate_iterate(island, state, step, evaluated_.data());
-      improve_guess(island, judge);
+    if (verdict == FixedPointJudge::Verdict::converged) {
+      if (!by_cause) evaluate_loads_by_cause(island, state, step);
+      break;
     }
+    improve_guess(island, judge);
   }
+  sweeps_[island] = judge.sweeps();
 
   book_couplings(island, state, companion, step);
   book_contacts(state, step);
@@ -237,16 +245,25 @@ void TimeStepper::solve_contacts(Index island, const State& state, const Compani
   }
 }
 
-void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step,
-                        SweepChange& change) {
+void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
   const double* const load0 = start_of_sum(companion);
   assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     kind.sweep(slots, step,
                {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
                 evaluation_.force.data() + v, clusters_in_use_ > 0 ? response_.data() + v : nullptr,
-                trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()},
-               change);
+                trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
   });
+}
+
+SweepChange TimeStepper::next_change(Index island, double step) const {
+  SweepChange change;
+  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.next_change(
+        slots, impulse_weight(step), step,
+        {evaluation_.force.data() + v, evaluated_.data() + v, trial_.q.data() + q, trial_.v.data() + v},
+        change);
+  });
+  return change;
 }
 
 template <class F>
@@ -257,8 +274,9 @@ auto TimeStepper::with_step(Index island, const State& state, double step, F&& f
   return f(StepContext{start, end, middle, step});
 }
 
-/// Internal variables, the state halfway where it is looked at, and the loads of the iterate.
-void TimeStepper::evaluate_iterate(Index island, const State& state, double step, double* loads) {
+/// What follows from the iterate before its loads: rotations, internal variables, the state halfway where
+/// it is looked at.
+void TimeStepper::follow_iterate(Index island, const State& state, double step) {
   const Assembly& assembly = *assembly_;
   if (loads_need_rotations_) evaluate_positions(assembly, island, trial_.view(), evaluation_);
   const Island& range = assembly.islands()[island];
@@ -268,45 +286,51 @@ void TimeStepper::evaluate_iterate(Index island, const State& state, double step
     });
     if (failed.valid()) fail_internal(failed, state, step);
   }
-  if ((mean_rule() || !range.z.empty()) && uses_middle(assembly, island)) {
-    middle_.time = state.time + 0.5 * step;
-    for (Index i = range.v.begin; i < range.v.end; ++i) {
-      middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
-    }
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-      kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
-    });
-    for (Index i = range.v.begin; i < range.v.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
-    for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
-    if (loads_need_rotations_) evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+  if (!(mean_rule() || !range.z.empty()) || !uses_middle(assembly, island)) return;
+  middle_.time = state.time + 0.5 * step;
+  for (Index i = range.v.begin; i < range.v.end; ++i) {
+    middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
   }
-  if (loads == nullptr) return;
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
+  });
+  for (Index i = range.v.begin; i < range.v.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
+  for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
+  if (loads_need_rotations_) evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+}
+
+void TimeStepper::evaluate_loads_together(Index island, const State& state, double step) {
+  double* const loads = evaluated_.data();
   if (mean_rule()) {
     with_step(island, state, step, [&](const StepContext& at) {
-      evaluate_mean_loads(assembly, island, at, {loads, loads, loads});
+      evaluate_mean_loads(*assembly_, island, at, {loads, loads, loads});
     });
   } else {
-    evaluate_loads(assembly, island, trial_.view(), evaluation_, {loads, loads, loads});
+    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads});
   }
+}
+
+void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, double step) {
+  const Loads loads = open(evaluated_, dissipative_, external_);
+  evaluated_energies_ = {};
+  if (mean_rule()) {
+    with_step(island, state, step,
+              [&](const StepContext& at) { evaluate_mean_loads(*assembly_, island, at, loads); });
+    add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
+  } else {
+    evaluate_loads_and_potentials(*assembly_, island, trial_.view(), evaluation_, loads, evaluated_energies_);
+  }
+  finish(evaluated_, dissipative_, external_, assembly_->islands()[island].v);
 }
 
 void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
   const Assembly& assembly = *assembly_;
   const Range v = assembly.islands()[island].v;
-  // The total is that of the impulse that acted (of the iterate before the last); its parts by cause are
-  // those of the last iterate, what the iteration left open counts as conservative.
+  // The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
+  // what the iteration left open counts as conservative.
   const double total = work(start_of_sum(companion), evaluation_.force.data(), state, trial_, v, step);
-  evaluate_iterate(island, state, step, nullptr);
-  const Loads end = open(evaluation_.force, dissipative_, external_);
-  if (mean_rule()) {
-    with_step(island, state, step,
-              [&](const StepContext& at) { evaluate_mean_loads(assembly, island, at, end); });
-    add_stored_energies(assembly, island, trial_.view(), evaluation_, stored_);
-  } else {
-    evaluate_loads_and_potentials(assembly, island, trial_.view(), evaluation_, end, stored_);
-    add_kinetic_energy(assembly, island, trial_.view(), stored_);
-  }
-  finish(evaluation_.force, dissipative_, external_, v);
+  for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
+  add_kinetic_energy(assembly, island, trial_.view(), stored_);
   const auto part = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
     if (at_end.empty()) return 0.0;
     return work(mean_rule() ? at_end.data() : at_start.data(), at_end.data(), state, trial_, v, step);
@@ -318,7 +342,7 @@ void TimeStepper::book_couplings(Index island, const State& state, const Compani
     inside = with_step(island, state, step,
                        [&](const StepContext& at) { return internal_loss(assembly, island, at); });
   }
-  // The last iterate's loads and potentials enter the account unseen by any sweep.
+  // Potentials enter the account unseen by any sweep.
   if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(island, state, step);
   coupling_work_.add(total - dissipative - external + inside);
   flows_[EnergyFlow::dashpot] += inside - dissipative;
@@ -341,9 +365,8 @@ void TimeStepper::project(Index island, const State& state, double step) {
   for (std::size_t i = 0; i < stored_energy_count; ++i)
     stored_.values[i] += after.values[i] - before.values[i];
   if (mean_rule()) return;
-  evaluate_loads(assembly, island, trial_.view(), evaluation_,
-                 open(evaluation_.force, dissipative_, external_));
-  finish(evaluation_.force, dissipative_, external_, assembly.islands()[island].v);
+  evaluate_loads(assembly, island, trial_.view(), evaluation_, open(evaluated_, dissipative_, external_));
+  finish(evaluated_, dissipative_, external_, assembly.islands()[island].v);
 }
 
 void TimeStepper::book_contacts(const State& state, double step) {
@@ -426,12 +449,13 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   history.step = report_.step;
   history.earlier.swap(history.before);
   history.before.swap(companion.loads.total);
-  companion.loads.total.swap(evaluation_.force);
+  companion.loads.total.swap(evaluated_);
   companion.loads.dissipative.swap(dissipative_);
   companion.loads.external.swap(external_);
   companion.loads.valid = true;
   companion.loads.mean = mean_rule();
-  evaluation_.force.resize(state.v.size());
+  evaluated_.resize(state.v.size());
+  history.sweeps = sweeps_;
   std::swap(companion.rounding, rounding_);
   state.time = end_time;
   companion.ledger.book(flows_, stored_);

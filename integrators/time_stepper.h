@@ -9,7 +9,7 @@
 ///                v_{j+1} = v_free + M^-1 H^T P,  P from the contact problem
 ///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2
 ///                F_{j+1} = F(q_{j+1}, v_{j+1}, t_{j+1})
-///   until        positions and h times velocities no longer change.
+///   until        with these loads for the guess positions and h times velocities would no longer change.
 ///
 /// Under the rule `energy_momentum` the mean (F_j + F_{j+1})/2 is replaced by the elements' own mean loads of
 /// the step, which are guessed and repeated in the same way.
@@ -54,13 +54,15 @@ public:
 private:
   void start_loads(const State& state, Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
-  // Rotations and sum of all loads at the trial, as far as anyone needs them.
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
   void start_iteration(Index island, const State& state, const Companion& companion, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
-  void sweep(Index island, const State& state, const Companion& companion, double step, SweepChange& change);
-  void evaluate_iterate(Index island, const State& state, double step, double* loads);
+  void sweep(Index island, const State& state, const Companion& companion, double step);
+  void follow_iterate(Index island, const State& state, double step);
+  void evaluate_loads_together(Index island, const State& state, double step);
+  void evaluate_loads_by_cause(Index island, const State& state, double step);
+  [[nodiscard]] SweepChange next_change(Index island, double step) const;
   void improve_guess(Index island, const FixedPointJudge& judge);
   void start_implicit(Index island, const State& state, const Companion& companion, double step);
   void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,
@@ -103,13 +105,15 @@ private:
   ContactFinder finder_;
   SolverChain chain_;
 
-  State trial_;                    // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
-  State middle_;                   // halfway, where elements look at it
-  Evaluation start_;               // rotation: at the start
-  Evaluation middle_evaluation_;   // rotation: halfway
-  Evaluation evaluation_;          // force: loads at the end (or mean loads), of the iterate before, at last of the last
-  std::vector<double> evaluated_;  // loads of the iterate, where the next guess is not simply these
-  std::vector<double> weights_;    // of loads: lengths by mass
+  State trial_;                        // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
+  State middle_;                       // halfway, where elements look at it
+  Evaluation start_;                   // rotation: at the start
+  Evaluation middle_evaluation_;       // rotation: halfway
+  Evaluation evaluation_;              // force: guess of the loads at the end (or mean loads)
+  std::vector<double> evaluated_;      // loads that the guess led to
+  StoredEnergies evaluated_energies_;  // of the island, potentials that it led to
+  std::vector<int> sweeps_;            // by island
+  std::vector<double> weights_;        // of loads: lengths by mass
   AndersonAcceleration anderson_;
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew
@@ -118,7 +122,7 @@ private:
   bool books_external_ = false;
   bool loads_need_rotations_ = false;
   bool contacts_need_rotations_ = false;
-  bool start_needs_rotations_ = false;  // the one or the other
+  bool start_needs_rotations_ = false;          // the one or the other
   std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
   std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
   std::vector<double> response_;  // changes of velocity by contact, empty until anything touches

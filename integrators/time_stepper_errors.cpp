@@ -92,12 +92,13 @@ void TimeStepper::find_culprit(Index island, const State& state, const Companion
   // because the iteration diverged; then no element is to blame.
   start_iteration(island, state, companion, step);
   for (int i = 0; i < sweeps; ++i) {
-    SweepChange change;
     solve_contacts(island, state, companion, step);
-    sweep(island, state, companion, step, change);
+    sweep(island, state, companion, step);
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
     demand_finite_loads(island, trial_.view(), state, step);
-    evaluate_iterate(island, state, step, evaluation_.force.data());
+    follow_iterate(island, state, step);
+    evaluate_loads_together(island, state, step);
+    evaluation_.force = evaluated_;
   }
 }
 

@@ -9,6 +9,10 @@ namespace carom {
 
 void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
   const Range v = assembly_->islands()[island].v;
+  if (options_.iteration == Iteration::fixed_point) {
+    std::copy(evaluated_.begin() + v.begin, evaluated_.begin() + v.end, evaluation_.force.begin() + v.begin);
+    return;
+  }
   if (options_.iteration == Iteration::anderson) {
     const auto part = [&](std::vector<double>& numbers) {
       return std::span<double>(numbers.data() + v.begin, v.size());

@@ -52,7 +52,7 @@ struct StepControl {
 struct TimeStepping {
   double step = 1e-3;  ///< h > 0 [s]
 
-  /// The iteration ends when positions, and h times velocities, change less than this between two sweeps
+  /// The iteration ends when another sweep would change positions, and h times velocities, by less than this
   /// (angles weighed with the radius of gyration). At 0 it goes on until the change stops shrinking [m].
   double tolerance = 1e-12;
   int max_sweeps = 200;  ///< sweeps after which the iteration is given up

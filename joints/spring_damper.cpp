@@ -278,11 +278,10 @@ void SpringDamperKind<D>::derivatives(const EvaluationContext& at, Index element
   ElementDerivatives<D> list(view, out);
   if (line.length == 0.0 && free_length == 0.0) {
     // Linear through zero: the spring has a derivative where it has no direction.
-    list.opposite_forces(ends.from, ends.to, Vec<D>::Zero(), -stiffness * Mat<D>::Identity(),
-                         Mat<D>::Zero());
+    list.opposite_forces(ends.from, ends.to, Vec<D>::Zero(), -stiffness * Mat<D>::Identity(), Mat<D>::Zero());
   }
-  line.add_pull(list, ends.from, ends.to,
-                stiffness * (line.length - free_length) + damping * line.rate, stiffness, damping);
+  line.add_pull(list, ends.from, ends.to, stiffness * (line.length - free_length) + damping * line.rate,
+                stiffness, damping);
 }
 
 template <int D>

@@ -19,10 +19,9 @@ void SpringDamperKind<D>::evaluate_mean(const StepContext& at, Range elements, c
     const MeanLine<D> line(ends.to.position(at.start.state, to0) - ends.from.position(at.start.state, from0),
                            ends.to.position(at.end.state, to1) - ends.from.position(at.end.state, from1));
     // Without a free length the force is linear, at coinciding ends too.
-    const Vec<D> elastic =
-        free_length == 0.0
-            ? Vec<D>(stiffness * line.distance)
-            : Vec<D>(stiffness * (line.length - free_length) * line.direction);
+    const Vec<D> elastic = free_length == 0.0
+                               ? Vec<D>(stiffness * line.distance)
+                               : Vec<D>(stiffness * (line.length - free_length) * line.direction);
     const Vec<D> viscous = damping * (line.growth / at.step) * line.direction;
     const Vec<D> from = 0.5 * (from0 + from1);
     const Vec<D> to = 0.5 * (to0 + to1);
