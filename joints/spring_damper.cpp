@@ -74,6 +74,7 @@ template <int D>
 std::unique_ptr<ForceKind> SpringDamperKind<D>::arranged(std::span<const Index> order,
                                                          const Layout& layout) const {
   auto packed = std::make_unique<SpringDamperKind>();
+  packed->layout_ = &layout;
   packed->from_.reserve(order.size());
   packed->to_.reserve(order.size());
   for (const Index slot : order) {
@@ -98,9 +99,24 @@ std::unique_ptr<ForceKind> SpringDamperKind<D>::arranged(std::span<const Index> 
 
 template <int D>
 void SpringDamperKind<D>::ends(Index element, std::vector<BodyId>& out) const {
-  const SpringDamper<D> part = described(element);
-  out.push_back(part.from.body);
-  out.push_back(part.to.body);
+  if (layout_ == nullptr) {
+    const SpringDamper<D> part = described(element);
+    out.push_back(part.from.body);
+    out.push_back(part.to.body);
+    return;
+  }
+  // First coordinates grow with the place of the body.
+  const auto body_at = [this](Index q) {
+    if (q == none) return ground;
+    Index first = 0, last = static_cast<Index>(layout_->bodies().size());
+    while (last - first > 1) {
+      const Index middle = first + (last - first) / 2;
+      (layout_->bodies()[middle].q <= q ? first : last) = middle;
+    }
+    return layout_->id(first);
+  };
+  out.push_back(body_at(from_[element]));
+  out.push_back(body_at(to_[element]));
 }
 
 template <int D>

@@ -91,9 +91,10 @@ private:
   // By element. Ends: serial numbers of the bodies as described, first coordinates and velocities arranged.
   Column<double> stiffness_, damping_, free_length_;
   std::vector<Index> from_, to_;
-  Index token_ = 0;             // of the bodies' identities
-  std::vector<Points> points_;  // described, by element
-  std::vector<Ends> ends_;      // arranged, by element
+  const Layout* layout_ = nullptr;  // arranged, of the assembly that owns this kind
+  Index token_ = 0;                 // of the bodies' identities
+  std::vector<Points> points_;      // described, by element
+  std::vector<Ends> ends_;          // arranged, by element
 };
 
 extern template class SpringDamperKind<2>;
