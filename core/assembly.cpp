@@ -34,6 +34,7 @@ Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
   order_elements(order_bodies());
   place_internals();
+  unfinished_layout_.reset();
 }
 
 std::vector<Index> Assembly::order_bodies() {
@@ -99,7 +100,7 @@ std::vector<Index> Assembly::order_bodies() {
   }
   for (Index k = 0; k < kinds; ++k) body_kinds_.push_back(registry.entries()[k].kind->arranged(order[k]));
 
-  layout_ = std::make_shared<const Layout>(system_.dimension(), system_.token(), slots);
+  layout_ = unfinished_layout_ = std::make_shared<Layout>(system_.dimension(), system_.token(), slots);
   return island_of_body;
 }
 
@@ -175,7 +176,7 @@ void Assembly::place_internals() {
   for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
     if (!first[kind].empty()) force_kinds_[kind]->place_internal(first[kind]);
   }
-  layout_ = std::make_shared<const Layout>(*layout_, std::move(internals));
+  unfinished_layout_->place_internals(std::move(internals));
 }
 
 State Assembly::initial_state() const {

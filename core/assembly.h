@@ -83,6 +83,7 @@ private:
 
   System system_;
   std::shared_ptr<const Layout> layout_;
+  std::shared_ptr<Layout> unfinished_layout_;  // the same, while it is being made
   std::vector<Island> islands_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
   std::vector<Range> body_slots_;

@@ -54,7 +54,7 @@ Layout::Layout(int dimension, Index token, const std::vector<BodySlot>& bodies)
   }
 }
 
-Layout::Layout(const Layout& without, std::vector<InternalSlot> internals) : Layout(without) {
+void Layout::place_internals(std::vector<InternalSlot> internals) {
   internals_ = std::move(internals);
   std::sort(internals_.begin(), internals_.end(),
             [](const InternalSlot& a, const InternalSlot& b) { return a.serial < b.serial; });

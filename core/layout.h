@@ -112,8 +112,8 @@ public:
   /// \param token token of the system
   /// \param bodies slots in the order of assembly
   Layout(int dimension, Index token, const std::vector<BodySlot>& bodies);
-  /// The same bodies, and places of internal variables.
-  Layout(const Layout& without, std::vector<InternalSlot> internals);
+  /// Tells the places of internal variables, before the layout is given to anyone.
+  void place_internals(std::vector<InternalSlot> internals);
 
   [[nodiscard]] int dimension() const { return dimension_; }            ///< 2 or 3
   [[nodiscard]] Index q_size() const { return q_size_; }                ///< number of coordinates

@@ -19,6 +19,11 @@ public:
   /// Takes the change of a sweep and the size of the numbers that changed (their rounding is the floor).
   [[nodiscard]] Verdict judge(double change, double size);
 
+  /// Takes the change that the next sweep would make, without its being made. That sweep leaves an error of
+  /// its change times the contraction, so that to forgo it is as good only when the change is below that part
+  /// of the tolerance (below a thousandth while no contraction was seen).
+  [[nodiscard]] Verdict judge_ahead(double change, double size);
+
   /// Sweeps judged.
   [[nodiscard]] int sweeps() const { return sweeps_; }
   /// Ratio of the last two changes that stood clear of rounding; 0 if none was seen.
@@ -27,6 +32,8 @@ public:
   [[nodiscard]] double change() const { return last_; }
 
 private:
+  [[nodiscard]] Verdict judge(double change, double size, double part);
+
   double tolerance_;
   int max_sweeps_;
   int sweeps_ = 0;

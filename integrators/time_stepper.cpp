@@ -137,9 +137,10 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   // which is expected after as many sweeps as in the last step.
   const std::vector<int>& before = companion.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
+  const bool implicit = options_.iteration == Iteration::linearly_implicit;
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
-    if (options_.iteration == Iteration::linearly_implicit) {
+    if (implicit) {
       solve_implicit(island, state, step);
     } else {
       solve_contacts(island, state, companion, step);
@@ -152,8 +153,14 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
     } else {
       evaluate_loads_together(island, state, step);
     }
-    const SweepChange change = next_change(island, step);
-    const auto verdict = judge.judge(change.change, change.size);
+    // Newton's method has its own change: that of the loads is magnified where couplings are stiff.
+    const SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step);
+    auto verdict =
+        implicit ? judge.judge(change.change, change.size) : judge.judge_ahead(change.change, change.size);
+    // Its first is that from t_j: small or not, it says nothing of the guess.
+    if (implicit && judge.sweeps() == 1 && verdict == FixedPointJudge::Verdict::converged) {
+      verdict = FixedPointJudge::Verdict::go_on;
+    }
     if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
     if (verdict == FixedPointJudge::Verdict::converged) {
       if (!by_cause) evaluate_loads_by_cause(island, state, step);

@@ -63,6 +63,7 @@ private:
   void evaluate_loads_together(Index island, const State& state, double step);
   void evaluate_loads_by_cause(Index island, const State& state, double step);
   [[nodiscard]] SweepChange next_change(Index island, double step) const;
+  [[nodiscard]] SweepChange implicit_change(Index island, double step) const;
   void improve_guess(Index island, const FixedPointJudge& judge);
   void start_implicit(Index island, const State& state, const Companion& companion, double step);
   void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,

@@ -85,4 +85,20 @@ void TimeStepper::solve_implicit(Index island, const State& state, double step) 
   for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] += rounding_[i] / weight;
 }
 
+/// What the last step of Newton's method changed.
+SweepChange TimeStepper::implicit_change(Index island, double step) const {
+  SweepChange change;
+  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    const Index size = kind.v_size();
+    for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += size) {
+      for (Index i = 0; i < size; ++i) {
+        const double length = kind.length_scale(slot, i);
+        change.take(step * update_[v + i] * length, step * trial_.v[v + i] * length);
+      }
+      for (Index i = 0; i < kind.q_size(); ++i) change.take(0.0, trial_.q[q + i]);
+    }
+  });
+  return change;
+}
+
 }  // namespace carom
