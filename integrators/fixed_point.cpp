@@ -11,7 +11,7 @@ FixedPointJudge::Verdict FixedPointJudge::judge(double change, double size) {
 }
 
 FixedPointJudge::Verdict FixedPointJudge::judge_ahead(double change, double size) {
-  constexpr double unseen = 1e-3;
+  constexpr double unseen = 1e-5;
   const double contraction = last_ > 0.0 && sweeps_ > 0 ? std::clamp(change / last_, unseen, 1.0) : unseen;
   return judge(change, size, contraction);
 }

@@ -21,7 +21,7 @@ public:
 
   /// Takes the change that the next sweep would make, without its being made. That sweep leaves an error of
   /// its change times the contraction, so that to forgo it is as good only when the change is below that part
-  /// of the tolerance (below a thousandth while no contraction was seen).
+  /// of the tolerance (below 1e-5 of it while no contraction was seen).
   [[nodiscard]] Verdict judge_ahead(double change, double size);
 
   /// Sweeps judged.

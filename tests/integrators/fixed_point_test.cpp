@@ -24,9 +24,9 @@ TEST(FixedPoint, EndsBelowTolerance) {
 
 TEST(FixedPoint, AheadItAsksForWhatTheForgoneSweepWouldLeave) {
   FixedPointJudge judge(1e-6, 100);
-  EXPECT_EQ(judge.judge_ahead(9e-7, 1.0), Verdict::go_on);      // no contraction seen: 1e-9 is asked for
+  EXPECT_EQ(judge.judge_ahead(9e-7, 1.0), Verdict::go_on);      // no contraction seen: 1e-11 is asked for
   EXPECT_EQ(judge.judge_ahead(9e-8, 1.0), Verdict::converged);  // 0.1 seen: 1e-7
-  EXPECT_EQ(FixedPointJudge(1e-6, 100).judge_ahead(1e-9, 1.0), Verdict::converged);
+  EXPECT_EQ(FixedPointJudge(1e-6, 100).judge_ahead(1e-11, 1.0), Verdict::converged);
   FixedPointJudge growing(1e-6, 100);
   (void)growing.judge_ahead(1e-8, 1.0);
   EXPECT_EQ(growing.judge_ahead(1e-7, 1.0), Verdict::converged);  // never asks for more than the tolerance
