@@ -78,6 +78,23 @@ const std::vector<Impact>& impacts() {
   return {n, t, i.before_n + w_nn * n + w_nt * t, i.before_t + w_nt * n + w_tt * t};
 }
 
+// The same through the library's door for one planar contact: its numbers, a certified answer.
+[[gnu::noinline]] Result by_certified_contact(const Impact& i) {
+  const double inverse_mass = 1.0 / i.mass, inverse_inertia = 1.0 / i.inertia;
+  const carom::CertifiedImpulse answer =
+      carom::solve_certified_contact({.w_nn = inverse_mass + i.lever_t * i.lever_t * inverse_inertia,
+                                      .w_nt = -i.lever_n * i.lever_t * inverse_inertia,
+                                      .w_tt = inverse_mass + i.lever_n * i.lever_n * inverse_inertia,
+                                      .b_n = (1.0 + i.normal_restitution) * i.before_n,
+                                      .b_t = (1.0 + i.tangential_restitution) * i.before_t,
+                                      .friction = i.friction});
+  if (!answer.usable || !(answer.residual <= carom::accepted_residual)) {
+    throw std::logic_error("impact not solved");
+  }
+  return {answer.impulse.normal, answer.impulse.tangential, answer.xi_n - i.normal_restitution * i.before_n,
+          answer.xi_t - i.tangential_restitution * i.before_t};
+}
+
 // The same through the library's door for any contact problem: matrix, vector, sets, chain of solvers.
 class ByLibrary {
 public:
@@ -179,6 +196,9 @@ void time_impacts(benchmark::State& state, F&& solve) {
 void impact_by_hand(benchmark::State& state) {
   time_impacts(state, [](std::size_t i) { return by_hand(impacts()[i]); });
 }
+void impact_certified(benchmark::State& state) {
+  time_impacts(state, [](std::size_t i) { return by_certified_contact(impacts()[i]); });
+}
 void impact_by_library(benchmark::State& state) {
   ByLibrary library;
   time_impacts(state, [&](std::size_t i) { return library(impacts()[i]); });
@@ -189,6 +209,7 @@ void impact_of_body(benchmark::State& state) {
 }
 
 BENCHMARK(impact_by_hand);
+BENCHMARK(impact_certified);
 BENCHMARK(impact_by_library);
 BENCHMARK(impact_of_body);
 

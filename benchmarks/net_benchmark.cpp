@@ -213,6 +213,33 @@ void step_falling(benchmark::State& state) { time_steps(state, Phase::falling); 
 void step_working(benchmark::State& state) { time_steps(state, Phase::working); }
 void step_resting(benchmark::State& state) { time_steps(state, Phase::resting); }
 
+// The stretched net on several threads: range(1) of them, by the clock on the wall. `per_particle` is its.
+void step_threads(benchmark::State& state) {
+  const int k = static_cast<int>(state.range(0));
+  const auto threads = static_cast<int>(state.range(1));
+  if (threads > 1 && !carom::Workers::several_available()) {
+    state.SkipWithError("built without oneTBB");
+    return;
+  }
+  const carom::System system = system_of(net_of(Phase::working, k));
+  const auto begin = [&] {
+    carom::Simulation simulation(
+        system, carom::TimeStepping{.step = scenes::net_step, .tolerance = tolerance, .threads = threads});
+    for (int i = 0; i < settling; ++i) simulation.step();
+    return simulation;
+  };
+  carom::Simulation simulation = begin();
+  for (auto _ : state) {
+    if (simulation.time() > longest) {
+      state.PauseTiming();
+      simulation = begin();
+      state.ResumeTiming();
+    }
+    simulation.step();
+  }
+  count_particles(state, k);
+}
+
 // The first second of the net as it is: falls, strikes, rebounds. `per_particle` is over one step.
 void second(benchmark::State& state) {
   const int k = static_cast<int>(state.range(0));
@@ -299,6 +326,7 @@ BENCHMARK(plain_step)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchma
 BENCHMARK(forces)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(step_working)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 
+BENCHMARK(step_threads)->Args({300, 1})->Args({300, 2})->UseRealTime();
 BENCHMARK(second)->Apply(small_sizes)->Iterations(1)->Repetitions(2)->Unit(benchmark::kMillisecond);
 BENCHMARK(first_step)->Arg(100)->Iterations(1)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(storage)->Iterations(1)->Repetitions(1)->Unit(benchmark::kMillisecond);

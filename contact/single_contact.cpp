@@ -211,24 +211,49 @@ PlanarSolutions list_modes(const PlanarContact& c, const Predicates& v) {
   return true;
 }
 
-}  // namespace
-
-CertifiedImpulse solve_regular_contact(const ContactProblem& problem) {
-  const double* w = problem.matrix().data();
-  const double* b = problem.vector().data();
-  const PlanarContact c{w[0], w[1], w[3], b[0], b[1], problem.sets()[1].coefficient};
-  CertifiedImpulse answer;
-  PlanarImpulse impulse;
-  if (!(c.friction > 0.0 && c.w_tt > 0.0)) return answer;
-  if (!solve_regular(c, evaluate(c), impulse, answer.degenerate)) return answer;
-  const double p_n = impulse.normal, p_t = impulse.tangential;
-  answer.impulse = impulse;
+template <bool ModeByRule>
+[[gnu::always_inline]] inline void certify(const PlanarContact& c, CertifiedImpulse& answer) {
+  const double p_n = answer.impulse.normal, p_t = answer.impulse.tangential;
   answer.xi_n = c.b_n + c.w_nn * p_n + c.w_nt * p_t;
   answer.xi_t = c.b_t + c.w_nt * p_n + c.w_tt * p_t;
   const PlanarAnswer numbers{c.w_nn + c.w_tt, c.b_n, c.b_t, c.friction, p_n, p_t, answer.xi_n, answer.xi_t};
   answer.residual = planar_residual(numbers);
-  answer.mode = planar_mode(numbers);
+  answer.mode = ModeByRule ? planar_mode(numbers) : answer.impulse.mode;
   answer.usable = true;
+}
+
+template <bool ModeByRule>
+[[gnu::always_inline]] inline bool certified_regular(const PlanarContact& c, CertifiedImpulse& answer) {
+  if (!(c.friction > 0.0 && c.w_tt > 0.0)) return false;
+  if (!solve_regular(c, evaluate(c), answer.impulse, answer.degenerate)) return false;
+  answer.outcome = Outcome::solved;
+  certify<ModeByRule>(c, answer);
+  return true;
+}
+
+// What is not regular: every mode is looked at.
+[[gnu::noinline]] void certified_any(const PlanarContact& c, CertifiedImpulse& answer) {
+  const PlanarSolutions found = solve_planar_contact(c);
+  answer.outcome = found.outcome;
+  answer.degenerate = found.degenerate;
+  answer.impulse = found.list[0];
+  certify<false>(c, answer);
+  answer.usable = found.count > 0;
+}
+
+}  // namespace
+
+CertifiedImpulse solve_certified_contact(const PlanarContact& contact) {
+  CertifiedImpulse answer;
+  if (!certified_regular<false>(contact, answer)) certified_any(contact, answer);
+  return answer;
+}
+
+CertifiedImpulse solve_regular_contact(const ContactProblem& problem) {
+  const double* w = problem.matrix().data();
+  const double* b = problem.vector().data();
+  CertifiedImpulse answer;
+  (void)certified_regular<true>({w[0], w[1], w[3], b[0], b[1], problem.sets()[1].coefficient}, answer);
   return answer;
 }
 

@@ -72,17 +72,23 @@ struct PlanarSolutions {
 
 /// A solution of a planar contact together with its certificate.
 struct CertifiedImpulse {
-  PlanarImpulse impulse{};               ///< the solution; its mode is the one that was solved for
-  double xi_n = 0.0, xi_t = 0.0;         ///< xi = W P + b [m/s]
-  double residual = 0.0;                 ///< planar_residual (planar_certificate.h)
-  ContactMode mode = ContactMode::open;  ///< by the rule of contact_mode.h
+  PlanarImpulse impulse{};                ///< the solution; its mode is the one that was solved for
+  double xi_n = 0.0, xi_t = 0.0;          ///< xi = W P + b [m/s]
+  double residual = 0.0;                  ///< planar_residual (planar_certificate.h)
+  ContactMode mode = ContactMode::open;   ///< by the rule of contact_mode.h
+  Outcome outcome = Outcome::not_solved;  ///< what is known of the solutions
   bool degenerate = false;
-  bool usable = false;  ///< false: take the long way, solve_planar_contact()
+  bool usable = false;  ///< whether the impulse may be used; see the functions
 };
 
+/// One planar contact from its numbers alone, with no memory asked for and no problem laid out: the first of
+/// its solutions, certified. `usable` if there is one; it is judged by its residual like any other answer.
+/// Its `mode` is the one it was solved for.
+[[nodiscard]] CAROM_API CertifiedImpulse solve_certified_contact(const PlanarContact& contact);
+
 /// The hot path: the solution where it is unique and regular (mu |W_nt| < W_nn, det W > 0, b_n not zero),
-/// which is nearly every impact, with its certificate; not `usable` otherwise. The problem has one group, of
-/// a normal and a friction row.
+/// which is nearly every impact, with its certificate; not `usable` otherwise (solve_planar_contact()). The
+/// problem has one group, of a normal and a friction row.
 [[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const ContactProblem& problem);
 
 /// Exact solver of problems with one contact: one lone row; one normal row with one friction row; a normal

@@ -1,7 +1,9 @@
 #include <carom/core/assembly.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace carom {
@@ -32,7 +34,9 @@ private:
 
 Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
-  order_elements(order_bodies());
+  const std::vector<Index> island_of_body = order_bodies();
+  cut_islands();
+  order_elements(island_of_body);
   place_internals();
   unfinished_layout_.reset();
 }
@@ -75,7 +79,7 @@ std::vector<Index> Assembly::order_bodies() {
     const auto body = static_cast<Index>(slots.size());
     if (key.island != root) {
       root = key.island;
-      islands_.push_back({{body, body}, {q, q}, {v, v}, {}});
+      islands_.push_back({{body, body}, {q, q}, {v, v}, {}, {}});
       for (Index k = 0; k < kinds; ++k) {
         const auto first = static_cast<Index>(order[k].size());
         body_slots_.push_back({first, first});
@@ -122,32 +126,84 @@ std::vector<double> Assembly::length_scales() const {
   return lengths;
 }
 
+void Assembly::cut_islands() {
+  for (Island& island : islands_) {
+    const Index size = island.bodies.size();
+    const Index count = std::clamp<Index>(size / block_size, 1, most_blocks);
+    island.blocks.begin = static_cast<Index>(blocks_.size());
+    const auto first = [&](Index i) {
+      return island.bodies.begin + static_cast<Index>(std::uint64_t{size} * i / count);
+    };
+    const auto velocity = [&](Index body) {
+      return body < island.bodies.end ? layout_->bodies()[body].v : island.v.end;
+    };
+    for (Index i = 0; i < count; ++i) {
+      blocks_.push_back({{first(i), first(i + 1)}, {velocity(first(i)), velocity(first(i + 1))}});
+    }
+    island.blocks.end = static_cast<Index>(blocks_.size());
+  }
+}
+
+/// The block, counted from the first of the island, in which all ends lie; the number of blocks if there is
+/// none.
+Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) const {
+  const Range blocks = islands_[island].blocks;
+  if (blocks.size() == 1 || ends.empty()) return 0;
+  Index part = none;
+  for (const BodyId end : ends) {
+    const Index body = layout_->index(end);
+    Index of_end = 0;
+    while (body >= blocks_[blocks.begin + of_end].bodies.end) ++of_end;
+    if (part != none && part != of_end) return blocks.size();
+    part = of_end;
+  }
+  return part;
+}
+
 void Assembly::order_elements(const std::vector<Index>& island_of_body) {
   const auto& entries = system_.force_kinds().entries();
   const auto kinds = static_cast<Index>(entries.size());
   element_slots_.assign(islands_.size() * kinds, {});
+  bridges_.assign(islands_.size() * kinds, {});
+  block_elements_.assign(blocks_.size() * kinds, {});
   std::vector<BodyId> ends;
   for (Index k = 0; k < kinds; ++k) {
     const ForceKind& kind = *entries[k].kind;
-    std::vector<std::pair<Index, Index>> keys;  // (island, slot)
+    struct Key {
+      Index island, part, slot;  // part: a block of the island, or behind them all a bridge
+      auto operator<=>(const Key&) const = default;
+    };
+    std::vector<Key> keys;
+    keys.reserve(kind.size());
     for (Index slot = 0; slot < kind.size(); ++slot) {
       ends.clear();
       kind.ends(slot, ends);
       std::erase(ends, ground);
-      keys.emplace_back(ends.empty() ? 0 : island_of_body[ends[0].serial], slot);
+      const Index island = ends.empty() ? 0 : island_of_body[ends[0].serial];
+      keys.push_back({island, part_of(island, ends), slot});
     }
     std::sort(keys.begin(), keys.end());
     std::vector<Index> order;
     order.reserve(keys.size());
-    for (const auto& [island, slot] : keys) {
-      Range& range = element_slots_[island * kinds + k];
-      if (range.empty()) range.begin = range.end = static_cast<Index>(order.size());
-      ++range.end;
-      order.push_back(slot);
+    for (const Key& key : keys) {
+      const Range blocks = islands_[key.island].blocks;
+      Range& part = key.part < blocks.size() ? block_elements_[(blocks.begin + key.part) * kinds + k]
+                                             : bridges_[key.island * kinds + k];
+      for (Range* const range : {&element_slots_[key.island * kinds + k], &part}) {
+        if (range->empty()) range->begin = range->end = static_cast<Index>(order.size());
+        ++range->end;
+      }
+      order.push_back(key.slot);
     }
     if (kind.is_field()) {
-      for (Index island = 0; island < islands_.size(); ++island)
-        element_slots_[island * kinds + k] = {0, kind.size()};
+      const Range all{0, kind.size()};
+      for (Index island = 0; island < islands_.size(); ++island) {
+        element_slots_[island * kinds + k] = all;
+        bridges_[island * kinds + k] = kind.works_in_parts() ? Range{} : all;
+      }
+      for (Index block = 0; block < blocks_.size(); ++block) {
+        block_elements_[block * kinds + k] = kind.works_in_parts() ? all : Range{};
+      }
     }
     force_kinds_.push_back(kind.arranged(order, *layout_));
     if (std::is_sorted(order.begin(), order.end())) order = {};
@@ -215,8 +271,7 @@ void evaluate_positions(const Assembly& assembly, Index island, const StateView&
 
 namespace {
 
-void zero(const Assembly& assembly, Index island, const Loads& loads) {
-  const Range v = assembly.islands()[island].v;
+void zero(Range v, const Loads& loads) {
   const auto clear = [&](double* array) { std::fill(array + v.begin, array + v.end, 0.0); };
   clear(loads.conservative);
   if (loads.dissipative != loads.conservative) clear(loads.dissipative);
@@ -232,30 +287,62 @@ void for_kinds(const Assembly& assembly, Index island, F&& f) {
   }
 }
 
+/// Zeroes the loads of an island and calls f(kind, elements, bodies, part): for the elements within each
+/// block, which write there alone, then for those between blocks, part by part.
+template <class F>
+void for_loads(const Assembly& assembly, Index island, const Loads& loads, const Workers& workers, F&& f) {
+  const Island& all = assembly.islands()[island];
+  const auto kinds = static_cast<Index>(assembly.force_kinds().size());
+  workers.for_each(all.blocks.size(), [&](Index part) {
+    const Index index = all.blocks.begin + part;
+    const Block& block = assembly.blocks()[index];
+    zero(block.v, loads);
+    for (Index kind = 0; kind < kinds; ++kind) {
+      const Range elements = assembly.elements_within(index, kind);
+      if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, block.bodies, part);
+    }
+  });
+  for (Index kind = 0; kind < kinds; ++kind) {
+    const Range elements = assembly.bridges(island, kind);
+    if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.blocks.size());
+  }
+}
+
 }  // namespace
 
 void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
-                    const Evaluation& evaluation, const Loads& loads) {
-  zero(assembly, island, loads);
-  const EvaluationContext at{assembly, state, evaluation, island};
-  for_kinds(assembly, island,
-            [&](const ForceKind& kind, Range elements, Index) { kind.evaluate(at, elements, loads); });
+                    const Evaluation& evaluation, const Loads& loads, const Workers& workers) {
+  for_loads(assembly, island, loads, workers,
+            [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+              kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
+            });
 }
 
 void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
-                                   const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored) {
-  zero(assembly, island, loads);
-  const EvaluationContext at{assembly, state, evaluation, island};
-  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
-    stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
-  });
+                                   const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored,
+                                   const Workers& workers) {
+  std::array<StoredEnergies, Assembly::most_blocks + 1> parts{};
+  for_loads(assembly, island, loads, workers,
+            [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
+              const EvaluationContext at{assembly, state, evaluation, island, bodies};
+              parts[part][kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
+            });
+  for (Index part = 0; part <= assembly.islands()[island].blocks.size(); ++part) {
+    for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += parts[part].values[i];
+  }
 }
 
-void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
-                         const Loads& loads) {
-  zero(assembly, island, loads);
-  for_kinds(assembly, island,
-            [&](const ForceKind& kind, Range elements, Index) { kind.evaluate_mean(step, elements, loads); });
+void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step, const Loads& loads,
+                         const Workers& workers) {
+  for_loads(assembly, island, loads, workers,
+            [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+              const auto within = [bodies](const EvaluationContext& at) {
+                return EvaluationContext{at.assembly, at.state, at.evaluation, at.island, bodies};
+              };
+              const EvaluationContext start = within(step.start), end = within(step.end),
+                                      middle = within(step.middle);
+              kind.evaluate_mean({start, end, middle, step.step}, elements, loads);
+            });
 }
 
 bool uses_middle(const Assembly& assembly, Index island) {

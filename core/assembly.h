@@ -8,7 +8,9 @@
 #include <carom/core/layout.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
+#include <carom/core/workers.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -20,6 +22,14 @@ struct Island {
   Range q;       ///< coordinates
   Range v;       ///< velocities
   Range z;       ///< internal variables of elements
+  Range blocks;  ///< parts of it, see Assembly::blocks()
+};
+
+/// Consecutive bodies of an island. Large islands are cut into blocks, whose number depends on the island's
+/// size alone; loops over them may be shared out to threads.
+struct Block {
+  Range bodies;  ///< in the order of assembly
+  Range v;       ///< velocities
 };
 
 /// Constant once made.
@@ -46,11 +56,24 @@ public:
   [[nodiscard]] Range body_slots(Index island, Index kind) const {
     return body_slots_[island * body_kinds_.size() + kind];
   }
+  /// Blocks of all islands.
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  /// Bodies of a block, and the most there are in one island.
+  static constexpr Index block_size = 8192, most_blocks = 16;
+
   /// Kinds of force elements, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
   /// Elements of a kind that act in an island.
   [[nodiscard]] Range elements(Index island, Index kind) const {
     return element_slots_[island * force_kinds_.size() + kind];
+  }
+  /// Of those, the ones that act within one block only.
+  [[nodiscard]] Range elements_within(Index block, Index kind) const {
+    return block_elements_[block * force_kinds_.size() + kind];
+  }
+  /// Of those, the ones that act on several blocks.
+  [[nodiscard]] Range bridges(Index island, Index kind) const {
+    return bridges_[island * force_kinds_.size() + kind];
   }
   /// Identity of an arranged element.
   [[nodiscard]] ElementId element_id(Index kind, Index slot) const {
@@ -72,6 +95,17 @@ public:
     }
   }
 
+  /// The same for some consecutive bodies of an island.
+  template <class F>
+  void for_bodies(Index island, Range bodies, F&& f) const {
+    for (Index body = bodies.begin; body < bodies.end;) {
+      const BodySlot first = layout_->bodies()[body];
+      const Index last = std::min(body_slots(island, first.kind).end, first.slot + (bodies.end - body));
+      f(*body_kinds_[first.kind], Range{first.slot, last}, first.q, first.v, first.rotation);
+      body += last - first.slot;
+    }
+  }
+
   /// The state described by the system, at time 0.
   [[nodiscard]] State initial_state() const;
 
@@ -80,15 +114,18 @@ private:
   std::vector<Index> order_bodies();
   void order_elements(const std::vector<Index>& island_of_body);
   void place_internals();
+  void cut_islands();
+  [[nodiscard]] Index part_of(Index island, const std::vector<BodyId>& ends) const;
 
   System system_;
   std::shared_ptr<const Layout> layout_;
   std::shared_ptr<Layout> unfinished_layout_;  // the same, while it is being made
   std::vector<Island> islands_;
+  std::vector<Block> blocks_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
   std::vector<Range> body_slots_;
   std::vector<std::unique_ptr<ForceKind>> force_kinds_;
-  std::vector<Range> element_slots_;
+  std::vector<Range> element_slots_, block_elements_, bridges_;
   std::vector<std::vector<Index>> element_order_;  // by kind: described slots, empty if the order is the same
 };
 
@@ -99,12 +136,13 @@ CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const 
 /// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
 /// `evaluation` must be up to date. Arrays may coincide.
 CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
-                              const Evaluation& evaluation, const Loads& loads);
+                              const Evaluation& evaluation, const Loads& loads,
+                              const Workers& workers = Workers());
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
 CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
                                              const Evaluation& evaluation, const Loads& loads,
-                                             StoredEnergies& stored);
+                                             StoredEnergies& stored, const Workers& workers = Workers());
 
 /// Adds the kinetic energy of one island.
 CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,
@@ -113,7 +151,7 @@ CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const 
 /// Zeroes the given arrays over one island and adds the mean loads of all its elements over a step
 /// (ForceKind::evaluate_mean).
 CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
-                                   const Loads& loads);
+                                   const Loads& loads, const Workers& workers = Workers());
 
 /// True if the mean loads or inner losses of an island's elements look at the state halfway.
 [[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index island);

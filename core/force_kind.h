@@ -26,6 +26,7 @@ struct EvaluationContext {
   StateView state;               ///< the state
   const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
   Index island;                  ///< the island the elements belong to
+  Range bodies{};                ///< of a field, the bodies of the island it is to act on; all if empty
 };
 
 /// A step of the time stepping, as elements see it: its two ends and the state halfway (mean velocities and
@@ -66,6 +67,9 @@ public:
   [[nodiscard]] virtual Index size() const = 0;
   /// True if each element acts on every body (gravity); such elements join no islands.
   [[nodiscard]] virtual bool is_field() const { return false; }
+  /// True if evaluate() and potential() may be called for a part of an island at a time, with elements that
+  /// act within it (a field: on EvaluationContext::bodies), and on several threads at once.
+  [[nodiscard]] virtual bool works_in_parts() const { return !is_field(); }
   /// Appends the bodies an element acts on (ground included, nothing for a field).
   virtual void ends(Index element, std::vector<BodyId>& out) const = 0;
   /// True if elements may book external loads.

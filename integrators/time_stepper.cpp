@@ -2,6 +2,7 @@
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -46,6 +47,7 @@ double work(const double* a, const double* b, const State& start, const State& e
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
     : assembly_(&assembly),
       options_(options),
+      workers_(std::max(options.threads, 1)),
       finder_(assembly),
       trial_(assembly.layout()),
       evaluation_(make_evaluation(assembly)) {
@@ -207,27 +209,29 @@ void TimeStepper::add_cluster(const State& state, std::size_t first, std::size_t
 void TimeStepper::start_iteration(Index island, const State& state, const Companion& companion, double step) {
   // Extrapolating far from two near values would magnify their rounding.
   constexpr double farthest = 10.0;
-  const Range q = assembly_->islands()[island].q;
   const Range v = assembly_->islands()[island].v;
   const Range z = assembly_->islands()[island].z;
-  std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
-  std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
   std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
   if (options_.iteration == Iteration::anderson) anderson_.start(v.size());
 
   const double* const now = companion.loads.total.data();
   const LoadHistory& history = companion.history;
   double* const guess = evaluation_.force.data();
-  if (history.known == 2 && step == history.step) {
-    const double* const before = history.before.data();
-    const double* const earlier = history.earlier.data();
-    for (Index i = v.begin; i < v.end; ++i) guess[i] = 3.0 * (now[i] - before[i]) + earlier[i];
-  } else if (history.known > 0 && step <= farthest * history.step) {
-    const double ratio = step / history.step;
-    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + ratio * (now[i] - history.before[i]);
-  } else {
-    std::copy(now + v.begin, now + v.end, guess + v.begin);
-  }
+  const double* const before = history.before.data();
+  const double* const earlier = history.earlier.data();
+  const bool quadratic = history.known == 2 && step == history.step;
+  const bool linear = history.known > 0 && step <= farthest * history.step;
+  const double ratio = linear ? step / history.step : 0.0;
+  for_blocks(island, [&](const Block& block, Index) {
+    const Range part = block.v;
+    if (quadratic) {
+      for (Index i = part.begin; i < part.end; ++i) guess[i] = 3.0 * (now[i] - before[i]) + earlier[i];
+    } else if (linear) {
+      for (Index i = part.begin; i < part.end; ++i) guess[i] = now[i] + ratio * (now[i] - before[i]);
+    } else {
+      std::copy(now + part.begin, now + part.end, guess + part.begin);
+    }
+  });
 }
 
 void TimeStepper::solve_contacts(Index island, const State& state, const Companion& companion, double step) {
@@ -254,23 +258,32 @@ void TimeStepper::solve_contacts(Index island, const State& state, const Compani
 
 void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
   const double* const load0 = start_of_sum(companion);
-  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    kind.sweep(slots, step,
-               {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
-                evaluation_.force.data() + v, clusters_in_use_ > 0 ? response_.data() + v : nullptr,
-                trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
+  for_blocks(island, [&](const Block& block, Index) {
+    assembly_->for_bodies(
+        island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+          kind.sweep(slots, step,
+                     {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
+                      evaluation_.force.data() + v, clusters_in_use_ > 0 ? response_.data() + v : nullptr,
+                      trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
+        });
   });
 }
 
 SweepChange TimeStepper::next_change(Index island, double step) const {
-  SweepChange change;
-  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    kind.next_change(
-        slots, impulse_weight(step), step,
-        {evaluation_.force.data() + v, evaluated_.data() + v, trial_.q.data() + q, trial_.v.data() + v},
-        change);
+  std::array<SweepChange, Assembly::most_blocks> parts{};
+  for_blocks(island, [&](const Block& block, Index part) {
+    SweepChange& change = parts[part];
+    assembly_->for_bodies(
+        island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+          kind.next_change(
+              slots, impulse_weight(step), step,
+              {evaluation_.force.data() + v, evaluated_.data() + v, trial_.q.data() + q, trial_.v.data() + v},
+              change);
+        });
   });
-  return change;
+  SweepChange largest;
+  for (const SweepChange& part : parts) largest.take(part.change, part.size);
+  return largest;
 }
 
 template <class F>
@@ -310,10 +323,10 @@ void TimeStepper::evaluate_loads_together(Index island, const State& state, doub
   double* const loads = evaluated_.data();
   if (mean_rule()) {
     with_step(island, state, step, [&](const StepContext& at) {
-      evaluate_mean_loads(*assembly_, island, at, {loads, loads, loads});
+      evaluate_mean_loads(*assembly_, island, at, {loads, loads, loads}, workers_);
     });
   } else {
-    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads});
+    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads}, workers_);
   }
 }
 
@@ -322,28 +335,47 @@ void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, doub
   evaluated_energies_ = {};
   if (mean_rule()) {
     with_step(island, state, step,
-              [&](const StepContext& at) { evaluate_mean_loads(*assembly_, island, at, loads); });
+              [&](const StepContext& at) { evaluate_mean_loads(*assembly_, island, at, loads, workers_); });
     add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
   } else {
-    evaluate_loads_and_potentials(*assembly_, island, trial_.view(), evaluation_, loads, evaluated_energies_);
+    evaluate_loads_and_potentials(*assembly_, island, trial_.view(), evaluation_, loads, evaluated_energies_,
+                                  workers_);
   }
-  finish(evaluated_, dissipative_, external_, assembly_->islands()[island].v);
+  for_blocks(island,
+             [&](const Block& block, Index) { finish(evaluated_, dissipative_, external_, block.v); });
 }
 
 void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
   const Assembly& assembly = *assembly_;
-  const Range v = assembly.islands()[island].v;
+  for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
   // The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
   // what the iteration left open counts as conservative.
-  const double total = work(start_of_sum(companion), evaluation_.force.data(), state, trial_, v, step);
-  for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
-  add_kinetic_energy(assembly, island, trial_.view(), stored_);
-  const auto part = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
-    if (at_end.empty()) return 0.0;
-    return work(mean_rule() ? at_end.data() : at_start.data(), at_end.data(), state, trial_, v, step);
+  struct Sums {
+    double kinetic = 0.0, total = 0.0, dissipative = 0.0, external = 0.0;
   };
-  const double dissipative = part(companion.loads.dissipative, dissipative_);
-  const double external = part(companion.loads.external, external_);
+  std::array<Sums, Assembly::most_blocks> parts{};
+  const double* const load0 = start_of_sum(companion);
+  for_blocks(island, [&](const Block& block, Index part) {
+    const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+      if (at_end.empty()) return 0.0;
+      const double* const first = mean_rule() ? at_end.data() : at_start.data();
+      return work(first, at_end.data(), state, trial_, block.v, step);
+    };
+    Sums& sums = parts[part];
+    sums.total = work(load0, evaluation_.force.data(), state, trial_, block.v, step);
+    sums.dissipative = of_cause(companion.loads.dissipative, dissipative_);
+    sums.external = of_cause(companion.loads.external, external_);
+    assembly.for_bodies(island, block.bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
+    });
+  });
+  double total = 0.0, dissipative = 0.0, external = 0.0;
+  for (Index part = 0; part < assembly.islands()[island].blocks.size(); ++part) {
+    stored_[StoredEnergy::kinetic] += parts[part].kinetic;
+    total += parts[part].total;
+    dissipative += parts[part].dissipative;
+    external += parts[part].external;
+  }
   double inside = 0.0;
   if (!assembly.islands()[island].z.empty()) {
     inside = with_step(island, state, step,

@@ -64,6 +64,12 @@ private:
   void evaluate_loads_by_cause(Index island, const State& state, double step);
   [[nodiscard]] SweepChange next_change(Index island, double step) const;
   [[nodiscard]] SweepChange implicit_change(Index island, double step) const;
+  /// Calls f(block, its place in the island) for the blocks of an island, shared out to the threads.
+  template <class F>
+  void for_blocks(Index island, F&& f) const {
+    const Range blocks = assembly_->islands()[island].blocks;
+    workers_.for_each(blocks.size(), [&](Index part) { f(assembly_->blocks()[blocks.begin + part], part); });
+  }
   void improve_guess(Index island, const FixedPointJudge& judge);
   void start_implicit(Index island, const State& state, const Companion& companion, double step);
   void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,
@@ -103,6 +109,7 @@ private:
 
   const Assembly* assembly_;
   TimeStepping options_;
+  Workers workers_;
   ContactFinder finder_;
   SolverChain chain_;
 

@@ -49,6 +49,10 @@ void check_options(const TimeStepping& options) {
     refuse("tolerance", options.tolerance, "finite and >= 0 m");
   }
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
+  if (options.threads < 1) refuse("threads", options.threads, "at least 1");
+  if (options.threads > 1 && !Workers::several_available()) {
+    refuse("threads", options.threads, "1, for the library was built without oneTBB (CAROM_WITH_TBB)");
+  }
   if (options.control) {
     const StepControl& control = *options.control;
     if (!(std::isfinite(control.tolerance) && control.tolerance > 0.0)) {

@@ -10,7 +10,10 @@ namespace carom {
 void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
   const Range v = assembly_->islands()[island].v;
   if (options_.iteration == Iteration::fixed_point) {
-    std::copy(evaluated_.begin() + v.begin, evaluated_.begin() + v.end, evaluation_.force.begin() + v.begin);
+    for_blocks(island, [this](const Block& block, Index) {
+      std::copy(evaluated_.begin() + block.v.begin, evaluated_.begin() + block.v.end,
+                evaluation_.force.begin() + block.v.begin);
+    });
     return;
   }
   if (options_.iteration == Iteration::anderson) {
@@ -30,6 +33,9 @@ void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
 /// the loads at the start as they grow with the motion.
 void TimeStepper::start_implicit(Index island, const State& state, const Companion& companion, double step) {
   const Range v = assembly_->islands()[island].v;
+  const Range q = assembly_->islands()[island].q;
+  std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
+  std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
   evaluate_loads(*assembly_, island, state.view(), start_,
                  {evaluated_.data(), evaluated_.data(), evaluated_.data()});
   for (Index i = v.begin; i < v.end; ++i) {

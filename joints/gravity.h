@@ -49,6 +49,7 @@ public:
   [[nodiscard]] StoredEnergy stored_as() const override { return StoredEnergy::gravity; }
   [[nodiscard]] bool books_external() const override { return false; }
   [[nodiscard]] bool books_dissipative() const override { return false; }
+  [[nodiscard]] bool works_in_parts() const override { return true; }
   [[nodiscard]] bool needs_rotations() const override { return false; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] bool uses_middle() const override { return false; }

@@ -97,7 +97,8 @@ def impact_table(impact):
     hand = impact["impact_by_hand"]["per_impact"]
     rows = [[title, figure(1e9 * impact[key]["per_impact"]), f"{impact[key]['per_impact'] / hand:.2f}"]
             for key, title in (("impact_by_hand", "closed form by hand"),
-                               ("impact_by_library", "library: contact problem, solved and certified"),
+                               ("impact_certified", "library: one planar contact, solved and certified"),
+                               ("impact_by_library", "library: the same as a contact problem, by the chain"),
                                ("impact_of_body", "library: contact of a body to its velocities after"))]
     return table(["one impact", "ns", "ratio"], rows)
 
@@ -136,15 +137,19 @@ def aims_table(net, impact, tables):
 
     steps = [case for key, case in net.items() if key.startswith("step_")]
     storage = net["storage"]
-    impact_ratio = impact["impact_by_library"]["per_impact"] / impact["impact_by_hand"]["per_impact"]
+    by_threads = [net.get(f"step_threads/300/{count}/real_time") for count in (1, 2)]
+    threads = "built without oneTBB"
+    if all(by_threads):
+        threads = f"{by_threads[0]['per_particle'] / by_threads[1]['per_particle']:.2f}"
+    impact_ratio = impact["impact_certified"]["per_impact"] / impact["impact_by_hand"]["per_impact"]
     rows = [
         ["force sweep, in plain sweeps", "≤ 1.5", ratios("forces")],
         ["whole step converged to 1e-10 (springs stretched), in plain sweeps", "≤ 4", ratios("step_working")],
         ["the same, ns per particle", "< 60", times("step_working")],
-        ["allocations in a step of the steady state", "0", figure(max(case["allocations"] for case in steps))],
+        ["allocations in a step of the steady state", "0", figure(max(case["allocations"] for case in steps if "allocations" in case))],
         ["bytes per particle", "≤ 200", f"{storage['bytes_per_particle']:.0f}"],
         ["bytes per spring", "≤ 128", f"{storage['bytes_per_spring']:.0f}"],
-        ["two threads against one, k = 300", "≥ 1.7", "steps run on one thread"],
+        ["two threads against one, k = 300", "≥ 1.7", threads],
         ["one certified impact, in closed forms by hand", "≤ 3", f"{impact_ratio:.2f}"],
         ["ball between tables, ms of CPU per second", "< 2", f"{1e3 * seconds(tables['second_by_library']):.3g}"],
     ]

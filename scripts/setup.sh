@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache
   libeigen3-dev libspdlog-dev libsundials-dev
-  libgtest-dev libgmock-dev librapidcheck-dev nlohmann-json3-dev libbenchmark-dev
+  libgtest-dev libgmock-dev librapidcheck-dev nlohmann-json3-dev libbenchmark-dev libtbb-dev
   python3 python3-matplotlib
 )
 for argument in "$@"; do

@@ -35,6 +35,7 @@ const std::regex sundials_header(
 const std::regex logging_header("(spdlog|fmt)/.*");
 const std::regex test_header("(gtest|gmock)/.*");
 const std::regex json_header("nlohmann/.*");
+const std::regex thread_header("(oneapi/)?tbb/.*");
 const std::regex type_query(R"(\bdynamic_(pointer_)?cast\b)");
 
 // The code without its comments.
@@ -75,6 +76,9 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
     if (std::regex_match(target, logging_header) && !may_log) refuse("logging library outside core/log.cpp");
     if (std::regex_match(target, json_header) && !may_use_json)
       refuse("JSON outside contact/problem_file.cpp");
+    if (std::regex_match(target, thread_header) && path != "core/workers.cpp") {
+      refuse("oneTBB outside core/workers.cpp");
+    }
     if (std::regex_match(target, sundials_header) && !may_integrate) {
       refuse("SUNDIALS outside integrators/sundials*");
     }
@@ -141,6 +145,8 @@ TEST(IncludeEdges, GoodLinesPass) {
       violations("contact/a.h", "#include <carom/bodies/shape_disc.h>\n#include <carom/core/b.h>\n").empty());
   EXPECT_TRUE(violations("integrators/a.cpp", "#include <carom/contact/b.h>\n").empty());
   EXPECT_TRUE(violations("core/log.cpp", "#include <spdlog/spdlog.h>\n").empty());
+  EXPECT_TRUE(violations("core/workers.cpp", "#include <oneapi/tbb/task_arena.h>\n").empty());
+  EXPECT_FALSE(violations("core/assembly.cpp", "#include <oneapi/tbb/task_arena.h>\n").empty());
   EXPECT_TRUE(violations("contact/problem_file.cpp", "#include <nlohmann/json.hpp>\n").empty());
   EXPECT_TRUE(violations("contact/carom_program.cpp", "#include <nlohmann/json.hpp>\n").empty());
   EXPECT_TRUE(violations("integrators/sundials_flow.cpp", "#include <arkode/arkode_erkstep.h>\n").empty());

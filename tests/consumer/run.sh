@@ -60,7 +60,8 @@ library_options=(-DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUIL
 
 # Users of a shared copy need none of its private dependencies.
 without_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
-without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON "$without_json")
+without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON
+  -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON "$without_json")
 
 echo "consumer: installed shared copy"
 if [[ -z $shared_build ]]; then

@@ -46,6 +46,39 @@ TEST(SingleContact, LoneRows) {
   EXPECT_EQ(solve_row(free, 0.0, 1.0, p).outcome, Outcome::no_solution);
 }
 
+// The short door gives what the long ways give, regular or not, and its certificate is the one residual.
+TEST(SingleContact, CertifiedFromItsNumbers) {
+  contact_test::Random random(5);
+  ContactProblem problem;
+  int unusable = 0;
+  for (int i = 0; i < 20000; ++i) {
+    // W = A A^T of rank one or two, from well to badly conditioned; some without friction, some without b_n.
+    const double a = random.uniform(-2.0, 2.0), b = random.uniform(-2.0, 2.0);
+    const double second = random.chance(0.25) ? 0.0 : random.log_uniform(1e-3, 3.0);
+    PlanarContact c{.w_nn = a * a + second,
+                    .w_nt = a * b,
+                    .w_tt = b * b + second,
+                    .b_n = random.chance(0.1) ? 0.0 : random.uniform(-2.0, 0.5),
+                    .b_t = random.uniform(-2.0, 2.0),
+                    .friction = random.chance(0.125) ? 0.0 : random.uniform(0.0, 3.0)};
+    const CertifiedImpulse answer = solve_certified_contact(c);
+    const PlanarSolutions listed = solve_planar_contact(c);
+    EXPECT_EQ(answer.usable, listed.count > 0);
+    if (!answer.usable) {
+      ++unusable;
+      continue;
+    }
+    EXPECT_EQ(answer.outcome, listed.outcome);
+    EXPECT_EQ(answer.impulse.normal, listed.list[0].normal);
+    EXPECT_EQ(answer.impulse.tangential, listed.list[0].tangential);
+    contact_test::make_problem(c.w_nn, c.w_nt, c.w_tt, c.b_n, c.b_t, c.friction, problem);
+    const double impulse[2] = {answer.impulse.normal, answer.impulse.tangential};
+    const double xi[2] = {answer.xi_n, answer.xi_t};
+    EXPECT_DOUBLE_EQ(answer.residual, residual(problem, impulse, xi).value);
+  }
+  EXPECT_GT(unusable, 0);  // jammed ones were among them
+}
+
 // docs/method.md section 4: where the directions do not couple.
 TEST(SingleContact, SphereInThePlane) {
   const double m = 2.0, r = 0.1, inertia = 0.4 * m * r * r, m1 = 1.0 / (1.0 / m + r * r / inertia);

@@ -1,0 +1,21 @@
+# oneTBB shares work out to threads. It is seen by core/workers.cpp alone.
+set(CAROM_WITH_TBB AUTO CACHE STRING "Several threads by oneTBB: AUTO (if it is found), ON or OFF")
+set_property(CACHE CAROM_WITH_TBB PROPERTY STRINGS AUTO ON OFF)
+
+set(carom_has_tbb FALSE)
+if(CAROM_WITH_TBB STREQUAL "AUTO")
+  find_package(TBB QUIET)
+  set(carom_has_tbb ${TBB_FOUND})
+  if(NOT carom_has_tbb)
+    message(STATUS "carom: oneTBB not found, simulations run on one thread (CAROM_WITH_TBB)")
+  endif()
+elseif(CAROM_WITH_TBB)
+  find_package(TBB REQUIRED)
+  set(carom_has_tbb TRUE)
+endif()
+
+if(carom_has_tbb)
+  target_link_libraries(carom PRIVATE TBB::tbb)
+  string(APPEND carom_private_packages "find_dependency(TBB)\n")
+  set_source_files_properties("${PROJECT_SOURCE_DIR}/core/workers.cpp" PROPERTIES COMPILE_DEFINITIONS CAROM_HAS_TBB)
+endif()

@@ -1,0 +1,45 @@
+#pragma once
+
+/// \file
+/// Threads for loops over parts of an island. What a loop computes must not depend on who does which part, so
+/// the same bits come out for any number of threads.
+
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+
+#include <memory>
+#include <type_traits>
+
+namespace carom {
+
+/// A number of threads. One needs nothing; more need a library built with oneTBB.
+class CAROM_API Workers {
+public:
+  /// The thread that calls, alone.
+  Workers() = default;
+  /// \param threads at least 1
+  explicit Workers(int threads);
+
+  /// True if the library was built with oneTBB.
+  [[nodiscard]] static bool several_available();
+
+  /// Calls f(0), ..., f(count - 1), each once: on several threads in any order, on one in this order. What f
+  /// throws is thrown here.
+  template <class F>
+  void for_each(Index count, F&& f) const {
+    if (!arena_ || count <= 1) {
+      for (Index i = 0; i < count; ++i) f(i);
+      return;
+    }
+    run(count, &f, [](void* function, Index i) { (*static_cast<std::remove_reference_t<F>*>(function))(i); });
+  }
+
+private:
+  struct Arena;
+
+  void run(Index count, void* function, void (*call)(void*, Index)) const;
+
+  std::shared_ptr<Arena> arena_;  // null for one thread
+};
+
+}  // namespace carom

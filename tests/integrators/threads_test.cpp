@@ -1,0 +1,128 @@
+// Large islands are cut into blocks; who works on which changes no bit.
+
+#include "examples/scenes/net.h"
+#include "tests/integrators/same_run.h"
+#include "tests/model_error.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+/// Three blocks, two of which the springs of every row cross; its lowest row lies along the plane.
+scenes::Net large() { return {.k = 160, .prestress = 0.01, .tilt = 0.1, .height = -1e-6}; }
+
+System large_net() {
+  System system;
+  scenes::add_net(system, large());
+  return system;
+}
+
+std::vector<std::uint64_t> bits_after(int threads, TimeStepping options, int steps) {
+  options.threads = threads;
+  Simulation simulation(large_net(), options);
+  for (int i = 0; i < steps; ++i) simulation.step();
+  EXPECT_GT(simulation.statistics().contact_steps, 0);
+  return carom_test::bits_of(simulation);
+}
+
+TEST(Threads, BlocksTogetherAreTheIsland) {
+  const Assembly assembly(large_net());
+  ASSERT_EQ(assembly.islands().size(), 1U);
+  const Island& island = assembly.islands()[0];
+  ASSERT_EQ(island.blocks.size(), 3U);
+  Index body = island.bodies.begin, v = island.v.begin;
+  for (Index block = island.blocks.begin; block < island.blocks.end; ++block) {
+    EXPECT_EQ(assembly.blocks()[block].bodies.begin, body);
+    EXPECT_EQ(assembly.blocks()[block].v.begin, v);
+    body = assembly.blocks()[block].bodies.end;
+    v = assembly.blocks()[block].v.end;
+  }
+  EXPECT_EQ(body, island.bodies.end);
+  EXPECT_EQ(v, island.v.end);
+}
+
+TEST(Threads, ElementsWithinABlockTouchNoOther) {
+  const Assembly assembly(large_net());
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const ForceKind& force = *assembly.force_kinds()[kind];
+    if (force.is_field()) continue;
+    std::set<Index> seen;
+    const auto blocks_of = [&](Index element) {
+      std::vector<BodyId> ends;
+      force.ends(element, ends);
+      std::set<Index> blocks;
+      for (const BodyId end : ends) {
+        const Index body = assembly.layout()->index(end);
+        for (Index block = 0; block < assembly.blocks().size(); ++block) {
+          const Range bodies = assembly.blocks()[block].bodies;
+          if (body >= bodies.begin && body < bodies.end) blocks.insert(block);
+        }
+      }
+      seen.insert(element);
+      return blocks;
+    };
+    for (Index block = 0; block < assembly.blocks().size(); ++block) {
+      const Range elements = assembly.elements_within(block, kind);
+      for (Index element = elements.begin; element < elements.end; ++element) {
+        EXPECT_EQ(blocks_of(element), std::set<Index>{block});
+      }
+    }
+    const Range bridges = assembly.bridges(0, kind);
+    EXPECT_FALSE(bridges.empty());
+    for (Index element = bridges.begin; element < bridges.end; ++element) {
+      EXPECT_GT(blocks_of(element).size(), 1U);
+    }
+    EXPECT_EQ(seen.size(), force.size());
+  }
+}
+
+TEST(Threads, SameBitsForAnyNumber) {
+  if (!Workers::several_available()) GTEST_SKIP() << "built without oneTBB";
+  for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
+    const TimeStepping options{.step = 1e-4, .tolerance = 1e-10, .force_rule = rule};
+    const auto one = bits_after(1, options, 12);
+    EXPECT_EQ(bits_after(2, options, 12), one) << to_string(rule);
+  }
+}
+
+TEST(Threads, SameBitsWithAnderson) {
+  if (!Workers::several_available()) GTEST_SKIP() << "built without oneTBB";
+  const TimeStepping options{.step = 1e-4, .tolerance = 1e-10, .iteration = Iteration::anderson};
+  EXPECT_EQ(bits_after(2, options, 6), bits_after(1, options, 6));
+}
+
+TEST(Threads, WhatALoopThrowsComesOut) {
+  for (const int threads : {1, 2}) {
+    if (threads > 1 && !Workers::several_available()) continue;
+    const Workers workers(threads);
+    std::vector<int> calls(100, 0);
+    workers.for_each(100, [&](Index i) { ++calls[i]; });
+    EXPECT_EQ(calls, std::vector<int>(100, 1));
+    const auto run = [&] {
+      workers.for_each(100, [](Index i) {
+        if (i == 57) throw std::runtime_error("57");
+      });
+    };
+    EXPECT_THROW(run(), std::runtime_error);
+  }
+}
+
+TEST(Threads, RefusesNumbersThatCannotBe) {
+  System system;
+  system.add(Particle{.mass = 1.0});
+  EXPECT_MODEL_ERROR(Simulation(system, TimeStepping{.threads = 0}), "threads is 0", "at least 1");
+  if (!Workers::several_available()) {
+    EXPECT_MODEL_ERROR(Simulation(system, TimeStepping{.threads = 2}), "threads is 2", "oneTBB");
+  }
+}
+
+}  // namespace
