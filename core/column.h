@@ -5,7 +5,8 @@
 
 #include <carom/core/ids.h>
 
-#include <cstring>
+#include <algorithm>
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -43,7 +44,10 @@ public:
   void shrink() { values_.shrink_to_fit(); }
 
 private:
-  static bool same(const T& a, const T& b) { return std::memcmp(&a, &b, sizeof(T)) == 0; }
+  static bool same(const T& a, const T& b) {
+    const auto first = std::as_bytes(std::span(&a, 1)), second = std::as_bytes(std::span(&b, 1));
+    return std::equal(first.begin(), first.end(), second.begin());
+  }
 
   std::vector<T> values_;  // empty while all values are equal
   T common_[2]{};

@@ -43,12 +43,6 @@ public:
   /// Walks over the slots.
   class Iterator {
   public:
-    using value_type = BodySlot;
-    using difference_type = std::ptrdiff_t;
-    using reference = BodySlot;
-    using pointer = void;
-    using iterator_category = std::input_iterator_tag;
-
     Iterator() = default;
     Iterator(const BodySlots* slots, Index body) : slots_(slots), body_(body) {}
     BodySlot operator*() const { return (*slots_)[body_]; }

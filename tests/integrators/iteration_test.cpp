@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -18,8 +17,6 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::ledger_closes;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// A turning pair: two masses of 1 kg on a spring of free length 1 m.
 System pair(double stiffness, double damping = 0.0) {
