@@ -254,6 +254,7 @@ int run(const Options& options) {
   const auto solvers = asked(options.solver);
   const ProblemFile file = load_problem(options.file);
   std::vector<Answer> answers;
+  answers.reserve(solvers.size());
   for (const auto& solver : solvers) answers.emplace_back(file.problem, solver);
   if (options.json) {
     print_json(options.file, answers);

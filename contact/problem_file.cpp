@@ -136,7 +136,7 @@ public:
     if (value == "inf") return std::numeric_limits<double>::infinity();
     if (value == "-inf") return -std::numeric_limits<double>::infinity();
     if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
-    refuse(field, shown(value), "a number, \"inf\", \"-inf\" or \"nan\"");
+    refuse(field, shown(value), R"(a number, "inf", "-inf" or "nan")");
   }
   int whole(const Json& value, const std::string& field, int lowest, int highest,
             const std::string& allowed) const {
@@ -198,7 +198,7 @@ RowSet read_set(const Reader& in, const Json& value, int row) {
       std::find_if(kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.second == kind; });
   if (known == kinds.end()) {
     in.refuse(field + ".kind", "\"" + kind + "\"",
-              "\"half_line\", \"interval\", \"bounded_interval\" or \"bounded_disc\"");
+              R"("half_line", "interval", "bounded_interval" or "bounded_disc")");
   }
   RowSet set{.kind = known->first};
   const auto number = [&](const char* name) {
