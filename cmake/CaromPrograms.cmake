@@ -1,6 +1,6 @@
 # Programs: <folder>/carom_<name>.cpp becomes carom-<name>. They read and write JSON.
 set(carom_programs "")
-if(CAROM_BUILD_PROGRAMS AND NOT carom_has_json)
+if(CAROM_BUILD_PROGRAMS AND NOT carom_has_nlohmann_json)
   message(STATUS "carom: programs are left out, they need nlohmann-json (CAROM_WITH_JSON)")
 elseif(CAROM_BUILD_PROGRAMS)
   foreach(source IN LISTS program_sources)

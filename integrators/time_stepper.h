@@ -62,7 +62,7 @@ private:
   void follow_iterate(Index island, const State& state, double step);
   void evaluate_loads_together(Index island, const State& state, double step);
   void evaluate_loads_by_cause(Index island, const State& state, double step);
-  [[nodiscard]] SweepChange next_change(Index island, double step) const;
+  [[nodiscard]] SweepChange next_change(Index island, double step);
   [[nodiscard]] SweepChange implicit_change(Index island, double step) const;
   /// Calls f(block, its place in the island) for the blocks of an island, shared out to the threads.
   template <class F>
@@ -96,7 +96,12 @@ private:
 
   /// The step of an island as elements see it, `f` called with it.
   template <class F>
-  auto with_step(Index island, const State& state, double step, F&& f);
+  auto with_step(Index island, const State& state, double step, F&& f) const {
+    const EvaluationContext start{*assembly_, state.view(), start_, island};
+    const EvaluationContext end{*assembly_, trial_.view(), evaluation_, island};
+    const EvaluationContext middle{*assembly_, middle_.view(), middle_evaluation_, island};
+    return f(StepContext{start, end, middle, step});
+  }
   [[nodiscard]] bool mean_rule() const { return options_.force_rule == ForceRule::energy_momentum; }
   /// What stands for the loads at the start in the sum (load0 + load1)/2: mean loads count twice.
   [[nodiscard]] const double* start_of_sum(const Companion& companion) const {
@@ -121,7 +126,13 @@ private:
   std::vector<double> evaluated_;      // loads that the guess led to
   StoredEnergies evaluated_energies_;  // of the island, potentials that it led to
   std::vector<int> sweeps_;            // by island
-  std::vector<double> weights_;        // of loads: lengths by mass
+  bool swept_ = false;                 // trial_ is an iterate of the step
+  std::vector<SweepChange> changes_;   // by block of the island at hand
+  struct Works {
+    double kinetic, total, dissipative, external;  // energy at the end; works of the loads, by cause
+  };
+  std::vector<Works> works_;     // likewise
+  std::vector<double> weights_;  // of loads: lengths by mass
   AndersonAcceleration anderson_;
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew

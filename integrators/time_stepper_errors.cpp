@@ -20,11 +20,16 @@ bool all_finite(const std::vector<double>& numbers, Range range) {
                      [](double number) { return std::isfinite(number); });
 }
 
-SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state,
-                         double step) {
+SolverFailure failure_at(const State& state, double step) {
   SolverFailure failure;
   failure.time = state.time;
   failure.step = step;
+  return failure;
+}
+
+SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state,
+                         double step) {
+  SolverFailure failure = failure_at(state, step);
   failure.residual = cluster.report().residual;
   for (const Contact& contact : cluster.contacts()) failure.parts.push_back(finder.name(contact.key));
   failure.problem = std::make_shared<const ContactProblem>(cluster.problem());
@@ -78,9 +83,7 @@ void TimeStepper::demand_finite_loads(Index island, const StateView& at, const S
   evaluate_positions(*assembly_, island, at, evaluation_);
   const ElementId culprit = find_non_finite(*assembly_, island, at, evaluation_);
   if (!culprit.valid()) return;
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   failure.parts.push_back(assembly_->system().name(culprit));
   const std::string message =
       place(state, step) + "the loads of " + failure.parts.front() + " are not finite";
@@ -124,9 +127,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     }
   }
 
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   failure.residual = judge.change();
   evaluate_positions(*assembly_, island, state.view(), evaluation_);
   const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
@@ -155,10 +156,10 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   SolverFailure failure = failure_of(cluster, finder_, state, step);
   const auto b = cluster.problem().vector();
   const bool finite = std::all_of(b.begin(), b.end(), [](double number) { return std::isfinite(number); });
-  // Loads that are not finite reach the contact first; the iterate before is still there.
+  // Loads that are not finite reach the contact first; the iterate before, if there was one, is still there.
   if (!finite) {
     demand_finite_loads(island, state.view(), state, step);
-    demand_finite_loads(island, trial_.view(), state, step);
+    if (swept_) demand_finite_loads(island, trial_.view(), state, step);
   }
   std::string message = place(state, step) + "contact problem of " + listed(failure.parts) + ": ";
   message += to_string(cluster.report().outcome);
@@ -172,9 +173,7 @@ void TimeStepper::fail_account(Index island, const State& state, double step) {
   demand_finite_loads(island, trial_.view(), state, step);
   evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
   const ElementId culprit = find_non_finite_potential(*assembly_, island, trial_.view(), evaluation_);
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   std::string message = place(state, step);
   if (culprit.valid()) {
     failure.parts.push_back(assembly_->system().name(culprit));
@@ -186,9 +185,7 @@ void TimeStepper::fail_account(Index island, const State& state, double step) {
 }
 
 void TimeStepper::fail_internal(ElementId element, const State& state, double step) const {
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   failure.parts.push_back(assembly_->system().name(element));
   const std::string message =
       place(state, step) + "the internal variables of " + failure.parts.front() + " cannot be advanced";
@@ -199,9 +196,7 @@ void TimeStepper::fail_linearisation(Index island, const State& state, double st
   evaluate_positions(*assembly_, island, state.view(), evaluation_);
   const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
   demand_finite_loads(island, state.view(), state, step);
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   failure.suggested_step = 0.5 * step;
   std::string message = place(state, step) + "the matrix of the linearly implicit iteration " + why;
   if (rating.worst.valid()) {
@@ -212,9 +207,7 @@ void TimeStepper::fail_linearisation(Index island, const State& state, double st
 }
 
 void TimeStepper::fail_projection(const Contact& left, const State& state, double step) const {
-  SolverFailure failure;
-  failure.time = state.time;
-  failure.step = step;
+  SolverFailure failure = failure_at(state, step);
   failure.residual = -left.gap;
   failure.parts.push_back(finder_.name(left.key));
   const std::string message = place(state, step) + "project_gaps: no displacement brings " +

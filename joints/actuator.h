@@ -65,9 +65,7 @@ struct LinearActuator {
   /// Throws ModelError for ends or a law that cannot be. The law is tried at time 0 with the length and rate
   /// that the bodies are described with, unless the length is 0.
   void check(const PartCheck& check) const {
-    check_end(check, from, "from");
-    check_end(check, to, "to");
-    check.different_ends(from.body, to.body);
+    check_line_ends(check, from, to);
     if (!force) check.refuse("force", "not given", "a function of time, length and rate");
     const auto start = LineOfAction<D>::described(check.system(), from, to);
     if (start.length == 0.0) return;

@@ -27,6 +27,24 @@ struct DescribedStart {
 
 namespace generic {
 
+/// Demands two different ends that can be.
+template <int D>
+void check_line_ends(const PartCheck& check, const End<D>& from, const End<D>& to) {
+  check_end(check, from, "from");
+  check_end(check, to, "to");
+  check.different_ends(from.body, to.body);
+}
+
+/// Books a spring and a dashpot between two ends, given the forces on `from`; those on `to` are opposite.
+template <int D>
+void book_pull(ElementLoads<D>& out, const End<D>& from, const End<D>& to, const Vec<D>& elastic,
+               const Vec<D>& viscous) {
+  out.conservative(from, elastic);
+  out.conservative(to, -elastic);
+  out.dissipative(from, viscous);
+  out.dissipative(to, -viscous);
+}
+
 /// The line between two ends: with d from `from` to `to`, the length |d|, d/|d| and the rate of the length.
 /// Where the ends coincide there is no direction: it is zero, and so is the rate.
 template <int D>

@@ -38,9 +38,7 @@ struct MaxwellElement {
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
   /// Throws ModelError for ends or numbers that cannot be.
   void check(const PartCheck& check) const {
-    check_end(check, from, "from");
-    check_end(check, to, "to");
-    check.different_ends(from.body, to.body);
+    check_line_ends(check, from, to);
     check.positive(stiffness, "stiffness", "N/m");
     check.positive(damping, "damping", "N s/m");
     check.non_negative(free_length, "free_length", "m");

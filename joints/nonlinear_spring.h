@@ -44,9 +44,7 @@ struct NonlinearSpring {
   /// that the bodies are described with, unless it is 0. Whether they fit is not looked at:
   /// check_potential().
   void check(const PartCheck& check) const {
-    check_end(check, from, "from");
-    check_end(check, to, "to");
-    check.different_ends(from.body, to.body);
+    check_line_ends(check, from, to);
     check.non_negative(damping, "damping", "N s/m");
     if (!force) check.refuse("force", "not given", "a function of the length");
     if (!potential_of) check.refuse("potential_of", "not given", "a function of the length");
@@ -63,10 +61,7 @@ struct NonlinearSpring {
     if (line.length == 0.0) return;
     const Vec<D> elastic = force(line.length) * line.direction;
     const Vec<D> viscous = damping * line.rate * line.direction;
-    out.conservative(from, elastic);
-    out.conservative(to, -elastic);
-    out.dissipative(from, viscous);
-    out.dissipative(to, -viscous);
+    book_pull(out, from, to, elastic, viscous);
   }
   /// Books spring and dashpot over a step.
   void mean_loads(const ElementStep<D>& step, ElementLoads<D>& out) const {
@@ -74,10 +69,7 @@ struct NonlinearSpring {
     if (line.length == 0.0) return;
     const Vec<D> elastic = line.mean_tension(force, potential_of) * line.direction;
     const Vec<D> viscous = damping * (line.growth / step.step) * line.direction;
-    out.conservative(from, elastic);
-    out.conservative(to, -elastic);
-    out.dissipative(from, viscous);
-    out.dissipative(to, -viscous);
+    book_pull(out, from, to, elastic, viscous);
   }
   /// Derivatives: the law's, the line's in closed form.
   void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {

@@ -42,9 +42,7 @@ struct OneSidedSpring {
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
   /// Throws ModelError for ends or numbers that cannot be.
   void check(const PartCheck& check) const {
-    check_end(check, from, "from");
-    check_end(check, to, "to");
-    check.different_ends(from.body, to.body);
+    check_line_ends(check, from, to);
     check.positive(stiffness, "stiffness", "N/m");
     check.non_negative(damping, "damping", "N s/m");
     if constexpr (Pulls) {
@@ -61,10 +59,7 @@ struct OneSidedSpring {
     const double dashpot = std::clamp(wanted(line), -spring, spring);
     const Vec<D> conservative = side * spring * line.direction;  // on `from`
     const Vec<D> dissipative = side * dashpot * line.direction;
-    out.conservative(from, conservative);
-    out.conservative(to, -conservative);
-    out.dissipative(from, dissipative);
-    out.dissipative(to, -dissipative);
+    book_pull(out, from, to, conservative, dissipative);
   }
   /// Books spring and dashpot over a step.
   void mean_loads(const ElementStep<D>& step, ElementLoads<D>& out) const {
@@ -77,10 +72,7 @@ struct OneSidedSpring {
     const double dashpot = std::clamp(damping * rate, -std::abs(pull), std::abs(pull));
     const Vec<D> conservative = pull * line.direction;  // on `from`
     const Vec<D> dissipative = dashpot * line.direction;
-    out.conservative(from, conservative);
-    out.conservative(to, -conservative);
-    out.dissipative(from, dissipative);
-    out.dissipative(to, -dissipative);
+    book_pull(out, from, to, conservative, dissipative);
   }
   /// Derivatives. At an edge between slack, free and clipped, those of one side.
   void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {

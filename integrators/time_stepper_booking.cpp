@@ -1,0 +1,197 @@
+// Problem: tell the account, the report and the statistics what a step did, and make the step's end the
+// state.
+
+#include <carom/core/pair.h>
+#include <carom/integrators/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// Work of the impulse of loads a and b at the ends of a step: impulse times mean velocity, exact for the
+/// kinetic energy [J].
+double work(const double* a, const double* b, const State& start, const State& end, Range v, double step) {
+  Pair pairs = both(0.0);
+  Index i = v.begin;
+  for (; i + 1 < v.end; i += 2) {
+    pairs +=
+        (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) * (load_pair(a + i) + load_pair(b + i));
+  }
+  double sum = pairs[0] + pairs[1];
+  if (i < v.end) sum += (start.v[i] + end.v[i]) * (a[i] + b[i]);
+  return 0.25 * step * sum;
+}
+
+}  // namespace
+
+void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
+  const Assembly& assembly = *assembly_;
+  for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
+  // The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
+  // what the iteration left open counts as conservative.
+  const double* const load0 = start_of_sum(companion);
+  for_blocks(island, [&](const Block& block, Index part) {
+    const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+      if (at_end.empty()) return 0.0;
+      const double* const first = mean_rule() ? at_end.data() : at_start.data();
+      return work(first, at_end.data(), state, trial_, block.v, step);
+    };
+    Works& sums = works_[part];
+    sums.kinetic = 0.0;
+    sums.total = work(load0, evaluation_.force.data(), state, trial_, block.v, step);
+    sums.dissipative = of_cause(companion.loads.dissipative, dissipative_);
+    sums.external = of_cause(companion.loads.external, external_);
+    assembly.for_bodies(island, block.bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
+    });
+  });
+  double total = 0.0, dissipative = 0.0, external = 0.0;
+  for (Index part = 0; part < assembly.islands()[island].blocks.size(); ++part) {
+    stored_[StoredEnergy::kinetic] += works_[part].kinetic;
+    total += works_[part].total;
+    dissipative += works_[part].dissipative;
+    external += works_[part].external;
+  }
+  double inside = 0.0;
+  if (!assembly.islands()[island].z.empty()) {
+    inside = with_step(island, state, step,
+                       [&](const StepContext& at) { return internal_loss(assembly, island, at); });
+  }
+  // Potentials enter the account unseen by any sweep.
+  if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(island, state, step);
+  coupling_work_.add(total - dissipative - external + inside);
+  flows_[EnergyFlow::dashpot] += inside - dissipative;
+  flows_[EnergyFlow::external] += external;
+}
+
+void TimeStepper::project(Index island, const State& state, double step) {
+  if (contacts_.empty()) return;
+  const Assembly& assembly = *assembly_;
+  evaluate_positions(assembly, island, trial_.view(), evaluation_);
+  const GapProjection::Result result =
+      projection_.project(assembly, island, finder_, contacts_, chain_, trial_, evaluation_);
+  if (result.left != nullptr) fail_projection(*result.left, state, step);
+  if (!result.moved) return;
+  report_.projected = std::max(report_.projected, result.shift);
+  const StoredEnergies before = evaluated_energies_;
+  if (mean_rule()) {
+    // The mean loads are those that acted.
+    evaluated_energies_ = {};
+    add_potentials(assembly, island, trial_.view(), evaluation_, evaluated_energies_);
+  } else {
+    evaluate_loads_by_cause(island, state, step);
+  }
+  projected_ += before.potential() - evaluated_energies_.potential();
+  for (std::size_t i = 0; i < stored_energy_count; ++i) {
+    stored_.values[i] += evaluated_energies_.values[i] - before.values[i];
+  }
+}
+
+void TimeStepper::book_contacts(const State& state, double step) {
+  for (std::size_t i = 0; i < clusters_in_use_; ++i) {
+    const ContactCluster& cluster = clusters_[i];
+    bool impact = false;
+    double gain = 0.0;
+    double scale = 0.0;
+    for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
+      record(cluster, contact);
+      const ContactRecord& entry = report_.contacts.back();
+      impact = impact || entry.impact;
+      for (int direction = 0; direction < entry.directions; ++direction) {
+        const auto at = static_cast<std::size_t>(direction);
+        gain += entry.work[at];
+        scale += std::abs(entry.impulse[at]) *
+                 (std::abs(entry.velocity_before[at]) + std::abs(entry.velocity_after[at]));
+        const EnergyFlow line =
+            entry.impact ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                         : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+        flows_[line] -= entry.work[at];
+      }
+    }
+    // Rounding of the sum of works; a gain above it is real. In lasting contact the loads of the step take
+    // part, and the sign of the contact's share says nothing about the law.
+    constexpr double rounding = 1e-13;
+    if (!impact || !(gain > rounding * scale)) continue;
+    report_.energy_gain += gain;
+    if (options_.refuse_energy_gain) refuse_gain(cluster, gain, state, step);
+  }
+}
+
+void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
+  const Contact& at = cluster.contacts()[contact];
+  ContactRecord& entry = report_.contacts.emplace_back();
+  entry.key = at.key;
+  entry.body = assembly_->layout()->id(at.body);
+  entry.obstacle = {at.key.against.serial, assembly_->system().token()};
+  entry.directions = at.rows;
+  entry.gap = at.gap;
+  for (int row = 0; row < at.rows; ++row) {
+    const auto direction = static_cast<std::size_t>(row);
+    const auto place = static_cast<std::size_t>(cluster.first_row(contact) + row);
+    entry.velocity_before[direction] = cluster.before()[place];
+    entry.velocity_after[direction] = at.velocity(row, trial_.v.data());
+    entry.impulse[direction] = cluster.impulses()[place];
+    entry.work[direction] =
+        0.5 * entry.impulse[direction] * (entry.velocity_before[direction] + entry.velocity_after[direction]);
+  }
+  entry.mode = cluster.modes()[contact];
+  entry.impact = entry.velocity_before[0] < -options_.capture_speed;
+  entry.outcome = cluster.report().outcome;
+  entry.residual = cluster.report().residual;
+  entry.solver = cluster.report().solver;
+}
+
+void TimeStepper::commit(State& state, Companion& companion, double end_time, StepReport& report) {
+  flows_[EnergyFlow::projection] = projected_;
+  flows_[EnergyFlow::coupling_discretisation] =
+      -(stored_.potential() + projected_ - companion.ledger.potential() + coupling_work_.value());
+  std::swap(state.q, trial_.q);
+  std::swap(state.v, trial_.v);
+  std::swap(state.z, trial_.z);
+  LoadHistory& history = companion.history;
+  history.known = history.known > 0 && history.step == report_.step ? 2 : 1;
+  history.step = report_.step;
+  history.earlier.swap(history.before);
+  history.before.swap(companion.loads.total);
+  companion.loads.total.swap(evaluated_);
+  companion.loads.dissipative.swap(dissipative_);
+  companion.loads.external.swap(external_);
+  companion.loads.valid = true;
+  companion.loads.mean = mean_rule();
+  evaluated_.resize(state.v.size());
+  history.sweeps = sweeps_;
+  std::swap(companion.rounding, rounding_);
+  state.time = end_time;
+  companion.ledger.book(flows_, stored_);
+
+  companion.modes.clear();
+  Statistics& statistics = companion.statistics;
+  ++statistics.steps;
+  statistics.sweeps += report_.sweeps;
+  statistics.most_sweeps = std::max(statistics.most_sweeps, report_.sweeps);
+  statistics.largest_contraction = std::max(statistics.largest_contraction, report_.contraction);
+  for (const ContactRecord& contact : report_.contacts) {
+    companion.modes.emplace_back(contact.key, contact.mode);
+    ++statistics.contact_steps;
+    if (contact.impact) ++statistics.impacts;
+    if (contact.outcome == Outcome::several_solutions) ++statistics.several_solutions;
+    if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
+    statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
+    statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
+  }
+  if (chain_.statistics().problems > 0) {
+    companion.contact_statistics += chain_.statistics();
+    chain_.reset_statistics();
+  }
+  if (report_.energy_gain > 0.0) {
+    ++statistics.energy_gains;
+    statistics.energy_gained += report_.energy_gain;
+  }
+  std::swap(report, report_);
+}
+
+}  // namespace carom
