@@ -30,7 +30,7 @@ struct ContactKey {
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// A contact of a body with a fixed obstacle, at one configuration. Row 0 is the normal direction (from the
+/// A contact of a body with an obstacle, at one configuration. Row 0 is the normal direction (from the
 /// obstacle into free space), the others are tangential (in the plane: the normal turned clockwise).
 struct Contact {
   static constexpr int max_rows = 3;
@@ -45,15 +45,27 @@ struct Contact {
   Surface law;        ///< coefficients
   std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
       jacobian{};  ///< row-major, stride max_columns
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      obstacle_velocity{};  ///< of the obstacle where it is touched, along the rows [m/s]
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      drift{};  ///< rate of the contact velocity at constant velocities of the body [m/s^2]
 
   /// Row of the map from the body's velocities to the contact velocity.
   [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
   [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }
-  /// Contact velocity along row i. \param velocities the arrays of all velocities
-  [[nodiscard]] double velocity(int i, const double* velocities) const {
+  /// Row i times numbers of the body. \param numbers an array over all velocities
+  [[nodiscard]] double times(int i, const double* numbers) const {
     double sum = 0.0;
-    for (int c = 0; c < columns; ++c) sum += row(i)[c] * velocities[v + static_cast<Index>(c)];
+    for (int c = 0; c < columns; ++c) sum += row(i)[c] * numbers[v + static_cast<Index>(c)];
     return sum;
+  }
+  /// Contact velocity along row i: of the body against the obstacle. \param velocities of all bodies
+  [[nodiscard]] double velocity(int i, const double* velocities) const {
+    return times(i, velocities) - obstacle_velocity[static_cast<std::size_t>(i)];
+  }
+  /// Its rate along row i. \param accelerations of all bodies
+  [[nodiscard]] double acceleration(int i, const double* accelerations) const {
+    return times(i, accelerations) + drift[static_cast<std::size_t>(i)];
   }
 };
 

@@ -2,6 +2,7 @@
 #include <carom/core/space.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace carom {
 
@@ -135,45 +136,99 @@ void ContactFinder::find(Index island, const StateView& state, const Evaluation&
   }
 }
 
+ContactFinder::Feature ContactFinder::centre_of(const BodySlot& body, Index place, Index material) const {
+  return {place, material, {FeatureKey::Owner::body, body.serial, 0}, {}, 0.0};
+}
+
 template <int D>
-void ContactFinder::add(const BodySlot& body, const Feature& feature, const StateView& state,
-                        const Evaluation& evaluation, double margin, std::vector<Contact>& out) const {
-  using Map = Eigen::Map<Vec<D>>;
-  using ConstMap = Eigen::Map<const Vec<D>>;
-  Vec<D> arm = Vec<D>::Zero();
+Vec<D> ContactFinder::arm(const BodySlot& body, const Feature& feature, const Evaluation& evaluation) {
   if constexpr (Space<D>::has_orientation) {
     if (body.rotation != none) {
-      arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
-                             Vec<D>(ConstMap(feature.centre.data())));
+      return Space<D>::rotate(evaluation.rotation.data() + body.rotation,
+                              Vec<D>(Eigen::Map<const Vec<D>>(feature.centre.data())));
     }
   }
-  const Vec<D> centre = ConstMap(state.q + body.q) + arm;
-  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-    const Obstacle& obstacle = obstacles_[o];
-    const Gap gap = obstacle.kind->gap(obstacle.slot, centre.data());
-    if (!(gap.distance - feature.radius <= margin)) continue;
+  return Vec<D>::Zero();
+}
 
-    Contact& contact = out.emplace_back();
-    contact.key = {feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
-    contact.body = feature.body;
-    contact.v = body.v;
-    contact.columns = static_cast<int>(body.v_size);
-    contact.rows = D;
-    contact.gap = gap.distance - feature.radius;
-    contact.law = laws_[feature.material * obstacles_.size() + o];
-    const Vec<D> normal = ConstMap(gap.normal.data());
-    const auto tangents = Space<D>::tangent_frame(normal);
-    for (int row = 0; row < D; ++row) {
-      const Vec<D> direction = row == 0 ? normal : tangents[static_cast<std::size_t>(row - 1)];
-      Map(contact.row(row)) = direction;
-      if constexpr (Space<D>::has_orientation) {
-        if (body.rotation != none) {
-          const Vec<D> lever = arm - feature.radius * normal;
-          Eigen::Map<Vec<Space<D>::spin_size>>(contact.row(row) + D) = Space<D>::spin_row(direction, lever);
-        }
+template <int D>
+void ContactFinder::fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap,
+                         const Vec<D>& arm, const StateView& state, Contact& contact) const {
+  contact.key = {feature.key, {FeatureKey::Owner::obstacle, obstacles_[obstacle].serial, 0}};
+  contact.body = feature.body;
+  contact.v = body.v;
+  contact.columns = static_cast<int>(body.v_size);
+  contact.rows = D;
+  contact.gap = gap.distance - feature.radius;
+  contact.law = laws_[feature.material * obstacles_.size() + obstacle];
+  const Vec<D> normal = Eigen::Map<const Vec<D>>(gap.normal.data());
+  const auto tangents = Space<D>::tangent_frame(normal);
+  for (int row = 0; row < D; ++row) {
+    const Vec<D> direction = row == 0 ? normal : tangents[static_cast<std::size_t>(row - 1)];
+    Eigen::Map<Vec<D>>(contact.row(row)) = direction;
+    if constexpr (Space<D>::has_orientation) {
+      if (body.rotation != none) {
+        const Vec<D> lever = arm - feature.radius * normal;
+        Eigen::Map<Vec<Space<D>::spin_size>>(contact.row(row) + D) = Space<D>::spin_row(direction, lever);
+        contact.drift[static_cast<std::size_t>(row)] =
+            direction.dot(Space<D>::centripetal(state.v + body.v + D, arm));
       }
     }
   }
+}
+
+template <int D>
+void ContactFinder::add(const BodySlot& body, const Feature& feature, const StateView& state,
+                        const Evaluation& evaluation, double margin, std::vector<Contact>& out) const {
+  const Vec<D> off = arm<D>(body, feature, evaluation);
+  const Vec<D> centre = Eigen::Map<const Vec<D>>(state.q + body.q) + off;
+  for (Index o = 0; o < obstacles_.size(); ++o) {
+    const Gap gap = obstacles_[o].kind->gap(obstacles_[o].slot, centre.data());
+    if (!(gap.distance - feature.radius <= margin)) continue;
+    fill<D>(body, feature, o, gap, off, state, out.emplace_back());
+  }
+}
+
+void ContactFinder::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                            Contact& out) const {
+  const BodySlot body = assembly_->layout()->bodies()[pair.body];
+  const Feature feature =
+      pair.feature == none ? centre_of(body, pair.body, pair.material) : features_[pair.feature];
+  const Obstacle& obstacle = obstacles_[pair.obstacle];
+  const auto with_dimension = [&]<int D>(std::integral_constant<int, D>) {
+    const Vec<D> off = arm<D>(body, feature, evaluation);
+    const Vec<D> centre = Eigen::Map<const Vec<D>>(state.q + body.q) + off;
+    fill<D>(body, feature, pair.obstacle, obstacle.kind->gap(obstacle.slot, centre.data()), off, state, out);
+  };
+  if (assembly_->layout()->dimension() == 2) {
+    with_dimension(std::integral_constant<int, 2>{});
+  } else {
+    with_dimension(std::integral_constant<int, 3>{});
+  }
+}
+
+std::vector<ContactPair> ContactFinder::pairs(Index island) const {
+  std::vector<ContactPair> out;
+  const Touching& touching = of_island_[island];
+  const auto append = [&](Index body, Index feature, Index material) {
+    for (Index obstacle = 0; obstacle < obstacles_.size(); ++obstacle) {
+      out.push_back({body, feature, material, obstacle});
+    }
+  };
+  Index next = touching.features.begin;
+  const auto append_features_before = [&](Index body) {
+    for (; next < touching.features.end && features_[next].body < body; ++next) {
+      append(features_[next].body, next, features_[next].material);
+    }
+  };
+  for (Index i = touching.centres.begin; i < touching.centres.end; ++i) {
+    for (Index body = centres_[i].bodies.begin; body < centres_[i].bodies.end; ++body) {
+      append_features_before(body);
+      append(body, none, centres_[i].material);
+    }
+  }
+  append_features_before(none);
+  return out;
 }
 
 template <int D>
@@ -201,8 +256,7 @@ void ContactFinder::find_in(Index island, const StateView& state, const Evaluati
       for (Index body = first; body < last; ++body) {
         add_features_before(body);
         const BodySlot at = bodies[body];
-        add<D>(at, {body, centres.material, {FeatureKey::Owner::body, at.serial, 0}, {}, 0.0}, state,
-               evaluation, margin, out);
+        add<D>(at, centre_of(at, body, centres.material), state, evaluation, margin, out);
       }
     }
   }

@@ -7,12 +7,21 @@
 #include <carom/contact/contact.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/space.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
 namespace carom {
+
+/// A feature of a body and an obstacle, wherever they stand.
+struct ContactPair {
+  Index body = none;      ///< in the order of assembly
+  Index feature = none;   ///< of the finder; `none` where the body touches at its centre
+  Index material = none;  ///< row of the finder's table of laws
+  Index obstacle = none;  ///< of the finder
+};
 
 /// Features of the bodies of an assembly and the laws they obey.
 class CAROM_API ContactFinder {
@@ -24,6 +33,12 @@ public:
   /// obstacle. The position group of `evaluation` must be up to date.
   void find(Index island, const StateView& state, const Evaluation& evaluation, double margin,
             std::vector<Contact>& out) const;
+
+  /// All pairs of one island, in the order of find(). Made at each call.
+  [[nodiscard]] std::vector<ContactPair> pairs(Index island) const;
+  /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date.
+  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+               Contact& out) const;
 
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
@@ -60,9 +75,16 @@ private:
   [[nodiscard]] Index row_of(MaterialId material);
   void collect_centres();
   void make_law_table();
+  [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
   template <int D>
   void add(const BodySlot& body, const Feature& feature, const StateView& state, const Evaluation& evaluation,
            double margin, std::vector<Contact>& out) const;
+  // Position of the centre of a feature from its body's centre of mass.
+  template <int D>
+  [[nodiscard]] static Vec<D> arm(const BodySlot& body, const Feature& feature, const Evaluation& evaluation);
+  template <int D>
+  void fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap, const Vec<D>& arm,
+            const StateView& state, Contact& out) const;
   template <int D>
   void find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
                std::vector<Contact>& out) const;

@@ -48,6 +48,8 @@ struct Space<2> {
   static Vec<2> lever_velocity(const double* spin, const Vec<2>& r) {
     return {-spin[0] * r[1], spin[0] * r[0]};
   }
+  /// Acceleration omega x (omega x r) of the end of the lever r.
+  static Vec<2> centripetal(const double* spin, const Vec<2>& r) { return -spin[0] * spin[0] * r; }
   /// Adds the torque r x f.
   static void add_torque(const Vec<2>& r, const Vec<2>& f, double* torque) {
     torque[0] += r[0] * f[1] - r[1] * f[0];

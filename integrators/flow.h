@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// Smooth motion between events: solve  dy/dt = f(t, y)  step by step, with the state known everywhere within
+/// the last step, so that somebody else can look for events in it.
+
+#include <carom/core/export.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace carom {
+
+/// What is integrated: the numbers y of an island (coordinates, velocities, internal variables, works).
+class CAROM_API FlowProblem {
+public:
+  virtual ~FlowProblem() = default;
+
+  /// Number of unknowns.
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Writes dy/dt. Not finite numbers mean that y is nowhere where f is defined.
+  virtual void rates(double time, const double* y, double* rates) = 0;
+  /// Absolute tolerance of each unknown, > 0.
+  [[nodiscard]] virtual std::span<const double> absolute_tolerances() const = 0;
+  /// True if jacobian() is there.
+  [[nodiscard]] virtual bool has_jacobian() const { return false; }
+  /// Writes df/dy, dense, column by column (size() times size() numbers).
+  virtual void jacobian(double /*time*/, const double* /*y*/, double* /*jacobian*/) {}
+};
+
+/// Methods of integration.
+enum class FlowMethod : std::uint8_t {
+  explicit_runge_kutta,  ///< SUNDIALS' ARKODE, order 5: cheap restarts, for motion that is not stiff
+  adams,                 ///< SUNDIALS' CVODE, Adams-Moulton with fixed point: long smooth phases
+  bdf                    ///< SUNDIALS' CVODE, BDF with Newton's method: stiff couplings
+};
+
+/// Counts since the flow was made.
+struct FlowCounts {
+  std::int64_t steps = 0;        ///< accepted steps
+  std::int64_t evaluations = 0;  ///< of f
+  std::int64_t restarts = 0;     ///< calls of start()
+};
+
+/// An integrator that makes one step at a time. After start() the last step is empty: begin() == end().
+class CAROM_API Flow {
+public:
+  virtual ~Flow() = default;
+
+  /// Starts anew at y. \param first_step length to try first [s], 0: the method's own guess
+  virtual void start(double time, std::span<const double> y, double first_step) = 0;
+  /// Makes one step of the method's choice, of length `longest` [s] at most. Throws SolverError, without the
+  /// names of parts, where it cannot go on.
+  virtual void advance(double longest) = 0;
+  /// Times of the last step [s].
+  [[nodiscard]] virtual double begin() const = 0;
+  [[nodiscard]] virtual double end() const = 0;
+  /// y at the end of the last step. Valid until the next call.
+  [[nodiscard]] virtual std::span<const double> state() const = 0;
+  /// Writes y at a time within the last step, by interpolation.
+  virtual void sample(double time, std::span<double> y) = 0;
+  /// Writes y at a time within the last step, as accurate as steps are.
+  virtual void land(double time, std::span<double> y) = 0;
+  /// Replaces y at the end of the last step by one that differs little (a projection) and goes on from there
+  /// without the cost of a start where the method allows.
+  virtual void correct(std::span<const double> y) = 0;
+  /// Length of the step that would be tried next [s], 0 if the method would choose anew.
+  [[nodiscard]] virtual double next_step() const = 0;
+  /// Counts.
+  [[nodiscard]] virtual const FlowCounts& counts() const = 0;
+};
+
+/// Makes a flow. `problem` must outlive it. \param relative_tolerance > 0
+[[nodiscard]] CAROM_API std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem,
+                                                        double relative_tolerance);
+
+}  // namespace carom
