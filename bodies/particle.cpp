@@ -1,4 +1,6 @@
 #include <carom/bodies/particle.h>
+
+#include <algorithm>
 #include <carom/core/pair.h>
 
 namespace carom::generic {
@@ -48,6 +50,12 @@ template <int D>
 void ParticleKind<D>::advance(Range slots, const double* q0, const double* delta, double* q1) const {
   const Index numbers = slots.size() * D;
   for (Index i = 0; i < numbers; ++i) q1[i] = q0[i] + delta[i];
+}
+
+template <int D>
+void ParticleKind<D>::coordinate_rates(Range slots, const double* /*q*/, const double* v,
+                                       double* rates) const {
+  std::copy_n(v, slots.size() * D, rates);
 }
 
 namespace {

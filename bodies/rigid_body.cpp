@@ -1,4 +1,6 @@
 #include <carom/bodies/rigid_body.h>
+
+#include <algorithm>
 #include <carom/core/compensated_sum.h>
 
 #include <cmath>
@@ -57,6 +59,11 @@ void RigidBodyKind<2>::advance(Range slots, const double* q0, const double* delt
     q1[i + 1] = q0[i + 1] + delta[i + 1];
     Space<2>::advance_orientation(q0 + i + 2, delta + i + 2, q1 + i + 2);
   }
+}
+
+void RigidBodyKind<2>::coordinate_rates(Range slots, const double* /*q*/, const double* v,
+                                        double* rates) const {
+  std::copy_n(v, 3 * slots.size(), rates);
 }
 
 void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a) const {

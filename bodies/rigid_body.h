@@ -63,6 +63,7 @@ public:
   void initial(Index slot, double* q, double* v) const override;
   void rotations(Range slots, const double* q, double* rotation) const override;
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
+  void coordinate_rates(Range slots, const double* q, const double* v, double* rates) const override;
   void sweep(Range slots, double step, const SweepArrays& arrays) const override;
   void next_change(Range slots, double weight, double step, const LoadArrays& loads,
                    SweepChange& change) const override;

@@ -156,6 +156,13 @@ void ContactCluster::add_loads(double scale, double* load) const {
   }
 }
 
+void ContactCluster::slide(std::size_t contact, double ratio) {
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact] + 1)];
+  set.kind = SetKind::proportional;
+  set.coefficient = ratio;
+  problem_.group();
+}
+
 void ContactCluster::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {

@@ -27,12 +27,18 @@ public:
   /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is symmetric and positive
   /// definite over the velocities `v`, `solve` overwrites numbers over them by A^-1 times them.
   void couple(Range v, const std::function<void(double*)>& solve);
+  /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
+  void slide(std::size_t contact, double ratio);
   /// Makes b from the velocities that the step would end with if no contact acted.
   void set_free_velocity(const double* velocity_free);
   /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
   /// again since build() keeps to the modes of the answer before as long as they are one of them: an
   /// iteration around it could not settle if it jumped between them.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
+  /// Replaces the answer by another solution of the problem.
+  void set_impulses(std::span<const double> impulses) {
+    std::copy(impulses.begin(), impulses.end(), impulse_.begin());
+  }
   /// Sets all impulses to zero.
   void forget_impulses() { std::fill(impulse_.begin(), impulse_.end(), 0.0); }
   /// Adds M^-1 H^T P to the velocities.

@@ -21,6 +21,7 @@ struct ContactPair {
   Index feature = none;   ///< of the finder; `none` where the body touches at its centre
   Index material = none;  ///< row of the finder's table of laws
   Index obstacle = none;  ///< of the finder
+  friend bool operator==(const ContactPair&, const ContactPair&) = default;
 };
 
 /// Features of the bodies of an assembly and the laws they obey.

@@ -95,6 +95,8 @@ public:
   virtual void rotations(Range slots, const double* q, double* rotation) const = 0;
   /// q1 = q0 advanced along the motion whose velocity times time is `delta`.
   virtual void advance(Range slots, const double* q0, const double* delta, double* q1) const = 0;
+  /// dq/dt of a range from its coordinates and velocities.
+  virtual void coordinate_rates(Range slots, const double* q, const double* v, double* rates) const = 0;
   /// One sweep of the implicit trapezoidal rule with step h, bodies of a range at once:
   ///     v1 = v0 + M^-1 h (load0 + load1)/2 + response,   q1 = q0 advanced by h (v0 + v1)/2.
   virtual void sweep(Range slots, double step, const SweepArrays& arrays) const = 0;

@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 2\n";
+constexpr std::string_view mark = "carom checkpoint 3\n";
 
 /// Numbers as bytes, lowest first, whatever the machine.
 class Writer {
@@ -102,6 +102,10 @@ void for_statistics(S& s, F&& f) {
   f(s.energy_gained);
   f(s.deepest_gap);
   f(s.worst_residual);
+  for (auto& count : s.events) f(count);
+  f(s.flow_steps);
+  f(s.flow_evaluations);
+  f(s.flow_restarts);
 }
 
 /// Likewise those of the contact solvers.

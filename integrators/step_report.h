@@ -7,6 +7,7 @@
 #include <carom/contact/contact_solver.h>
 #include <carom/contact/solver_chain.h>
 #include <carom/core/ids.h>
+#include <carom/integrators/event_log.h>
 #include <carom/integrators/time_stepping.h>
 
 #include <array>
@@ -74,6 +75,10 @@ struct Statistics {
   double energy_gained = 0.0;             ///< sum of those gains [J]
   double deepest_gap = 0.0;               ///< the most negative gap found [m]
   double worst_residual = 0.0;            ///< the largest certificate of a contact problem
+  EventCounts events{};                   ///< of the event-driven mode, by kind
+  std::int64_t flow_steps = 0;            ///< of its integrators, over all islands
+  std::int64_t flow_evaluations = 0;      ///< of rates, likewise
+  std::int64_t flow_restarts = 0;         ///< likewise
 };
 
 }  // namespace carom

@@ -1,0 +1,263 @@
+// Problem: forces and corrections of contacts that are constraints.
+
+#include <carom/contact/closed_contacts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace carom {
+
+namespace {
+
+constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+
+// A pivot below this part of the largest one is rounding: the constraint follows from the others.
+constexpr double dependent = 1e-11;
+
+}  // namespace
+
+void ClosedContacts::locate(const ContactFinder& finder, const StateView& state,
+                            const Evaluation& evaluation) {
+  for (ClosedContact& contact : contacts_) {
+    finder.contact(contact.pair, state, evaluation, contact.at);
+    if (contact.slippery) {
+      contact.friction = 0.0;
+    } else if (contact.sticks()) {
+      contact.friction = contact.at.law.friction;
+    } else {
+      contact.friction = contact.at.law.friction;
+    }
+  }
+}
+
+template <class F>
+void ClosedContacts::for_groups(F&& f) {
+  for (std::size_t first = 0; first < contacts_.size();) {
+    std::size_t last = first + 1;
+    while (last < contacts_.size() && contacts_[last].at.body == contacts_[first].at.body) ++last;
+    f(first, last);
+    first = last;
+  }
+}
+
+/// Rows of one body, what impulses along their columns do to it, and the products of the two.
+void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing) {
+  const BodySlot body = assembly.layout()->bodies()[contacts_[first].at.body];
+  const BodyKind& kind = *assembly.body_kinds()[body.kind];
+  rows_.clear();
+  for (std::size_t i = first; i < last; ++i) {
+    rows_.push_back({i, false});
+    if (contacts_[i].sticks()) rows_.push_back({i, true});
+  }
+  const std::size_t count = rows_.size();
+  response_.resize(count * stride);
+  matrix_.resize(count * count);
+  for (std::size_t j = 0; j < count; ++j) {
+    const ClosedContact& contact = contacts_[rows_[j].contact];
+    std::array<double, stride> column{};
+    const double* const row = contact.at.row(rows_[j].tangent ? 1 : 0);
+    const double ratio = rows_[j].tangent || !rubbing ? 0.0 : -contact.slip_sign() * contact.friction;
+    for (Index k = 0; k < body.v_size; ++k) {
+      column[k] = row[k];
+      if (ratio != 0.0) column[k] += ratio * contact.at.row(1)[k];
+    }
+    kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response_.data() + j * stride);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* const row = contacts_[rows_[i].contact].at.row(rows_[i].tangent ? 1 : 0);
+    for (std::size_t j = 0; j < count; ++j) {
+      double sum = 0.0;
+      for (Index k = 0; k < body.v_size; ++k) sum += row[k] * response_[j * stride + k];
+      matrix_[i * count + j] = sum;
+    }
+  }
+}
+
+/// Gauss's elimination with full pivoting: a basic solution where rows depend on each other.
+bool ClosedContacts::solve() {
+  const std::size_t n = rows_.size();
+  row_order_.resize(n);
+  column_order_.resize(n);
+  std::iota(row_order_.begin(), row_order_.end(), std::size_t{0});
+  std::iota(column_order_.begin(), column_order_.end(), std::size_t{0});
+  const auto entry = [&](std::size_t i, std::size_t j) -> double& {
+    return matrix_[row_order_[i] * n + column_order_[j]];
+  };
+  double largest = 0.0;
+  rank_ = n;
+  for (std::size_t step = 0; step < n; ++step) {
+    std::size_t at_row = step, at_column = step;
+    double best = -1.0;
+    for (std::size_t i = step; i < n; ++i) {
+      for (std::size_t j = step; j < n; ++j) {
+        if (std::abs(entry(i, j)) > best) {
+          best = std::abs(entry(i, j));
+          at_row = i;
+          at_column = j;
+        }
+      }
+    }
+    if (step == 0) largest = best;
+    if (!(best > dependent * largest)) {
+      rank_ = step;
+      break;
+    }
+    std::swap(row_order_[step], row_order_[at_row]);
+    std::swap(column_order_[step], column_order_[at_column]);
+    for (std::size_t i = step + 1; i < n; ++i) {
+      const double factor = entry(i, step) / entry(step, step);
+      if (factor == 0.0) continue;
+      for (std::size_t j = step + 1; j < n; ++j) entry(i, j) -= factor * entry(step, j);
+      unknown_[row_order_[i]] -= factor * unknown_[row_order_[step]];
+    }
+  }
+  work_.assign(n, 0.0);
+  for (std::size_t i = rank_; i-- > 0;) {
+    double sum = unknown_[row_order_[i]];
+    for (std::size_t j = i + 1; j < rank_; ++j) sum -= entry(i, j) * work_[column_order_[j]];
+    work_[column_order_[i]] = sum / entry(i, i);
+  }
+  unknown_.swap(work_);
+  return std::all_of(unknown_.begin(), unknown_.end(), [](double number) { return std::isfinite(number); });
+}
+
+bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleration) {
+  bool solved = true;
+  spreads_.clear();
+  null_.clear();
+  for_groups([&](std::size_t first, std::size_t last) {
+    lay_out(assembly, first, last, true);
+    const std::size_t n = rows_.size();
+    unknown_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      unknown_[i] = -contacts_[rows_[i].contact].at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
+    }
+    solved = solve() && solved;
+    for (std::size_t i = 0; i < n; ++i) {
+      ClosedContact& contact = contacts_[rows_[i].contact];
+      if (rows_[i].tangent) {
+        contact.tangential = unknown_[i];
+      } else {
+        contact.normal = unknown_[i];
+        if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
+      }
+      const double* const response = response_.data() + i * stride;
+      for (int k = 0; k < contact.at.columns; ++k) {
+        acceleration[contact.at.v + static_cast<Index>(k)] += response[k] * unknown_[i];
+      }
+    }
+    if (rank_ < n) spread(first, last);
+  });
+  return solved;
+}
+
+/// Keeps the vectors along which forces may change without anybody noticing.
+void ClosedContacts::spread(std::size_t first, std::size_t last) {
+  const std::size_t n = rows_.size();
+  const auto entry = [&](std::size_t i, std::size_t j) { return matrix_[row_order_[i] * n + column_order_[j]]; };
+  for (std::size_t free = rank_; free < n; ++free) {
+    work_.assign(n, 0.0);
+    work_[column_order_[free]] = 1.0;
+    for (std::size_t i = rank_; i-- > 0;) {
+      double sum = -entry(i, free);
+      for (std::size_t j = i + 1; j < rank_; ++j) sum -= entry(i, j) * work_[column_order_[j]];
+      work_[column_order_[i]] = sum / entry(i, i);
+    }
+    spreads_.push_back({first, last, null_.size()});
+    null_.resize(null_.size() + 2 * (last - first), 0.0);
+    double* const vector = null_.data() + spreads_.back().vector;
+    for (std::size_t i = 0; i < n; ++i) {
+      const ClosedContact& contact = contacts_[rows_[i].contact];
+      double* const of_contact = vector + 2 * (rows_[i].contact - first);
+      if (rows_[i].tangent) {
+        of_contact[1] = work_[i];
+      } else {
+        of_contact[0] = work_[i];
+        if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * work_[i];
+      }
+    }
+  }
+}
+
+void ClosedContacts::margins(std::vector<ForceMargin>& out) {
+  // Two passes over the vectors find the largest margin where there is one of them, a good one otherwise.
+  constexpr int passes = 2;
+  std::vector<Line>& lines = lines_;
+  const auto collect = [&](std::size_t first, std::size_t last, const double* vector) {
+    lines.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      const ClosedContact& c = contacts_[i];
+      const double dn = vector ? vector[2 * (i - first)] : 0.0;
+      const double dt = vector ? vector[2 * (i - first) + 1] : 0.0;
+      lines.push_back({c.normal, dn});
+      if (!c.sticks()) continue;
+      lines.push_back({c.friction * c.normal - c.tangential, c.friction * dn - dt});
+      lines.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
+    }
+  };
+  const auto least = [&](double shift) {
+    double value = std::numeric_limits<double>::infinity();
+    for (const Line& line : lines) value = std::min(value, line.at + shift * line.slope);
+    return value;
+  };
+  for (int pass = 0; pass < passes; ++pass) {
+    for (const Spread& spread : spreads_) {
+      const double* const vector = null_.data() + spread.vector;
+      collect(spread.first, spread.last, vector);
+      double best_shift = 0.0, best = least(0.0);
+      for (const Line& a : lines) {
+        for (const Line& b : lines) {
+          if (!(a.slope > 0.0 && b.slope < 0.0)) continue;
+          const double shift = (b.at - a.at) / (a.slope - b.slope);
+          const double value = least(shift);
+          if (value > best) {
+            best = value;
+            best_shift = shift;
+          }
+        }
+      }
+      for (std::size_t i = spread.first; i < spread.last; ++i) {
+        contacts_[i].normal += best_shift * vector[2 * (i - spread.first)];
+        contacts_[i].tangential += best_shift * vector[2 * (i - spread.first) + 1];
+      }
+    }
+  }
+  out.clear();
+  for_groups([&](std::size_t first, std::size_t last) {
+    collect(first, last, nullptr);
+    out.push_back({first, last, least(0.0)});
+  });
+}
+
+bool ClosedContacts::corrections(const Assembly& assembly, const double* velocity, double* of_position,
+                                 double* of_velocity) {
+  bool any = false;
+  for_groups([&](std::size_t first, std::size_t last) {
+    for (const bool position : {true, false}) {
+      lay_out(assembly, first, last, false);
+      unknown_.resize(rows_.size());
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Contact& at = contacts_[rows_[i].contact].at;
+        // What sticks has no place of its own: its tangent is kept on velocity level.
+        unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap)
+                               : -at.velocity(rows_[i].tangent ? 1 : 0, velocity);
+        any = any || unknown_[i] != 0.0;
+      }
+      if (!solve()) continue;
+      double* const out = position ? of_position : of_velocity;
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Contact& at = contacts_[rows_[i].contact].at;
+        for (int k = 0; k < at.columns; ++k) {
+          out[at.v + static_cast<Index>(k)] +=
+              response_[i * stride + static_cast<std::size_t>(k)] * unknown_[i];
+        }
+      }
+    }
+  });
+  return any;
+}
+
+}  // namespace carom

@@ -1,0 +1,100 @@
+#pragma once
+
+/// \file
+/// Contacts that stay closed for a while (docs/method.md, section 7). Their normals, and the tangents of those
+/// that stick, are constraints on the accelerations; those that slip rub against their motion. With the rows
+/// G of the constraints and the columns D along which their forces act (the normal turned into the cone of
+/// friction where a contact slips) find lambda with
+///
+///     G a + drift = 0,   a = a_free + M^-1 D lambda.
+///
+/// Contacts of different bodies do not know of each other.
+
+#include <carom/contact/contact_finder.h>
+#include <carom/contact/contact_mode.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// A contact in a smooth phase.
+struct ClosedContact {
+  ContactPair pair;                       ///< what touches
+  ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
+  bool slippery = false;                  ///< without friction: neither sticks nor cares which way it slips
+  Contact at;                             ///< at the present configuration
+  double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
+  double normal = 0.0;                    ///< force [N]
+  double tangential = 0.0;                ///< force [N]
+
+  /// True if the tangent is a constraint.
+  [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
+  /// Sign of the sliding velocity, 0 if it sticks.
+  [[nodiscard]] double slip_sign() const {
+    return mode == ContactMode::slip_positive ? 1.0 : mode == ContactMode::slip_negative ? -1.0 : 0.0;
+  }
+};
+
+/// How far the forces of the contacts of one body are from where their modes end.
+struct ForceMargin {
+  std::size_t first = 0, last = 0;  ///< contacts
+  double margin = 0.0;              ///< the least normal force or distance from the edge of a cone [N]
+};
+
+/// The closed contacts of one island, in the order of its pairs. Keeps memory only, but the contacts.
+class CAROM_API ClosedContacts {
+public:
+  /// The contacts.
+  [[nodiscard]] std::vector<ClosedContact>& list() { return contacts_; }
+  [[nodiscard]] const std::vector<ClosedContact>& list() const { return contacts_; }
+
+  /// Brings `at` and the coefficients of sliding contacts to a state.
+  void locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation);
+  /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in: a_free
+  /// False where no forces keep the constraints; the contacts' forces are then not finite.
+  bool add_reactions(const Assembly& assembly, double* acceleration);
+  /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces are
+  /// not unique (a brick that sticks at two corners), they are shared out so that the margin is largest.
+  void margins(std::vector<ForceMargin>& out);
+
+  /// Takes the gaps out of the positions, and what moves the constraints out of the velocities, by the
+  /// smallest changes in the sense of the masses; both are written as changes of all velocity coordinates.
+  /// False where there are none.
+  bool corrections(const Assembly& assembly, const double* velocity, double* of_position,
+                   double* of_velocity);
+
+private:
+  struct Row {
+    std::size_t contact = 0;
+    bool tangent = false;
+  };
+  template <class F>
+  void for_groups(F&& f);
+  void lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing);
+  bool solve();
+  void spread(std::size_t first, std::size_t last);
+
+  std::vector<ClosedContact> contacts_;
+  std::vector<Row> rows_;          // of the group at hand
+  std::vector<double> response_;   // M^-1 D, by row, Contact::max_columns numbers each
+  std::vector<double> matrix_;     // G M^-1 D, then its factors
+  std::vector<double> unknown_;    // right side, then lambda
+  std::vector<double> work_;
+  std::vector<std::size_t> row_order_, column_order_;
+  std::size_t rank_ = 0;
+  std::vector<double> null_;       // null vectors of the systems last solved, by group
+  struct Spread {
+    std::size_t first = 0, last = 0;  // contacts
+    std::size_t vector = 0;           // begin in null_: normal and tangential numbers of the contacts in turn
+  };
+  std::vector<Spread> spreads_;
+  struct Line {
+    double at = 0.0, slope = 0.0;  // a margin along a null vector
+  };
+  std::vector<Line> lines_;
+};
+
+}  // namespace carom

@@ -1,0 +1,145 @@
+// Problem: islands at their own pace, one state for everybody else.
+
+#include <carom/integrators/event_driver.h>
+#include <carom/integrators/failure_file.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+void check_options(const EventDriven& options) {
+  const auto positive = [](const char* option, double value, const char* unit) {
+    if (std::isfinite(value) && value > 0.0) return;
+    throw ModelError(std::string("event-driven mode: ") + option + " is " + to_text(value) +
+                     "; allowed: finite and > 0" + unit);
+  };
+  positive("relative_tolerance", options.relative_tolerance, "");
+  positive("absolute_tolerance", options.absolute_tolerance, " m");
+  positive("interval", options.interval, " s");
+  positive("longest_step", options.longest_step, " s");
+  positive("gap_tolerance", options.gap_tolerance, " m");
+  positive("capture_speed", options.capture_speed, " m/s");
+  positive("event_limit", options.event_limit, " 1/s");
+  check_failure_directory(options.failure_directory, "event-driven mode");
+}
+
+EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options)
+    : assembly_(&assembly),
+      options_((check_options(options), options)),
+      finder_(assembly),
+      work_(assembly),
+      evaluation_(make_evaluation(assembly)),
+      trial_(assembly.layout()) {
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    islands_.push_back(std::make_unique<IslandDriver>(assembly, finder_, options_, island, work_));
+  }
+}
+
+void EventDriver::start(const State& state, const Companion& companion) {
+  for (auto& island : islands_) island->start(state, companion.modes);
+  counted_ = {};
+  for (const auto& island : islands_) {
+    counted_.steps += island->counts().steps;
+    counted_.evaluations += island->counts().evaluations;
+    counted_.restarts += island->counts().restarts;
+  }
+  started_ = true;
+}
+
+void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
+                          std::vector<EventRecord>& events) {
+  if (!started_) start(state, companion);
+  news_.flows = {};
+  news_.events.clear();
+  news_.counts = {};
+  news_.energy_gain = news_.shift = 0.0;
+  try {
+    for (auto& island : islands_) island->advance(target, news_);
+  } catch (...) {
+    started_ = false;
+    work_.chain.reset_statistics();
+    throw;
+  }
+  trial_.time = target;
+  modes_.clear();
+  for (auto& island : islands_) island->write(trial_, modes_);
+  StoredEnergies stored;
+  for (Index island = 0; island < assembly_->islands().size(); ++island) {
+    evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+    add_stored_energies(*assembly_, island, trial_.view(), evaluation_, stored);
+  }
+  // Islands were gone through one after the other.
+  std::stable_sort(news_.events.begin(), news_.events.end(),
+                   [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; });
+  report = {};
+  report.time = target;
+  report.step = target - state.time;
+  report.energy_gain = news_.energy_gain;
+  report.projected = news_.shift;
+  report_contacts(news_, report);
+  companion.ledger.book(news_.flows, stored);
+  companion.modes.swap(modes_);
+  count(companion);
+  state.q.swap(trial_.q);
+  state.v.swap(trial_.v);
+  state.z.swap(trial_.z);
+  state.time = target;
+  if (options_.record_events) events.insert(events.end(), news_.events.begin(), news_.events.end());
+}
+
+void EventDriver::report_contacts(const DriverNews& news, StepReport& report) const {
+  for (const EventRecord& event : news.events) {
+    const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
+                           event.kind == EventKind::impact_without_collision;
+    if (!impulsive) continue;
+    ContactRecord& entry = report.contacts.emplace_back();
+    entry.key = event.contact;
+    entry.body = event.body;
+    entry.obstacle = event.obstacle;
+    entry.directions = assembly_->layout()->dimension();
+    entry.velocity_before = event.velocity_before;
+    entry.velocity_after = event.velocity_after;
+    entry.impulse = event.impulse;
+    for (std::size_t i = 0; i < 3; ++i) {
+      entry.work[i] = 0.5 * event.impulse[i] * (event.velocity_before[i] + event.velocity_after[i]);
+    }
+    entry.mode = event.mode;
+    entry.impact = true;
+    entry.outcome = event.outcome;
+    entry.residual = event.residual;
+    entry.solver = event.solver;
+  }
+}
+
+void EventDriver::count(Companion& companion) {
+  Statistics& statistics = companion.statistics;
+  ++statistics.steps;
+  for (std::size_t kind = 0; kind < event_kind_count; ++kind) statistics.events[kind] += news_.counts[kind];
+  for (const EventRecord& event : news_.events) {
+    if (event.kind == EventKind::impact) ++statistics.impacts;
+    if (event.outcome == Outcome::several_solutions) ++statistics.several_solutions;
+    if (event.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
+    statistics.worst_residual = std::max(statistics.worst_residual, event.residual);
+  }
+  if (news_.energy_gain > 0.0) {
+    ++statistics.energy_gains;
+    statistics.energy_gained += news_.energy_gain;
+  }
+  FlowCounts now;
+  for (const auto& island : islands_) {
+    now.steps += island->counts().steps;
+    now.evaluations += island->counts().evaluations;
+    now.restarts += island->counts().restarts;
+  }
+  statistics.flow_steps += now.steps - counted_.steps;
+  statistics.flow_evaluations += now.evaluations - counted_.evaluations;
+  statistics.flow_restarts += now.restarts - counted_.restarts;
+  counted_ = now;
+  if (work_.chain.statistics().problems > 0) {
+    companion.contact_statistics += work_.chain.statistics();
+    work_.chain.reset_statistics();
+  }
+}
+
+}  // namespace carom

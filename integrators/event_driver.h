@@ -1,0 +1,55 @@
+#pragma once
+
+/// \file
+/// The machine of the event-driven mode: all islands of a model, each at its own pace, met at times asked for.
+
+#include <carom/contact/contact_finder.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/companion.h>
+#include <carom/integrators/event_driven.h>
+#include <carom/integrators/island_driver.h>
+#include <carom/integrators/step_report.h>
+
+#include <memory>
+#include <vector>
+
+namespace carom {
+
+/// Advances states of one assembly. Islands are ahead of the state by what their last step covers; that is
+/// memory only: from any state the same motion follows within the tolerance.
+class CAROM_API EventDriver {
+public:
+  /// Throws ModelError for impossible options, a contact without a law, friction in space.
+  EventDriver(const Assembly& assembly, const EventDriven& options);
+
+  /// Advances to a time, not before the state's. On success state and companion are those then, `report`
+  /// tells what happened and `events` got what there was; on SolverError none of them has changed. Throws
+  /// ModelError where bodies are too deep in obstacles at a start.
+  void advance(State& state, Companion& companion, double target, StepReport& report,
+               std::vector<EventRecord>& events);
+  /// The state was changed from outside: start anew from it.
+  void forget() { started_ = false; }
+
+  /// Names of contacts.
+  [[nodiscard]] const ContactFinder& finder() const { return finder_; }
+
+private:
+  void start(const State& state, const Companion& companion);
+  void count(Companion& companion);
+  void report_contacts(const DriverNews& news, StepReport& report) const;
+
+  const Assembly* assembly_;
+  EventDriven options_;
+  ContactFinder finder_;
+  DriverWorkspace work_;
+  std::vector<std::unique_ptr<IslandDriver>> islands_;
+  Evaluation evaluation_;
+  State trial_;
+  ContactModes modes_;
+  DriverNews news_;
+  FlowCounts counted_;  // of the flows, told so far
+  bool started_ = false;
+};
+
+}  // namespace carom

@@ -1,0 +1,76 @@
+#pragma once
+
+/// \file
+/// What happened, as data: impacts, contacts that close, open, stick and slip, accumulations, kinks.
+
+#include <carom/contact/contact.h>
+#include <carom/contact/contact_solver.h>
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// Kinds of events.
+enum class EventKind : std::uint8_t {
+  impact,                    ///< a contact that took part in an impact
+  accumulation,              ///< a contact closed where impacts pile up, or slower than the capture speed
+  closing,                   ///< an open contact stays closed
+  lift_off,                  ///< a closed contact opens
+  stick,                     ///< a slipping contact sticks
+  slip,                      ///< a sticking contact slips, or one that slips turns round
+  impact_without_collision,  ///< forces that keep the contact do not exist (Painleve): an impact at no speed
+  several_accelerations,     ///< several accelerations are possible (Painleve): one was chosen by rule
+  kink,                      ///< loads of an element change their form
+  law_break,                 ///< a law of time jumps or has a kink, as told by its part
+  mode_switch                ///< a contact was opened when the simulation changed to the event-driven mode
+};
+/// Number of kinds.
+inline constexpr std::size_t event_kind_count = 11;
+
+/// Name of a kind: "impact", "lift-off", ...
+[[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);
+
+/// One event, of one contact (or, for a kink, of one element). Directions: normal first, then tangential.
+struct EventRecord {
+  double time = 0.0;                        ///< [s]
+  EventKind kind = EventKind::impact;       ///< what happened
+  ContactKey contact{};                     ///< of a contact
+  BodyId body{};                            ///< its body
+  ObstacleId obstacle{};                    ///< what it touches
+  ElementId element{};                      ///< of a kink
+  std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
+  std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
+  std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
+  double energy_before = 0.0;               ///< kinetic energy of the body [J]
+  double energy_after = 0.0;                ///< likewise after
+  ContactMode mode = ContactMode::open;     ///< of the contact, after
+  Outcome outcome = Outcome::not_solved;    ///< what is known of the solutions of the problem that decided
+  double residual = 0.0;                    ///< certificate of its answer
+  std::string_view solver{};                ///< whose answer it was
+  /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration by a unit of normal force while slipping
+  /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].
+  double stiffness = 0.0, free_acceleration = 0.0;
+  /// Of an accumulation: time at which the impacts would have piled up by the ratio of their intervals;
+  /// NaN where the ratios had not settled [s].
+  double accumulation_time = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Events by kind.
+using EventCounts = std::array<std::int64_t, event_kind_count>;
+
+/// Writes events as CSV, a line each: time, kind, names, numbers with units in the head, exact digits.
+/// \param name_of tells the name of a contact or element
+CAROM_API void write_events(std::ostream& out, const std::vector<EventRecord>& events,
+                            const std::function<std::string(const EventRecord&)>& name_of);
+
+}  // namespace carom

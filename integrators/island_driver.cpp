@@ -1,0 +1,311 @@
+// Problem: an island's smooth phases: make steps, find the first event in each, be looked at in between.
+
+#include <carom/integrators/island_driver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// Sliding velocities and forces this small against those around them are zero: answers of contact problems are
+// certified to 1e-12, and what is smaller starts phases that end at once.
+constexpr double slip_rounding = 1e-12, force_rounding = 1e-11;
+
+}  // namespace
+
+IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options,
+                           Index island, DriverWorkspace& work)
+    : assembly_(&assembly),
+      finder_(&finder),
+      options_(options),
+      work_(&work),
+      motion_(assembly, finder, island, options, work.motion),
+      y_(motion_.size()),
+      seen_(motion_.size()) {
+  closed_at_.assign(motion_.pairs().size(), 0);
+}
+
+void IslandDriver::start(const State& state, const ContactModes& present) {
+  if (!flow_) flow_ = make_flow(options_.method, motion_, options_.relative_tolerance);
+  time_ = looked_at_ = state.time;
+  motion_.gather(state, y_);
+  seen_ = y_;
+  delivered_ = {};
+  pending_ = resting_ = in_phase_ = false;
+  fresh_ = true;
+  step_ = 0.0;
+  last_impacts_.clear();
+  counted_ = 0;
+  window_start_ = time_;
+
+  motion_.closed().list().clear();
+  motion_.evaluate(time_, y_.data(), false);
+  Contact contact;
+  for (const ContactPair& pair : motion_.pairs()) {
+    finder_->contact(pair, work_->motion.trial.view(), work_->motion.evaluation, contact);
+    if (contact.gap < -options_.gap_tolerance) {
+      throw ModelError("event-driven mode: gap of " + finder_->name(contact.key) + " is " +
+                       to_text(contact.gap) + " m at the start; allowed: not below -gap_tolerance, " +
+                       to_text(-options_.gap_tolerance) + " m");
+    }
+    const auto known = std::find_if(present.begin(), present.end(),
+                                    [&](const auto& entry) { return entry.first == contact.key; });
+    if (known == present.end() || known->second == ContactMode::open) continue;
+    ClosedContact& closed = motion_.closed().list().emplace_back();
+    closed.pair = pair;
+    closed.mode = known->second;
+    closed.at = contact;
+  }
+}
+
+void IslandDriver::advance(double target, DriverNews& news) {
+  const auto look = [&](std::span<const double> y) {
+    for (Index line = 0; line < work_lines; ++line) {
+      const double value = y[motion_.work_place(static_cast<WorkLine>(line))];
+      constexpr std::array flows{EnergyFlow::dashpot, EnergyFlow::sliding, EnergyFlow::external};
+      news.flows[flows[line]] += value - delivered_[line];
+      delivered_[line] = value;
+    }
+    looked_at_ = target;
+  };
+  for (;;) {
+    if (!in_phase_) begin_phase(news);
+    if (resting_) time_ = target;
+    if (time_ == target) {
+      seen_ = y_;
+      look(seen_);
+      return;
+    }
+    if (!pending_) take_step();
+    const double until = next_.guard == Guard::none ? flow_->end() : next_.time;
+    if (target < until) {
+      flow_->land(target, seen_);
+      look(seen_);
+      return;
+    }
+    if (next_.guard == Guard::none) {
+      accept_step(news);
+    } else {
+      go_to_event(news);
+    }
+  }
+}
+
+void IslandDriver::write(State& state, ContactModes& modes) const {
+  motion_.scatter(seen_, state);
+  for (const ClosedContact& contact : motion_.closed().list()) modes.emplace_back(contact.at.key, contact.mode);
+}
+
+void IslandDriver::take_step() {
+  try {
+    flow_->advance(options_.longest_step);
+  } catch (const SolverError& error) {
+    fail(error.what(), {});
+  }
+  const double begin = flow_->begin(), length = flow_->end() - begin;
+  if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
+  if (!start_.margins.empty()) {
+    between_.front() = start_.margins;
+    between_.back() = end_.margins;
+    for (std::size_t i = 1; i + 1 < samples; ++i) {
+      const double time = begin + length * static_cast<double>(i) / static_cast<double>(samples - 1);
+      work_->y.resize(motion_.size());
+      flow_->sample(time, work_->y);
+      motion_.evaluate(time, work_->y.data(), true);
+      motion_.closed().margins(work_->margins);
+      between_[i].clear();
+      for (const ForceMargin& margin : work_->margins) between_[i].push_back(margin.margin);
+    }
+  }
+  next_ = find_event();
+  pending_ = true;
+}
+
+bool IslandDriver::watch(double time, const double* y, Watch& out) {
+  const bool solved = motion_.evaluate(time, y, true);
+  const MotionWorkspace& work = work_->motion;
+  const StateView state = work.trial.view();
+  const double* const acceleration = work.acceleration.data();
+  out.gaps.resize(motion_.pairs().size());
+  bool finite = solved;
+  Contact contact;
+  for (std::size_t i = 0; i < out.gaps.size(); ++i) {
+    if (closed_at_[i] != 0) continue;
+    finder_->contact(motion_.pairs()[i], state, work.evaluation, contact);
+    out.gaps[i] = {contact.gap, contact.velocity(0, state.v), contact.acceleration(0, acceleration)};
+    finite = finite && std::isfinite(out.gaps[i].second);
+  }
+  out.slips.clear();
+  for (const ClosedContact& closed : motion_.closed().list()) {
+    const double sign = closed.slip_sign();
+    out.slips.push_back(
+        {sign * closed.at.velocity(1, state.v), sign * closed.at.acceleration(1, acceleration), 0.0});
+    finite = finite && std::isfinite(out.slips.back().first);
+  }
+  motion_.closed().margins(work_->margins);
+  out.margins.clear();
+  out.noises.clear();
+  for (const ForceMargin& margin : work_->margins) {
+    double size = 0.0;
+    for (std::size_t i = margin.first; i < margin.last; ++i) {
+      const ClosedContact& closed = motion_.closed().list()[i];
+      size += std::abs(closed.normal) + std::abs(closed.tangential);
+    }
+    out.margins.push_back(margin.margin);
+    out.noises.push_back(force_rounding * std::max(size, force_scale_));
+  }
+  return finite;
+}
+
+IslandDriver::Found IslandDriver::find_event() {
+  const double begin = flow_->begin(), length = flow_->end() - begin;
+  double first = never;
+  Found found{flow_->end(), Guard::none, 0};
+  const auto take = [&](double tau, Guard guard, std::size_t which) {
+    if (!(tau < first)) return;
+    first = tau;
+    found = {begin + tau * length, guard, which};
+  };
+  const auto scaled = [length](StepPolynomial::End end) {
+    end.first *= length;
+    end.second *= length * length;
+    return end;
+  };
+  for (std::size_t i = 0; i < end_.gaps.size(); ++i) {
+    if (closed_at_[i] != 0) continue;
+    const auto gap = StepPolynomial::quintic(scaled(start_.gaps[i]), scaled(end_.gaps[i])).raised(gap_noise_);
+    take(gap.first_fall(), Guard::gap, i);
+  }
+  const auto& closed = motion_.closed().list();
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    if (closed[i].sticks() || closed[i].slippery) continue;
+    const double noise = slip_rounding * velocity_scale_;
+    const auto slip = StepPolynomial::cubic(scaled(start_.slips[i]), scaled(end_.slips[i])).raised(noise);
+    take(slip.first_fall(), Guard::slip, i);
+  }
+  for (std::size_t i = 0; i < end_.margins.size(); ++i) {
+    std::array<double, samples> values{};
+    for (std::size_t k = 0; k < samples; ++k) values[k] = between_[k][i];
+    const double noise = std::max(start_.noises[i], end_.noises[i]);
+    take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::force, i);
+  }
+  return found.guard == Guard::none ? found : locate(found);
+}
+
+/// The event itself, by steps that end on it.
+IslandDriver::Found IslandDriver::locate(const Found& rough) {
+  constexpr int most_landings = 60;
+  work_->y.resize(motion_.size());
+  double low = flow_->begin(), high = flow_->end(), time = std::clamp(rough.time, low, high);
+  double f_low = 0.0, f_high = 0.0;
+  bool below = false;  // something below zero was seen
+  if (rough.guard == Guard::force) {
+    f_low = start_.margins[rough.which];
+    f_high = end_.margins[rough.which];
+    below = f_high < 0.0;
+  }
+  for (int i = 0; i < most_landings; ++i) {
+    flow_->land(time, work_->y);
+    double value = 0.0, rate = 0.0, noise = 0.0;
+    motion_.evaluate(time, work_->y.data(), true);
+    const StateView state = work_->motion.trial.view();
+    if (rough.guard == Guard::gap) {
+      Contact contact;
+      finder_->contact(motion_.pairs()[rough.which], state, work_->motion.evaluation, contact);
+      value = contact.gap;
+      rate = contact.velocity(0, state.v);
+      noise = gap_noise_ / 16.0;
+    } else if (rough.guard == Guard::slip) {
+      const ClosedContact& closed = motion_.closed().list()[rough.which];
+      value = closed.slip_sign() * closed.at.velocity(1, state.v);
+      rate = closed.slip_sign() * closed.at.acceleration(1, work_->motion.acceleration.data());
+      noise = 16.0 * epsilon * velocity_scale_;
+    } else {
+      motion_.closed().margins(work_->margins);
+      value = work_->margins[rough.which].margin;
+      noise = std::max(start_.noises[rough.which], end_.noises[rough.which]);
+    }
+    if (std::abs(value) <= noise) return {time, rough.guard, rough.which};
+    if (rough.guard != Guard::force && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
+    if (value > 0.0) {
+      low = time;
+      f_low = value;
+    } else {
+      high = time;
+      f_high = value;
+      below = true;
+    }
+    if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) break;
+    double next = rough.guard == Guard::force ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
+    if (!(next > low && next < high) || i % 8 == 7) next = 0.5 * (low + high);
+    time = next;
+  }
+  return below ? Found{high, rough.guard, rough.which} : Found{high, Guard::restart, 0};
+}
+
+void IslandDriver::accept_step(DriverNews& news) {
+  time_ = flow_->end();
+  y_.assign(flow_->state().begin(), flow_->state().end());
+  pending_ = false;
+  std::swap(start_, end_);
+  if (motion_.closed().list().empty()) return;
+  motion_.evaluate(time_, y_.data(), true);
+  if (settle(news)) flow_->correct(y_);
+}
+
+bool IslandDriver::settle(DriverNews& news) {
+  bool changed = false;
+  news.flows[EnergyFlow::projection] += motion_.project(y_, changed, news.shift);
+  return changed;
+}
+
+void IslandDriver::go_to_event(DriverNews& news) {
+  time_ = next_.time;
+  flow_->land(time_, y_);
+  pending_ = in_phase_ = false;
+  step_ = std::min(flow_->next_step(), options_.longest_step);
+  motion_.evaluate(time_, y_.data(), true);
+  breaking_.clear();
+  lifting_.clear();
+  const auto& closed = motion_.closed().list();
+  if (next_.guard == Guard::force) {
+    motion_.closed().margins(work_->margins);
+    const ForceMargin& at = work_->margins[next_.which];
+    const double noise = 4.0 * std::max(start_.noises[next_.which], end_.noises[next_.which]);
+    for (std::size_t i = at.first; i < at.last; ++i) {
+      const ClosedContact& c = closed[i];
+      if (c.normal <= at.margin + noise && c.normal <= noise) {
+        lifting_.push_back(c.pair);
+      } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
+        breaking_.push_back({c.pair, c.tangential});
+      }
+    }
+  }
+  stopped_ = next_.guard == Guard::slip ? closed[next_.which].pair : ContactPair{};
+  settle(news);
+  begin_phase(news);
+}
+
+bool IslandDriver::at_rest() {
+  constexpr double no_speed = 1e-14, no_acceleration = 1e-12;
+  if (motion_.depends_on_time() || !assembly_->islands()[motion_.island()].z.empty()) return false;
+  const Range v = assembly_->islands()[motion_.island()].v;
+  const MotionWorkspace& work = work_->motion;
+  double fastest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) fastest = std::max(fastest, std::abs(work.trial.v[i]) * work.lengths[i]);
+  if (fastest > no_speed) return false;
+  double free = 0.0, left = 0.0;
+  motion_.evaluate(time_, y_.data(), false);
+  for (Index i = v.begin; i < v.end; ++i) free = std::max(free, std::abs(work.acceleration[i]) * work.lengths[i]);
+  motion_.evaluate(time_, y_.data(), true);
+  for (Index i = v.begin; i < v.end; ++i) left = std::max(left, std::abs(work.acceleration[i]) * work.lengths[i]);
+  return left <= no_acceleration * free;
+}
+
+}  // namespace carom

@@ -1,0 +1,170 @@
+#pragma once
+
+/// \file
+/// One island from event to event (docs/method.md, section 7):
+///
+///     flow until an event > impacts, until nothing approaches > modes from accelerations > flow on.
+///
+/// An island goes at its own pace: it makes steps as long as its flow likes and is looked at in between.
+
+#include <carom/contact/contact_cluster.h>
+#include <carom/contact/contact_finder.h>
+#include <carom/core/assembly.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_log.h>
+#include <carom/integrators/island_motion.h>
+#include <carom/integrators/mode_decision.h>
+#include <carom/integrators/step_polynomial.h>
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// What islands share: memory and solvers.
+struct CAROM_API DriverWorkspace {
+  explicit DriverWorkspace(const Assembly& assembly) : motion(assembly) {}
+
+  MotionWorkspace motion;
+  SolverChain chain;
+  ContactCluster cluster;
+  ModeDecision decision;
+  std::vector<Contact> contacts;      // of all pairs of an island
+  std::vector<Contact> touching;      // of one body
+  std::vector<Contact> captured;
+  std::vector<Candidate> candidates;  // of one body
+  std::vector<ForceMargin> margins;
+  std::vector<double> y, free;
+};
+
+/// What left the energy of islands, and what is to be told, since it was last emptied.
+struct DriverNews {
+  EnergyFlows flows;
+  std::vector<EventRecord> events;
+  EventCounts counts{};
+  double energy_gain = 0.0;  ///< by impacts [J]
+  double shift = 0.0;        ///< largest displacement by projection [m]
+};
+
+/// Modes by contact.
+using ContactModes = std::vector<std::pair<ContactKey, ContactMode>>;
+
+/// Drives one island. Its memory is its own but for the workspace.
+class CAROM_API IslandDriver {
+public:
+  IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options, Index island,
+               DriverWorkspace& work);
+
+  /// Starts at a state. \param present modes of contacts before, if known
+  void start(const State& state, const ContactModes& present);
+  /// Goes on to a time, not before the present; events at that very time included. Throws SolverError: the
+  /// driver must then be started anew.
+  void advance(double target, DriverNews& news);
+  /// Writes the island's part of the state at the time last advanced to, and the modes of closed contacts.
+  void write(State& state, ContactModes& modes) const;
+  /// Counts of the flow.
+  [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
+
+private:
+  // What is found: nothing, an end of a gap, of a force, of slipping; or that the flow is to start anew.
+  enum class Guard : std::uint8_t { none, gap, force, slip, restart };
+  struct Found {
+    double time;
+    Guard guard = Guard::none;
+    std::size_t which = 0;  // pair; first contact of a margin; closed contact
+  };
+  // What is watched over a step: values at its start and at its end, and between them where asked.
+  struct Watch {
+    std::vector<StepPolynomial::End> gaps;   // by pair
+    std::vector<StepPolynomial::End> slips;  // by closed contact
+    std::vector<double> margins;             // by body that touches
+    std::vector<double> noises;              // rounding of the margins
+  };
+  static constexpr std::size_t samples = 5;
+
+  // A sticking contact whose friction is exhausted, and the friction then.
+  struct Break {
+    ContactPair pair;
+    double push;
+  };
+
+  // Smooth phases.
+  void take_step();
+  bool watch(double time, const double* y, Watch& out);
+  [[nodiscard]] Found find_event();
+  [[nodiscard]] Found locate(const Found& rough);
+  void go_to_event(DriverNews& news);
+  void accept_step(DriverNews& news);
+  bool settle(DriverNews& news);
+  [[nodiscard]] bool at_rest();
+
+  // Events.
+  void begin_phase(DriverNews& news);
+  void set_scales();
+  void locate_contacts();
+  bool resolve_impacts(DriverNews& news);
+  void resolve_body(std::size_t first, std::size_t last, double fastest, DriverNews& news);
+  void take_captured(std::size_t first, std::size_t last);
+  void close_captured(DriverNews& news);
+  void book_impact(bool captured, double energy_before, DriverNews& news);
+  void decide_modes(DriverNews& news);
+  bool decide_body(std::size_t first, std::size_t last, DriverNews& news);
+  void collect_candidates(std::size_t first, std::size_t last);
+  void impact_without_collision(DriverNews& news);
+  void tell_changes(DriverNews& news);
+  void tell_choice(EventKind kind, DriverNews& news);
+  EventRecord& tell(EventKind kind, const Contact& contact, DriverNews& news);
+  [[nodiscard]] bool touches(std::size_t pair) const;
+  [[nodiscard]] double speed_noise() const;
+  void count_event(const ContactKey& contact);
+  void remember_impact(const ContactKey& contact);
+  [[nodiscard]] double accumulation_time() const;
+
+  [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
+                         const ContactCluster* cluster = nullptr) const;
+
+  const Assembly* assembly_;
+  const ContactFinder* finder_;
+  EventDriven options_;
+  DriverWorkspace* work_;
+  IslandMotion motion_;
+  std::unique_ptr<Flow> flow_;
+
+  double time_ = 0.0;        // up to which the island is decided
+  std::vector<double> y_;    // at time_
+  double looked_at_ = 0.0;   // time last advanced to
+  std::vector<double> seen_; // y then
+  std::array<double, work_lines> delivered_{};  // works told so far
+  bool fresh_ = true;        // start_gap_ counts as touching
+  bool pending_ = false;     // the flow's last step is ahead of time_
+  bool in_phase_ = false;    // modes are decided and the flow has started
+  bool resting_ = false;
+  Found next_{};             // event in the pending step
+  Watch start_, end_;
+  std::array<std::vector<double>, samples> between_;  // margins at equal distances
+  double step_ = 0.0;        // to try first in the next phase
+  std::vector<char> closed_at_;  // by pair
+  double velocity_scale_ = 0.0;  // of the island at the start of the phase [m/s]
+  double force_scale_ = 0.0;     // [N]
+  double gap_noise_ = 0.0;       // rounding of gaps [m]
+  std::vector<Break> breaking_;
+  std::vector<ContactPair> lifting_;
+  ContactPair stopped_;  // has just stopped slipping
+  std::vector<ClosedContact> before_;  // closed before the event
+  ClosedContacts capture_;
+  SolutionList solutions_;
+
+  struct Impact {
+    double time;
+    ContactKey contact;
+  };
+  static constexpr std::size_t remembered = 16;
+  std::vector<Impact> last_impacts_;  // the latest, in time
+  std::int64_t counted_ = 0;   // events in the window
+  double window_start_ = 0.0;  // of event_limit
+};
+
+}  // namespace carom

@@ -1,0 +1,174 @@
+// Problem: rates of an island's unknowns, and its way back onto the constraints.
+
+#include <carom/integrators/island_motion.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+MotionWorkspace::MotionWorkspace(const Assembly& assembly)
+    : trial(assembly.layout()), evaluation(make_evaluation(assembly)), lengths(assembly.length_scales()) {
+  const std::size_t size = trial.v.size();
+  for (std::vector<double>* array :
+       {&dissipative, &external, &acceleration, &of_position, &of_velocity, &momentum}) {
+    array->assign(size, 0.0);
+  }
+  z_rates.assign(trial.z.size(), 0.0);
+}
+
+IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder, Index island,
+                           const EventDriven& options, MotionWorkspace& work)
+    : assembly_(&assembly),
+      finder_(&finder),
+      work_(&work),
+      island_(island),
+      q_size_(assembly.islands()[island].q.size()),
+      v_size_(assembly.islands()[island].v.size()),
+      z_size_(assembly.islands()[island].z.size()),
+      size_(q_size_ + v_size_ + z_size_ + work_lines),
+      tolerances_(size_, options.absolute_tolerance),
+      pairs_(finder.pairs(island)) {
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    if (assembly.elements(island, kind).empty()) continue;
+    const ForceKind& elements = *assembly.force_kinds()[kind];
+    books_dissipative_ = books_dissipative_ || elements.books_dissipative();
+    books_external_ = books_external_ || elements.books_external();
+  }
+  depends_on_time_ = books_external_;
+  double mass = 0.0;
+  const Island& all = assembly.islands()[island];
+  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    for (Index slot = slots.begin; slot < slots.end; ++slot) {
+      mass += kind.mass(slot);
+      const Index body = slot - slots.begin;
+      for (Index i = 0; i < kind.v_size(); ++i) {
+        const double tolerance = options.absolute_tolerance / kind.length_scale(slot, i);
+        tolerances_[q_size_ + (v - all.v.begin) + body * kind.v_size() + i] = tolerance;
+        // Orientations come last in both and are measured alike in the plane.
+        if (i < kind.q_size()) tolerances_[(q - all.q.begin) + body * kind.q_size() + i] = tolerance;
+      }
+    }
+  });
+  for (Index i = 0; i < work_lines; ++i) tolerances_[size_ - 1 - i] = mass * options.absolute_tolerance;
+}
+
+void IslandMotion::gather(const State& state, std::span<double> y) const {
+  const Island& all = assembly_->islands()[island_];
+  auto out = std::copy_n(state.q.begin() + all.q.begin, q_size_, y.begin());
+  out = std::copy_n(state.v.begin() + all.v.begin, v_size_, out);
+  out = std::copy_n(state.z.begin() + all.z.begin, z_size_, out);
+  std::fill(out, y.end(), 0.0);
+}
+
+void IslandMotion::scatter(std::span<const double> y, State& state) const {
+  const Island& all = assembly_->islands()[island_];
+  const double* from = y.data();
+  std::copy_n(from, q_size_, state.q.begin() + all.q.begin);
+  std::copy_n(from + q_size_, v_size_, state.v.begin() + all.v.begin);
+  std::copy_n(from + q_size_ + v_size_, z_size_, state.z.begin() + all.z.begin);
+}
+
+bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
+  MotionWorkspace& work = *work_;
+  const Assembly& assembly = *assembly_;
+  scatter({y, size_}, work.trial);
+  work.trial.time = time;
+  const StateView state = work.trial.view();
+  evaluate_positions(assembly, island_, state, work.evaluation);
+  double* const force = work.evaluation.force.data();
+  Loads loads{force, force, force};
+  if (books_dissipative_) loads.dissipative = work.dissipative.data();
+  if (books_external_) loads.external = work.external.data();
+  evaluate_loads(assembly, island_, state, work.evaluation, loads);
+  const Range v = assembly.islands()[island_].v;
+  // What the masses accelerate by: the sum of all causes, made where the reactions will be added.
+  for (Index i = v.begin; i < v.end; ++i) {
+    double sum = force[i];
+    if (books_dissipative_) sum += work.dissipative[i];
+    if (books_external_) sum += work.external[i];
+    work.momentum[i] = sum;
+  }
+  assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
+    kind.apply_inverse_mass(slots, work.momentum.data() + at, work.acceleration.data() + at);
+  });
+  if (!with_reactions || closed_.list().empty()) return true;
+  closed_.locate(*finder_, state, work.evaluation);
+  return closed_.add_reactions(assembly, work.acceleration.data());
+}
+
+void IslandMotion::rates(double time, const double* y, double* rates) {
+  MotionWorkspace& work = *work_;
+  const Assembly& assembly = *assembly_;
+  evaluate(time, y, true);
+  const Island& all = assembly.islands()[island_];
+  const StateView state = work.trial.view();
+  assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.coordinate_rates(slots, state.q + q, state.v + v, rates + (q - all.q.begin));
+  });
+  std::copy_n(work.acceleration.begin() + all.v.begin, v_size_, rates + q_size_);
+  double inside = 0.0;
+  if (z_size_ != 0) {
+    const EvaluationContext at{assembly, state, work.evaluation, island_};
+    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+      const Range elements = assembly.elements(island_, kind);
+      const ForceKind& of_kind = *assembly.force_kinds()[kind];
+      if (elements.empty() || of_kind.internal_size() == 0) continue;
+      of_kind.internal_rates(at, elements, work.z_rates.data());
+      inside += of_kind.internal_loss_rate(at, elements);
+    }
+    std::copy_n(work.z_rates.begin() + all.z.begin, z_size_, rates + q_size_ + v_size_);
+  }
+  double dashpot = inside, external = 0.0, sliding = 0.0;
+  for (Index i = all.v.begin; i < all.v.end; ++i) {
+    if (books_dissipative_) dashpot -= work.dissipative[i] * state.v[i];
+    if (books_external_) external += work.external[i] * state.v[i];
+  }
+  for (const ClosedContact& contact : closed_.list()) {
+    sliding -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.velocity(1, state.v));
+    external += contact.normal * contact.at.obstacle_velocity[0] +
+                contact.tangential * contact.at.obstacle_velocity[1];
+  }
+  rates[work_place(WorkLine::dashpot)] = dashpot;
+  rates[work_place(WorkLine::sliding)] = sliding;
+  rates[work_place(WorkLine::external)] = external;
+}
+
+double IslandMotion::project(std::span<double> y, bool& changed, double& shift) {
+  changed = false;
+  if (closed_.list().empty()) return 0.0;
+  MotionWorkspace& work = *work_;
+  const Assembly& assembly = *assembly_;
+  const Island& all = assembly.islands()[island_];
+  const auto clear = [&](std::vector<double>& array) {
+    std::fill(array.begin() + all.v.begin, array.begin() + all.v.end, 0.0);
+  };
+  clear(work.of_position);
+  clear(work.of_velocity);
+  changed = closed_.corrections(assembly, work.trial.v.data(), work.of_position.data(), work.of_velocity.data());
+  if (!changed) return 0.0;
+  double lost = 0.0;
+  // The potential changes by minus the work of its forces, to first order: the rest is the square of rounding.
+  for (Index i = all.v.begin; i < all.v.end; ++i) {
+    lost += work.evaluation.force[i] * work.of_position[i];
+    shift = std::max(shift, std::abs(work.of_position[i]) * work.lengths[i]);
+  }
+  assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.apply_mass(slots, work.of_velocity.data() + v, work.momentum.data() + v);
+    kind.advance(slots, work.trial.q.data() + q, work.of_position.data() + v,
+                 y.data() + (q - all.q.begin));
+  });
+  for (Index i = all.v.begin; i < all.v.end; ++i) {
+    lost -= (work.trial.v[i] + 0.5 * work.of_velocity[i]) * work.momentum[i];
+    y[q_size_ + (i - all.v.begin)] += work.of_velocity[i];
+  }
+  return lost;
+}
+
+double IslandMotion::kinetic_energy(Index body) const {
+  const BodySlot slot = assembly_->layout()->bodies()[body];
+  return assembly_->body_kinds()[slot.kind]->kinetic_energy({slot.slot, slot.slot + 1},
+                                                            work_->trial.v.data() + slot.v);
+}
+
+}  // namespace carom

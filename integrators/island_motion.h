@@ -1,0 +1,94 @@
+#pragma once
+
+/// \file
+/// The smooth motion of one island under fixed contact modes, as a problem for a flow:
+///
+///     dq/dt = v,   M dv/dt = f + reactions of the closed contacts,   dz/dt by the elements,
+///     and the works of dashpots, friction, prescribed loads and moving obstacles.
+
+#include <carom/contact/closed_contacts.h>
+#include <carom/contact/contact_finder.h>
+#include <carom/core/assembly.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven.h>
+#include <carom/integrators/flow.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Memory that islands share: whole-model arrays of which an evaluation fills the island's part.
+struct CAROM_API MotionWorkspace {
+  explicit MotionWorkspace(const Assembly& assembly);
+
+  State trial;                                ///< the state looked at
+  Evaluation evaluation;                      ///< of it
+  std::vector<double> dissipative, external;  ///< loads by cause [N, N m]
+  std::vector<double> acceleration;           ///< with the reactions of closed contacts, if asked for
+  std::vector<double> of_position, of_velocity, momentum;  ///< corrections
+  std::vector<double> lengths;                             ///< Assembly::length_scales()
+  std::vector<double> z_rates;
+};
+
+/// Works that are integrated along.
+enum class WorkLine : std::uint8_t { dashpot, sliding, external };
+/// Number of them.
+inline constexpr Index work_lines = 3;
+
+/// The unknowns of one island: q, v, z, then works.
+class CAROM_API IslandMotion final : public FlowProblem {
+public:
+  /// All but the options must outlive it.
+  IslandMotion(const Assembly& assembly, const ContactFinder& finder, Index island,
+               const EventDriven& options, MotionWorkspace& work);
+
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  void rates(double time, const double* y, double* rates) override;
+  [[nodiscard]] std::span<const double> absolute_tolerances() const override { return tolerances_; }
+
+  /// Contacts that are closed.
+  [[nodiscard]] ClosedContacts& closed() { return closed_; }
+  [[nodiscard]] const ClosedContacts& closed() const { return closed_; }
+  /// Everything that might touch.
+  [[nodiscard]] const std::vector<ContactPair>& pairs() const { return pairs_; }
+  /// Which island.
+  [[nodiscard]] Index island() const { return island_; }
+
+  /// Reads the island's unknowns off a state, works 0.
+  void gather(const State& state, std::span<double> y) const;
+  /// Writes them into a state.
+  void scatter(std::span<const double> y, State& state) const;
+  /// Fills the workspace for one state, with or without the reactions of closed contacts. False where the
+  /// reactions do not exist.
+  bool evaluate(double time, const double* y, bool with_reactions);
+  /// Moves y onto the constraints of the closed contacts; the workspace holds an evaluation of y, with
+  /// reactions, and is out of date afterwards if y was changed. Returns the energy taken out [J]; adds the
+  /// largest displacement [m] to `shift`.
+  double project(std::span<double> y, bool& changed, double& shift);
+
+  /// Place of the first velocity in y.
+  [[nodiscard]] std::size_t v_begin() const { return q_size_; }
+  /// Place of a work in y.
+  [[nodiscard]] std::size_t work_place(WorkLine line) const {
+    return q_size_ + v_size_ + z_size_ + static_cast<std::size_t>(line);
+  }
+  /// Kinetic energy of one body in the workspace's state [J].
+  [[nodiscard]] double kinetic_energy(Index body) const;
+  /// True if the loads or obstacles depend on time.
+  [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
+
+private:
+  const Assembly* assembly_;
+  const ContactFinder* finder_;
+  MotionWorkspace* work_;
+  Index island_;
+  std::size_t q_size_, v_size_, z_size_, size_;
+  std::vector<double> tolerances_;
+  std::vector<ContactPair> pairs_;
+  ClosedContacts closed_;
+  bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false;
+};
+
+}  // namespace carom

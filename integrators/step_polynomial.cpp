@@ -1,0 +1,120 @@
+// Problem: the first root of a polynomial on an interval, found for certain.
+
+#include <carom/integrators/step_polynomial.h>
+
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// Halvings after which two roots count as one that only touches.
+constexpr int most_halvings = 30;
+
+}  // namespace
+
+StepPolynomial StepPolynomial::cubic(const End& start, const End& end) {
+  StepPolynomial p;
+  p.degree_ = 3;
+  p.b_ = {start.value, start.value + start.first / 3.0, end.value - end.first / 3.0, end.value};
+  return p;
+}
+
+StepPolynomial StepPolynomial::quintic(const End& start, const End& end) {
+  StepPolynomial p;
+  p.degree_ = 5;
+  p.b_ = {start.value,
+          start.value + start.first / 5.0,
+          start.value + 2.0 * start.first / 5.0 + start.second / 20.0,
+          end.value - 2.0 * end.first / 5.0 + end.second / 20.0,
+          end.value - end.first / 5.0,
+          end.value};
+  return p;
+}
+
+StepPolynomial StepPolynomial::through(std::span<const double, 5> f) {
+  // The linear map from five values to Bernstein coefficients of degree 4.
+  StepPolynomial p;
+  p.degree_ = 4;
+  p.b_[0] = f[0];
+  p.b_[1] = (-13.0 * f[0] + 48.0 * f[1] - 36.0 * f[2] + 16.0 * f[3] - 3.0 * f[4]) / 12.0;
+  p.b_[2] = (13.0 * f[0] - 64.0 * f[1] + 120.0 * f[2] - 64.0 * f[3] + 13.0 * f[4]) / 18.0;
+  p.b_[3] = (-3.0 * f[0] + 16.0 * f[1] - 36.0 * f[2] + 48.0 * f[3] - 13.0 * f[4]) / 12.0;
+  p.b_[4] = f[4];
+  return p;
+}
+
+double StepPolynomial::at(const Coefficients& b, double tau) const {
+  Coefficients work = b;
+  for (int level = degree_; level > 0; --level) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(level); ++i) {
+      work[i] += tau * (work[i + 1] - work[i]);
+    }
+  }
+  return work[0];
+}
+
+double StepPolynomial::value(double tau) const { return at(b_, tau); }
+
+StepPolynomial StepPolynomial::raised(double constant) const {
+  StepPolynomial p = *this;
+  for (double& b : p.b_) b += constant;
+  return p;
+}
+
+double StepPolynomial::first_fall() const {
+  if (!(b_[0] >= 0.0)) return 0.0;
+  return fall_within(b_, 0.0, 1.0, 0);
+}
+
+double StepPolynomial::fall_within(const Coefficients& b, double from, double to, int depth) const {
+  int changes = 0;
+  bool positive = true, any = false;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i) {
+    const bool is_positive = b[i] >= 0.0;
+    any = any || !is_positive;
+    if (i > 0 && is_positive != positive) ++changes;
+    positive = is_positive;
+  }
+  if (!any) return never;
+  if (changes == 1) {
+    // One root, where it falls: regula falsi (Illinois) on an interval that keeps the root.
+    double low = 0.0, high = 1.0, f_low = b[0], f_high = b[static_cast<std::size_t>(degree_)];
+    int side = 0;
+    for (int i = 0; i < 100 && high - low > std::numeric_limits<double>::epsilon(); ++i) {
+      const double width = f_low - f_high;
+      double mid = width > 0.0 ? low + (high - low) * f_low / width : 0.5 * (low + high);
+      if (!(mid > low && mid < high)) mid = 0.5 * (low + high);
+      const double f = at(b, mid);
+      if (f >= 0.0) {
+        low = mid;
+        f_low = f;
+        if (side == 1) f_high *= 0.5;
+        side = 1;
+      } else {
+        high = mid;
+        f_high = f;
+        if (side == -1) f_low *= 0.5;
+        side = -1;
+      }
+    }
+    return from + (to - from) * high;
+  }
+  if (depth == most_halvings) return never;
+  Coefficients left{}, right = b;
+  left[0] = right[0];
+  for (int level = 1; level <= degree_; ++level) {
+    for (std::size_t i = 0; i + static_cast<std::size_t>(level) <= static_cast<std::size_t>(degree_); ++i) {
+      right[i] = 0.5 * (right[i] + right[i + 1]);
+    }
+    left[static_cast<std::size_t>(level)] = right[0];
+  }
+  const double middle = 0.5 * (from + to);
+  const double first = fall_within(left, from, middle, depth + 1);
+  return first < never ? first : fall_within(right, middle, to, depth + 1);
+}
+
+}  // namespace carom

@@ -1,0 +1,46 @@
+#pragma once
+
+/// \file
+/// When does a quantity known at a few times of a step fall through zero first? The polynomial through what
+/// is known, in Bernstein's form: it lies between the least and the largest of its coefficients, so that
+/// positive ones prove that there is no root, and halving the interval finds the first one for certain.
+
+#include <carom/core/export.h>
+
+#include <array>
+#include <span>
+
+namespace carom {
+
+/// A polynomial over the step, tau in [0, 1].
+class CAROM_API StepPolynomial {
+public:
+  /// A quantity at one end of a step: its value and derivatives with respect to tau.
+  struct End {
+    double value = 0.0, first = 0.0, second = 0.0;
+  };
+  /// Degree 3, from values and first derivatives.
+  [[nodiscard]] static StepPolynomial cubic(const End& start, const End& end);
+  /// Degree 5, from values, first and second derivatives.
+  [[nodiscard]] static StepPolynomial quintic(const End& start, const End& end);
+  /// Degree 4, through five values at equal distances.
+  [[nodiscard]] static StepPolynomial through(std::span<const double, 5> values);
+
+  /// Its value.
+  [[nodiscard]] double value(double tau) const;
+  /// The polynomial plus a constant.
+  [[nodiscard]] StepPolynomial raised(double constant) const;
+  /// The first tau at which it falls below zero, infinity if it does not; 0 if it starts there.
+  [[nodiscard]] double first_fall() const;
+
+private:
+  static constexpr int most = 5;
+  using Coefficients = std::array<double, most + 1>;
+  [[nodiscard]] double fall_within(const Coefficients& b, double from, double to, int depth) const;
+  [[nodiscard]] double at(const Coefficients& b, double tau) const;
+
+  Coefficients b_{};
+  int degree_ = 0;
+};
+
+}  // namespace carom
