@@ -27,7 +27,8 @@ ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
                          std::span<const double> impulse, std::span<const double> xi) {
   double trace = 0.0, largest_impulse = 0.0, largest_b = 0.0, velocity_scale = 0.0;
   const auto first = static_cast<std::size_t>(group.first);
-  if (group.size == 2 && problem.sets()[first].kind == SetKind::half_line) {
+  if (group.size == 2 && problem.sets()[first].kind == SetKind::half_line &&
+      problem.sets()[first + 1].kind == SetKind::bounded_interval) {
     const auto b = problem.vector();
     return planar_mode({problem.w(group.first, group.first) + problem.w(group.first + 1, group.first + 1),
                         b[first], b[first + 1], problem.sets()[first + 1].coefficient, impulse[first],
@@ -51,6 +52,7 @@ ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
   if (group.size == 1) return ContactMode::stick;
 
   const RowSet& friction = problem.sets()[first + 1];
+  if (friction.kind == SetKind::proportional) return sliding_mode(friction.coefficient);
   const double limit = (1.0 - mode_threshold) * friction.coefficient * impulse[first];
   if (friction.kind == SetKind::bounded_disc) {
     const bool slips = std::hypot(xi[first + 1], xi[first + 2]) > mode_threshold * velocity_scale &&
@@ -83,7 +85,7 @@ bool at_mode_boundary(const ContactProblem& problem, std::span<const double> imp
         if (std::abs(moved) <= near) return true;
       } else if (set.kind == SetKind::interval) {
         if (std::abs(moved - set.lower) <= near || std::abs(moved - set.upper) <= near) return true;
-      } else {
+      } else if (set.kind != SetKind::proportional) {
         const double limit = set.coefficient * impulse[static_cast<std::size_t>(set.bound)];
         const bool disc = set.kind == SetKind::bounded_disc;
         const double length = disc ? std::hypot(moved, impulse[i + 1] - rho * xi[i + 1]) : std::abs(moved);

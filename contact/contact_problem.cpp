@@ -13,9 +13,8 @@ namespace carom {
 
 namespace {
 
-bool bounded(const RowSet& set) {
-  return set.kind == SetKind::bounded_interval || set.kind == SetKind::bounded_disc;
-}
+// Whether the set depends on the impulse of another row.
+bool bounded(const RowSet& set) { return set.kind != SetKind::half_line && set.kind != SetKind::interval; }
 
 [[noreturn]] void refuse(int row, const char* what) {
   throw std::invalid_argument("contact problem, row " + std::to_string(row) + ": " + what);
@@ -32,8 +31,9 @@ void check(std::span<const RowSet> sets, int row) {
     refuse(row, "an interval needs lower <= upper");
   }
   if (!bounded(set)) return;
-  if (!(set.coefficient >= 0.0) || std::isinf(set.coefficient)) {
-    refuse(row, "a coefficient of friction is finite and not negative");
+  if (!std::isfinite(set.coefficient)) refuse(row, "a coefficient is finite");
+  if (set.coefficient < 0.0 && set.kind != SetKind::proportional) {
+    refuse(row, "a coefficient of friction is not negative");
   }
   if (set.bound < 0 || set.bound >= row || !never_negative(sets[static_cast<std::size_t>(set.bound)])) {
     refuse(row, "a bounded row follows the row that bounds it, whose impulse is not negative");
@@ -65,7 +65,7 @@ void ContactProblem::group() {
       refuse(row, "friction rows stand directly behind the row that bounds them");
     }
     ++groups_.back().size;
-    if (set.kind == SetKind::bounded_interval) continue;
+    if (set.kind != SetKind::bounded_disc) continue;
     // A disc takes two rows with one description.
     if (++row == rows_) refuse(row - 1, "a disc takes two rows");
     const RowSet& second = sets_[static_cast<std::size_t>(row)];

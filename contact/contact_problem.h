@@ -27,7 +27,8 @@ struct RowGroup {
 /// Symmetric positive semidefinite matrix W (dense, row-major), vector b and row sets.
 ///
 /// Rows of one contact are consecutive: the normal row (half_line) first, then its friction rows, whose
-/// `bound` is the normal row. Reset and refill to reuse the memory.
+/// `bound` is the normal row. A contact that slips in a known direction keeps both rows, the second one
+/// proportional: W stays symmetric, and no condition on xi_t is left. Reset and refill to reuse the memory.
 class CAROM_API ContactProblem {
 public:
   /// Empties the problem and sizes it for `rows` rows, all entries zero, all sets P >= 0.

@@ -17,6 +17,8 @@ bool CopositiveForm::classify(const ContactProblem& problem) {
     switch (set.kind) {
       case SetKind::bounded_disc:
         return false;
+      case SetKind::proportional:
+        break;  // follows its normal row: no variable
       case SetKind::half_line:
         row.plus = variables_++;
         break;
@@ -43,6 +45,7 @@ bool CopositiveForm::classify(const ContactProblem& problem) {
 
 bool CopositiveForm::build(const ContactProblem& problem, Lcp& lcp) {
   if (!classify(problem)) return false;
+  couple_columns(problem, scale_, coupled_);
   lcp.reset(variables_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
@@ -52,7 +55,7 @@ bool CopositiveForm::build(const ContactProblem& problem, Lcp& lcp) {
     double q = scale_[i] * problem.vector()[i];
     for (std::size_t j = 0; j < rows_.size(); ++j) {
       const Row& other = rows_[j];
-      const double w = scale_[i] * problem.w(static_cast<int>(i), static_cast<int>(j)) * scale_[j];
+      const double w = coupled_[i * rows_.size() + j];
       q += w * other.offset;
       if (row.plus >= 0 && other.plus >= 0) lcp.at(row.plus, other.plus) = w;
       if (row.plus >= 0 && other.minus >= 0) lcp.at(row.plus, other.minus) = -w;
@@ -86,6 +89,9 @@ void CopositiveForm::impulses(const ContactProblem& problem, std::span<const dou
     const Row& row = rows_[i];
     double p = scale_[i] * (row.offset + value(row.plus) - value(row.minus));
     const RowSet& set = problem.sets()[i];
+    if (set.kind == SetKind::proportional) {
+      p = set.coefficient * impulse[static_cast<std::size_t>(set.bound)];
+    }
     if (set.kind == SetKind::bounded_interval) {
       const double limit = set.coefficient * impulse[static_cast<std::size_t>(set.bound)];
       // Sliding means the bound exactly; what refinement leaves beside it is rounding.

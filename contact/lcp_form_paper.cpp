@@ -29,8 +29,28 @@ void group_scales(const ContactProblem& problem, std::vector<double>& scale) {
   }
 }
 
+void couple_columns(const ContactProblem& problem, std::span<const double> scale,
+                    std::vector<double>& coupled) {
+  const std::size_t n = scale.size();
+  coupled.resize(n * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j)
+      coupled[i * n + j] = scale[i] * problem.matrix()[i * n + j] * scale[j];
+  }
+  // Rows of one group have one scale, so that the factor stays what it is.
+  for (std::size_t k = 0; k < n; ++k) {
+    const RowSet& set = problem.sets()[k];
+    if (set.kind != SetKind::proportional) continue;
+    const auto bound = static_cast<std::size_t>(set.bound);
+    for (std::size_t i = 0; i < n; ++i) {
+      coupled[i * n + bound] = std::fma(set.coefficient, coupled[i * n + k], coupled[i * n + bound]);
+    }
+  }
+}
+
 bool PaperForm::classify(const ContactProblem& problem) {
   group_scales(problem, scale_);
+  couple_columns(problem, scale_, coupled_);
   rows_.assign(scale_.size(), {});
   normal_.clear();
   eliminated_.clear();
@@ -40,6 +60,7 @@ bool PaperForm::classify(const ContactProblem& problem) {
     Row& row = rows_[i];
     const bool below = std::isfinite(set.lower), above = std::isfinite(set.upper);
     if (set.kind == SetKind::bounded_disc) return false;
+    if (set.kind == SetKind::proportional) continue;  // follows its normal row
     row.eliminated =
         set.kind == SetKind::bounded_interval || (set.kind == SetKind::interval && below == above);
     row.place = row.eliminated ? eliminated_.size() : normal_.size();
@@ -65,9 +86,6 @@ bool PaperForm::eliminate(const ContactProblem& problem) {
   transfer_.resize(t * n);
   shift_.resize(t);
   if (t == 0) return true;
-  const auto w = [&](std::size_t i, std::size_t j) {
-    return scale_[i] * problem.w(static_cast<int>(i), static_cast<int>(j)) * scale_[j];
-  };
   block_.resize(t * t);
   rhs_.resize(t);
   for (std::size_t i = 0; i < t; ++i) {
@@ -99,9 +117,6 @@ bool PaperForm::eliminate(const ContactProblem& problem) {
 // xi_N = (W_NN - W_NT W_TT^-1 W_TN) P_N + W_NT W_TT^-1 (chi2 - chi1) + b_N - W_NT W_TT^-1 b_T
 void PaperForm::fill_normal_rows(const ContactProblem& problem, Lcp& lcp) {
   const std::size_t t = eliminated_.size(), n = normal_.size();
-  const auto w = [&](std::size_t i, std::size_t j) {
-    return scale_[i] * problem.w(static_cast<int>(i), static_cast<int>(j)) * scale_[j];
-  };
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t at = normal_[i];
     const Row& row = rows_[at];
@@ -175,8 +190,8 @@ void PaperForm::fill_friction_rows(const ContactProblem& problem, Lcp& lcp) {
 bool PaperForm::build(const ContactProblem& problem, Lcp& lcp) {
   if (!classify(problem)) return false;
   for (const RowSet& set : problem.sets()) {
-    if (set.kind == SetKind::bounded_interval && rows_[static_cast<std::size_t>(set.bound)].eliminated)
-      return false;
+    const bool follows = set.kind == SetKind::bounded_interval || set.kind == SetKind::proportional;
+    if (follows && rows_[static_cast<std::size_t>(set.bound)].eliminated) return false;
   }
   if (!eliminate(problem)) return false;
   lcp.reset(variables_);
@@ -215,6 +230,12 @@ void PaperForm::impulses(const ContactProblem& problem, std::span<const double> 
         p += inverse_[i * t + j] * (value(other.lower) - value(other.upper));
       }
       impulse[at] = std::clamp(scale_[at] * p, lower, upper);
+    }
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const RowSet& set = problem.sets()[i];
+    if (set.kind == SetKind::proportional) {
+      impulse[i] = set.coefficient * impulse[static_cast<std::size_t>(set.bound)];
     }
   }
 }

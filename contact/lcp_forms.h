@@ -5,6 +5,8 @@
 ///
 /// Both work on the problem scaled group by group, P = s P', xi = xi' / s with s a power of two near
 /// 1 / sqrt(trace W_ii): all entries of W' are then of order one whatever the masses, and nothing is rounded.
+/// A proportional row has no variable and no condition: what it does goes into the column of the row that it
+/// follows, W_.n + coefficient * W_.t, and the matrices are then neither symmetric nor copositive.
 /// Restitution is in b, and xi = (1 + e) (mean velocity): the matrices do not depend on e.
 
 #include <carom/contact/contact_problem.h>
@@ -53,7 +55,12 @@ private:
   void fill_normal_rows(const ContactProblem& problem, Lcp& lcp);
   void fill_friction_rows(const ContactProblem& problem, Lcp& lcp);
 
+  [[nodiscard]] double w(std::size_t row, std::size_t column) const {
+    return coupled_[row * scale_.size() + column];
+  }
+
   std::vector<double> scale_;
+  std::vector<double> coupled_;
   std::vector<Row> rows_;
   std::vector<std::size_t> normal_, eliminated_;  // rows of the problem
   std::vector<double> block_, rhs_;
@@ -69,8 +76,9 @@ private:
 ///
 ///     xi_n >= 0  _|_  P_n,    +-xi_t + sigma >= 0  _|_  beta+-,    mu P_n - beta+ - beta- >= 0  _|_  sigma.
 ///
-/// Copositive for W >= 0. A two-sided interval has P = lo + u with xi + s >= 0 _|_ u and hi - lo - u >= 0 _|_
-/// s, a one-sided one a single variable, a free row P = u+ - u-. Exists for every problem without discs.
+/// Copositive for W >= 0 without proportional rows. A two-sided interval has P = lo + u with xi + s >= 0 _|_
+/// u and hi - lo - u >= 0 _|_ s, a one-sided one a single variable, a free row P = u+ - u-. Exists for every
+/// problem without discs.
 class CAROM_API CopositiveForm {
 public:
   /// Fills `lcp`; false where the problem has a disc.
@@ -89,6 +97,7 @@ private:
   bool classify(const ContactProblem& problem);
 
   std::vector<double> scale_;
+  std::vector<double> coupled_;
   std::vector<Row> rows_;
   int variables_ = 0;
 };
@@ -96,5 +105,10 @@ private:
 /// Scale s of each row (see the top of the file): a power of two near 1 / sqrt(trace W_ii) of its group, 1
 /// for a group without mobility. `scale` is resized to rows().
 CAROM_API void group_scales(const ContactProblem& problem, std::vector<double>& scale);
+
+/// W' of the scaled problem, row-major, with `coefficient` times the column of every proportional row added
+/// to the column of the row that it follows. `coupled` is resized to rows() x rows().
+CAROM_API void couple_columns(const ContactProblem& problem, std::span<const double> scale,
+                              std::vector<double>& coupled);
 
 }  // namespace carom

@@ -79,6 +79,13 @@ void NewtonPolish::linearise(const ContactProblem& problem) {
         linearise_disc(problem, i++, rho);
         continue;
       }
+      if (set.kind == SetKind::proportional) {
+        const auto bound = static_cast<std::size_t>(set.bound);
+        set_row(problem, i, 1.0, 0.0, rho);
+        jacobian_[i * xi_.size() + bound] -= set.coefficient;
+        map_[i] = trial_[i] - set.coefficient * trial_[bound];
+        continue;
+      }
       double lower = set.lower, upper = set.upper, slope = 0.0;
       if (set.kind == SetKind::bounded_interval) {
         slope = set.coefficient;
@@ -130,6 +137,9 @@ void NewtonPolish::restore_sets(const ContactProblem& problem) {
         ++i;
         break;
       }
+      case SetKind::proportional:
+        trial_[i] = set.coefficient * trial_[static_cast<std::size_t>(set.bound)];
+        break;
     }
   }
 }

@@ -10,7 +10,7 @@ namespace {
 
 bool without_friction(const ContactProblem& problem) {
   return std::all_of(problem.sets().begin(), problem.sets().end(), [](const RowSet& set) {
-    return set.kind == SetKind::half_line || set.kind == SetKind::interval || !(set.coefficient > 0.0);
+    return set.kind == SetKind::half_line || set.kind == SetKind::interval || set.coefficient == 0.0;
   });
 }
 

@@ -35,11 +35,12 @@ constexpr int version = 1;
 // dozen digits. carom itself writes symmetric ones.
 constexpr double symmetry = 1e-12;
 
-constexpr std::array<std::pair<SetKind, std::string_view>, 4> kinds{
+constexpr std::array<std::pair<SetKind, std::string_view>, 5> kinds{
     {{SetKind::half_line, "half_line"},
      {SetKind::interval, "interval"},
      {SetKind::bounded_interval, "bounded_interval"},
-     {SetKind::bounded_disc, "bounded_disc"}}};
+     {SetKind::bounded_disc, "bounded_disc"},
+     {SetKind::proportional, "proportional"}}};
 
 // JSON knows neither infinities nor NaN.
 Json number(double value) {
@@ -67,6 +68,7 @@ Json written(const RowSet& set) {
       break;
     case SetKind::bounded_interval:
     case SetKind::bounded_disc:
+    case SetKind::proportional:
       out["bound"] = set.bound;
       out["coefficient"] = number(set.coefficient);
       break;
@@ -198,7 +200,7 @@ RowSet read_set(const Reader& in, const Json& value, int row) {
       std::find_if(kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.second == kind; });
   if (known == kinds.end()) {
     in.refuse(field + ".kind", "\"" + kind + "\"",
-              R"("half_line", "interval", "bounded_interval" or "bounded_disc")");
+              R"("half_line", "interval", "bounded_interval", "bounded_disc" or "proportional")");
   }
   RowSet set{.kind = known->first};
   const auto number = [&](const char* name) {
@@ -219,13 +221,15 @@ RowSet read_set(const Reader& in, const Json& value, int row) {
       break;
     case SetKind::bounded_interval:
     case SetKind::bounded_disc:
+    case SetKind::proportional:
       in.demand_fields(value, field + ".", {"kind", "bound", "coefficient"});
       if (row == 0) in.refuse(field + ".kind", "\"" + kind + "\"", "a row before it that bounds it");
       set.bound = in.whole(in.member(value, field + ".", "bound"), field + ".bound", 0, row - 1,
                            "a row before it, 0 to " + std::to_string(row - 1));
       set.coefficient = number("coefficient");
-      if (!std::isfinite(set.coefficient) || set.coefficient < 0.0) {
-        in.refuse(field + ".coefficient", to_text(set.coefficient), "finite and >= 0");
+      if (!std::isfinite(set.coefficient) || (set.coefficient < 0.0 && set.kind != SetKind::proportional)) {
+        in.refuse(field + ".coefficient", to_text(set.coefficient),
+                  set.kind == SetKind::proportional ? "finite" : "finite and >= 0");
       }
       break;
   }

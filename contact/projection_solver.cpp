@@ -106,21 +106,46 @@ void ProjectionSolver::visit_planar(const ContactProblem& problem, std::size_t r
   impulse_[row + 1] = found.list[best].tangential;
 }
 
+// The first row of a group, and with it those that are proportional to it: one unknown.
+void ProjectionSolver::visit_leading(const ContactProblem& problem, const RowGroup& group) {
+  const auto first = static_cast<std::size_t>(group.first);
+  const std::size_t last = first + static_cast<std::size_t>(group.size);
+  const auto sets = problem.sets();
+  const bool half_line = sets[first].kind == SetKind::half_line;
+  const double lower = half_line ? 0.0 : sets[first].lower;
+  const double upper = half_line ? std::numeric_limits<double>::infinity() : sets[first].upper;
+  const double own = problem.w(group.first, group.first);
+  double w = own;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    if (sets[i].kind != SetKind::proportional) continue;
+    w += sets[i].coefficient * problem.w(group.first, static_cast<int>(i));
+  }
+  const double xi = velocity(problem, first);
+  if (w > 0.0 || !(own > 0.0)) {
+    impulse_[first] = clamp_step(impulse_[first], w, xi, lower, upper);
+  } else if (xi + w * (lower - impulse_[first]) >= 0.0) {
+    // More impulse closes it more: open if it can be, else the impulse that another row has to change.
+    impulse_[first] = lower;
+  }
+  for (std::size_t i = first + 1; i < last; ++i) {
+    if (sets[i].kind == SetKind::proportional) impulse_[i] = sets[i].coefficient * impulse_[first];
+  }
+}
+
 void ProjectionSolver::visit_rows(const ContactProblem& problem, const RowGroup& group) {
   const auto first = static_cast<std::size_t>(group.first);
   const std::size_t last = first + static_cast<std::size_t>(group.size);
-  const int rounds = group.size == 1 ? 1 : local_rounds;
+  const auto rows = problem.sets().subspan(first, last - first);
+  const bool one_unknown = std::all_of(rows.begin() + 1, rows.end(),
+                                       [](const RowSet& set) { return set.kind == SetKind::proportional; });
+  const int rounds = one_unknown ? 1 : local_rounds;
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = first; i < last; ++i) {
+    visit_leading(problem, group);
+    for (std::size_t i = first + 1; i < last; ++i) {
       const RowSet& set = problem.sets()[i];
       const int r = static_cast<int>(i);
-      const double xi = velocity(problem, i);
-      if (set.kind == SetKind::half_line) {
-        impulse_[i] =
-            clamp_step(impulse_[i], problem.w(r, r), xi, 0.0, std::numeric_limits<double>::infinity());
-      } else if (set.kind == SetKind::interval) {
-        impulse_[i] = clamp_step(impulse_[i], problem.w(r, r), xi, set.lower, set.upper);
-      } else {
+      if (set.kind != SetKind::proportional) {
+        const double xi = velocity(problem, i);
         const double limit = set.coefficient * std::max(impulse_[static_cast<std::size_t>(set.bound)], 0.0);
         if (set.kind == SetKind::bounded_interval) {
           impulse_[i] = clamp_step(impulse_[i], problem.w(r, r), xi, -limit, limit);
@@ -154,6 +179,9 @@ SolverAnswer ProjectionSolver::solve(const ContactProblem& problem, std::span<do
   for (std::size_t i = 0; i < n; ++i) {
     const RowSet& set = problem.sets()[i];
     if (set.kind == SetKind::interval) impulse_[i] = std::clamp(0.0, set.lower, set.upper);
+    if (set.kind == SetKind::proportional) {
+      impulse_[i] = set.coefficient * impulse_[static_cast<std::size_t>(set.bound)];
+    }
   }
   std::copy(impulse_.begin(), impulse_.end(), impulse.begin());
 

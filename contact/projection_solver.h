@@ -16,7 +16,8 @@ namespace carom {
 inline constexpr int projection_sweeps = 2000;
 
 /// Projected Gauss-Seidel: each sweep visits the groups in order and solves each one exactly for its own
-/// impulses (a planar contact by its modes, a lone row by clamping, a disc by its secular equation,
+/// impulses (a planar contact by its modes, a lone row and a contact that slips in a known direction by
+/// clamping, a disc by its secular equation,
 /// alternating with its normal row), the others held. After 10, 30, 100, ... sweeps Newton's method on the
 /// modes reached so far tries to finish (newton_polish.h). Converges for most problems met in practice,
 /// proves nothing: solved (residual below 1e-12) or not_solved, with the best impulses found.
@@ -29,6 +30,7 @@ private:
   void visit(const ContactProblem& problem, const RowGroup& group);
   void visit_planar(const ContactProblem& problem, std::size_t row);
   void visit_rows(const ContactProblem& problem, const RowGroup& group);
+  void visit_leading(const ContactProblem& problem, const RowGroup& group);
   [[nodiscard]] double velocity(const ContactProblem& problem, std::size_t row) const;
 
   std::vector<double> impulse_, trial_;

@@ -57,6 +57,9 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
         ++i;
         break;
       }
+      case SetKind::proportional:
+        worst = larger(worst, impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
+        break;
     }
   }
   return worst;
@@ -66,7 +69,8 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
 
 Residual residual(const ContactProblem& problem, std::span<const double> impulse,
                   std::span<const double> xi) {
-  if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line) {
+  if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
+      problem.sets()[1].kind == SetKind::bounded_interval) {
     const auto b = problem.vector();
     return {planar_residual({problem.w(0, 0) + problem.w(1, 1), b[0], b[1], problem.sets()[1].coefficient,
                              impulse[0], impulse[1], xi[0], xi[1]}),

@@ -22,7 +22,8 @@ struct Residual {
 };
 
 /// max over groups i of  |P - proj_C(P - rho xi)|_inf / P*,  rho = 1 / trace W_ii,
-/// with C = [0, inf), [lower, upper], [-mu P_n, mu P_n] or the disc of that radius (P_n < 0 counts as 0), and
+/// with C = [0, inf), [lower, upper], [-mu P_n, mu P_n] or the disc of that radius (P_n < 0 counts as 0), the
+/// point coefficient * P_n of a proportional row whatever its xi, and
 /// P* = max(|P|, |b| / trace W_ii) [N s] over the whole problem. 0 where P* = 0.
 ///
 /// `impulse` [N s] and `xi` = W P + b [m/s] have size rows(); the problem is grouped. An immovable group

@@ -91,9 +91,10 @@ struct CertifiedImpulse {
 /// problem has one group, of a normal and a friction row.
 [[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const ContactProblem& problem);
 
-/// Exact solver of problems with one contact: one lone row; one normal row with one friction row; a normal
-/// row with a disc where the normal does not couple with an isotropic tangential block (particle, sphere).
-/// Everything else is not_solved ("not applicable"). Allocates nothing.
+/// Exact solver of problems with one contact: one lone row; one normal row with one friction row, of known
+/// direction (sliding_contact.h) or not; a normal row with a disc where the normal does not couple with an
+/// isotropic tangential block (particle, sphere). Everything else is not_solved ("not applicable"). Allocates
+/// nothing.
 class CAROM_API SingleContactSolver final : public ContactSolver {
 public:
   [[nodiscard]] std::string_view name() const override { return "single contact"; }

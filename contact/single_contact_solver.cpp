@@ -1,6 +1,7 @@
 // Problem: recognise a problem with one contact and hand it to its closed form.
 
 #include <carom/contact/single_contact.h>
+#include <carom/contact/sliding_contact.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,12 @@ constexpr SolverAnswer not_applicable{Outcome::not_solved, false, 0, "not applic
 
 SolverAnswer solve_planar(const ContactProblem& problem, std::span<double> impulse) {
   const auto b = problem.vector();
-  const PlanarContact contact{
-      problem.w(0, 0), problem.w(0, 1), problem.w(1, 1), b[0], b[1], problem.sets()[1].coefficient};
-  const PlanarSolutions found = solve_planar_contact(contact);
+  const double w_nn = problem.w(0, 0), w_nt = problem.w(0, 1), w_tt = problem.w(1, 1);
+  const RowSet& friction = problem.sets()[1];
+  const PlanarSolutions found =
+      friction.kind == SetKind::proportional
+          ? solve_sliding_contact({w_nn, w_nt, w_tt, b[0], b[1], friction.coefficient})
+          : solve_planar_contact({w_nn, w_nt, w_tt, b[0], b[1], friction.coefficient});
   impulse[0] = found.list[0].normal;
   impulse[1] = found.list[0].tangential;
   return {found.outcome, found.degenerate, 1, found.count == 0 ? "no mode is possible" : std::string_view{}};

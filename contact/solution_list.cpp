@@ -36,17 +36,19 @@ bool SolutionList::build_faces(const ContactProblem& problem) {
     if (group.size > 2) return false;
     if (group.size == 2) {
       const RowSet& friction = problem.sets()[static_cast<std::size_t>(group.first) + 1];
-      if (own.kind != SetKind::half_line || friction.kind != SetKind::bounded_interval) return false;
+      const bool slides = friction.kind == SetKind::proportional;
+      if (own.kind != SetKind::half_line) return false;
+      if (!slides && friction.kind != SetKind::bounded_interval) return false;
       const double mu = friction.coefficient;
       faces.push_back({});  // open
-      if (mu > 0.0) {
+      if (mu > 0.0 && !slides) {
         faces.push_back({0.0, 2, 0.0, 2, true});   // stick
         faces.push_back({0.0, 1, -mu, 1, true});   // slip+
         faces.push_back({0.0, 1, mu, 1, true});    // slip-
         faces.push_back({0.0, 1, -mu, 2, false});  // friction exhausted without slip
         faces.push_back({0.0, 1, mu, 2, false});
       } else {
-        faces.push_back({0.0, 1, 0.0, 1, true});
+        faces.push_back({0.0, 1, mu, 1, true});  // slides, or has no friction
       }
       faces.push_back({0.0, 0, 0.0, 1, false});  // touching without impulse
       continue;
@@ -104,6 +106,9 @@ void SolutionList::consider(const ContactProblem& problem) {
       if (std::abs(trial_[i]) > limit && std::abs(trial_[i]) < limit + tiny) {
         trial_[i] = std::copysign(limit, trial_[i]);
       }
+    }
+    if (set.kind == SetKind::proportional) {
+      trial_[i] = set.coefficient * trial_[static_cast<std::size_t>(set.bound)];
     }
   }
   problem.velocities(trial_, xi_);

@@ -28,14 +28,21 @@ inline constexpr double listed_distance = 1e-9;
 /// Without any candidate of a residual up to this, "no solution" is taken as proved.
 inline constexpr double refuted_residual = 1e-7;
 
-/// Lists the solutions of a problem with up to three groups of at most one friction row each.
+/// Lists the solutions of a problem with up to three groups of at most one friction row each: contacts that
+/// may stick or slip, contacts that slip in a known direction (proportional rows), lone rows, in any mixture.
 ///
-/// Every combination of modes (open, stick, slip+, slip- for a contact; at a bound or moving for a lone row)
-/// is one linear system; where it is regular it gives a candidate, and the shared residual decides. Where a
-/// system is singular but consistent, its solutions form a polyhedron in the cone of impulses; its extreme
-/// points are the solutions of the same systems with equations of the mode's boundary added (touching:
-/// P = 0 and xi_n = 0; friction exhausted: |P_t| = mu P_n and xi_t = 0), and its unbounded directions are
-/// null vectors of these. Solutions are counted in (P, gamma^+).
+/// Every combination of modes (open, stick, slip+, slip- for a contact; open or sliding for one that slips in
+/// a known direction; at a bound or moving for a lone row) is one linear system; where it is regular it gives
+/// a candidate, and the shared residual decides. Where a system is singular but consistent, its solutions
+/// form a polyhedron in the cone of impulses; its extreme points are the solutions of the same systems with
+/// equations of the mode's boundary added (touching: P = 0 and xi_n = 0; friction exhausted: |P_t| = mu P_n
+/// and xi_t = 0), and its unbounded directions are null vectors of these. Solutions are counted in (P,
+/// gamma^+).
+///
+/// Limits: solutions nearer than listed_distance are one; a system whose pivots differ by more than 1e11
+/// counts as singular, so that a solution with impulses that large against the others (W_nn - s mu W_nt
+/// almost zero) can be missed in a problem of several contacts; sets of solutions are told by extreme points
+/// and unbounded(), and rays that are solutions are not listed.
 class CAROM_API SolutionList {
 public:
   /// Enumerates. Outcomes: solved (one), several_solutions (several end velocities), forces_not_unique

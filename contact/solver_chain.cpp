@@ -270,7 +270,7 @@ ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double
   // One report, built where the caller reads it: copying it would cost as much as solving a contact.
   ContactReport report;
   if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
-      work.solve_regular(problem, impulse, report)) {
+      problem.sets()[1].kind == SetKind::bounded_interval && work.solve_regular(problem, impulse, report)) {
     return report;
   }
   if (!work.begin(problem, impulse, report)) return report;

@@ -48,8 +48,10 @@ struct ContactReport {
 
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
 /// by principal pivoting (Johansson 1999), then Lemke, then projection, and up to three by enumeration of
-/// the modes when all else failed. Deterministic; keeps nothing between calls but statistics and memory.
-/// Allocates only while problems grow. Not for use by two threads at once.
+/// the modes when all else failed. Of several solutions of one contact the one with the smallest normal
+/// impulse; for several contacts it does not look for others (SolutionList does). Deterministic; keeps
+/// nothing between calls but statistics and memory. Allocates only while problems grow. Not for use by two
+/// threads at once.
 class CAROM_API SolverChain {
 public:
   SolverChain();
