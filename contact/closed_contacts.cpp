@@ -23,13 +23,7 @@ void ClosedContacts::locate(const ContactFinder& finder, const StateView& state,
                             const Evaluation& evaluation) {
   for (ClosedContact& contact : contacts_) {
     finder.contact(contact.pair, state, evaluation, contact.at);
-    if (contact.slippery) {
-      contact.friction = 0.0;
-    } else if (contact.sticks()) {
-      contact.friction = contact.at.law.friction;
-    } else {
-      contact.friction = contact.at.law.friction;
-    }
+    contact.friction = contact.slippery ? 0.0 : contact.at.law.friction;
   }
 }
 

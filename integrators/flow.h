@@ -33,7 +33,8 @@ public:
 enum class FlowMethod : std::uint8_t {
   explicit_runge_kutta,  ///< SUNDIALS' ARKODE, order 5: cheap restarts, for motion that is not stiff
   adams,                 ///< SUNDIALS' CVODE, Adams-Moulton with fixed point: long smooth phases
-  bdf                    ///< SUNDIALS' CVODE, BDF with Newton's method: stiff couplings
+  bdf,                   ///< SUNDIALS' CVODE, BDF with Newton's method: stiff couplings
+  one_step               ///< our own explicit Runge-Kutta, order 5: the least overhead, for small islands
 };
 
 /// Counts since the flow was made.

@@ -13,9 +13,8 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double never = std::numeric_limits<double>::infinity();
 
-// Sliding velocities and forces this small against those around them are zero: answers of contact problems are
-// certified to 1e-12, and what is smaller starts phases that end at once.
-constexpr double slip_rounding = 1e-12, force_rounding = 1e-11;
+// Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
+constexpr double force_rounding = 1e-11;
 
 }  // namespace
 
@@ -83,13 +82,13 @@ void IslandDriver::advance(double target, DriverNews& news) {
       return;
     }
     if (!pending_) take_step();
-    const double until = next_.guard == Guard::none ? flow_->end() : next_.time;
+    const double until = next_.guard == Guard::nothing ? flow_->end() : next_.time;
     if (target < until) {
       flow_->land(target, seen_);
       look(seen_);
       return;
     }
-    if (next_.guard == Guard::none) {
+    if (next_.guard == Guard::nothing) {
       accept_step(news);
     } else {
       go_to_event(news);
@@ -166,7 +165,7 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
 IslandDriver::Found IslandDriver::find_event() {
   const double begin = flow_->begin(), length = flow_->end() - begin;
   double first = never;
-  Found found{flow_->end(), Guard::none, 0};
+  Found found{flow_->end(), Guard::nothing, 0};
   const auto take = [&](double tau, Guard guard, std::size_t which) {
     if (!(tau < first)) return;
     first = tau;
@@ -185,7 +184,7 @@ IslandDriver::Found IslandDriver::find_event() {
   const auto& closed = motion_.closed().list();
   for (std::size_t i = 0; i < closed.size(); ++i) {
     if (closed[i].sticks() || closed[i].slippery) continue;
-    const double noise = slip_rounding * velocity_scale_;
+    const double noise = speed_noise();
     const auto slip = StepPolynomial::cubic(scaled(start_.slips[i]), scaled(end_.slips[i])).raised(noise);
     take(slip.first_fall(), Guard::slip, i);
   }
@@ -195,7 +194,7 @@ IslandDriver::Found IslandDriver::find_event() {
     const double noise = std::max(start_.noises[i], end_.noises[i]);
     take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::force, i);
   }
-  return found.guard == Guard::none ? found : locate(found);
+  return found.guard == Guard::nothing ? found : locate(found);
 }
 
 /// The event itself, by steps that end on it.
@@ -225,7 +224,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       const ClosedContact& closed = motion_.closed().list()[rough.which];
       value = closed.slip_sign() * closed.at.velocity(1, state.v);
       rate = closed.slip_sign() * closed.at.acceleration(1, work_->motion.acceleration.data());
-      noise = 16.0 * epsilon * velocity_scale_;
+      noise = speed_noise() / 16.0;
     } else {
       motion_.closed().margins(work_->margins);
       value = work_->margins[rough.which].margin;
@@ -271,6 +270,7 @@ void IslandDriver::go_to_event(DriverNews& news) {
   pending_ = in_phase_ = false;
   step_ = std::min(flow_->next_step(), options_.longest_step);
   motion_.evaluate(time_, y_.data(), true);
+  count_event();
   breaking_.clear();
   lifting_.clear();
   const auto& closed = motion_.closed().list();

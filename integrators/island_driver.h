@@ -70,10 +70,10 @@ public:
 
 private:
   // What is found: nothing, an end of a gap, of a force, of slipping; or that the flow is to start anew.
-  enum class Guard : std::uint8_t { none, gap, force, slip, restart };
+  enum class Guard : std::uint8_t { nothing, gap, force, slip, restart };
   struct Found {
     double time;
-    Guard guard = Guard::none;
+    Guard guard = Guard::nothing;
     std::size_t which = 0;  // pair; first contact of a margin; closed contact
   };
   // What is watched over a step: values at its start and at its end, and between them where asked.
@@ -119,7 +119,7 @@ private:
   EventRecord& tell(EventKind kind, const Contact& contact, DriverNews& news);
   [[nodiscard]] bool touches(std::size_t pair) const;
   [[nodiscard]] double speed_noise() const;
-  void count_event(const ContactKey& contact);
+  void count_event();
   void remember_impact(const ContactKey& contact);
   [[nodiscard]] double accumulation_time() const;
 

@@ -17,7 +17,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double gap_rounding = 256.0 * epsilon;
 
 // Velocities this small against those before an impact are zero: answers of contact problems are certified to
-// 1e-12.
+// 1e-12. So are those well below the tolerance, which would start phases that end at once.
 constexpr double speed_rounding = 1e-12;
 
 // Impacts of one instant: each takes energy out or hands it on, so that more than this do not happen but by
@@ -43,7 +43,9 @@ void IslandDriver::set_scales() {
   }
 }
 
-double IslandDriver::speed_noise() const { return speed_rounding * velocity_scale_; }
+double IslandDriver::speed_noise() const {
+  return speed_rounding * velocity_scale_ + 0.1 * options_.absolute_tolerance;
+}
 
 /// Brings the contacts of all pairs to the state in the workspace.
 void IslandDriver::locate_contacts() {
@@ -215,7 +217,6 @@ void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& 
     event.solver = cluster.report().solver;
     if (captured) event.accumulation_time = accumulation_time();
     if (event.impulse[0] > 0.0) remember_impact(contact.key);
-    count_event(contact.key);
   }
   constexpr double rounding = 1e-13;  // of the sum of works
   if (!(gain > rounding * scale)) return;
@@ -312,7 +313,6 @@ void IslandDriver::tell_choice(EventKind kind, DriverNews& news) {
     event.outcome = report.outcome;
     event.residual = report.residual;
     event.solver = report.solver;
-    count_event(candidate.at.key);
   }
 }
 
@@ -388,7 +388,6 @@ void IslandDriver::tell_changes(DriverNews& news) {
     }
     event.energy_before = event.energy_after = motion_.kinetic_energy(contact.body);
     event.mode = mode;
-    count_event(contact.key);
   };
   for (const ClosedContact& contact : before_) {
     if (find(now, contact.pair) == now.end()) change(EventKind::lift_off, contact.at, ContactMode::open);
@@ -414,12 +413,21 @@ EventRecord& IslandDriver::tell(EventKind kind, const Contact& contact, DriverNe
   return event;
 }
 
-void IslandDriver::count_event(const ContactKey& contact) {
+void IslandDriver::count_event() {
   constexpr std::int64_t window = 1000;
   if (++counted_ < window) return;
   const double allowed = static_cast<double>(window) / options_.event_limit;
   if (time_ - window_start_ < allowed) {
-    fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)", {finder_->name(contact)});
+    const std::size_t pair =
+        next_.guard == Guard::gap ? next_.which
+        : motion_.closed().list().empty()
+            ? 0
+            : static_cast<std::size_t>(std::find(motion_.pairs().begin(), motion_.pairs().end(),
+                                                 motion_.closed().list().front().pair) -
+                                       motion_.pairs().begin());
+    locate_contacts();
+    fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)",
+         {finder_->name(work_->contacts[pair].key)});
   }
   counted_ = 0;
   window_start_ = time_;

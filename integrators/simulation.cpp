@@ -1,4 +1,7 @@
+#include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
+#include <carom/integrators/event_driver.h>
+#include <carom/integrators/mode_takeover.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/simulation.h>
 #include <carom/integrators/step_controller.h>
@@ -9,6 +12,7 @@
 #include <iostream>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace carom {
@@ -31,16 +35,28 @@ StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
 }  // namespace
 
 struct Simulation::Impl {
+  // The machines of the mode, over one assembly.
+  struct Machines {
+    Machines(const Assembly& assembly, const Mode& mode) {
+      if (const auto* options = std::get_if<TimeStepping>(&mode)) {
+        stepper = std::make_unique<TimeStepper>(assembly, *options);
+        controller = std::make_unique<StepController>(assembly, *options);
+      } else {
+        driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode));
+      }
+    }
+    [[nodiscard]] const ContactFinder& finder() const { return stepper ? stepper->finder() : driver->finder(); }
+
+    std::unique_ptr<TimeStepper> stepper;  // null in the event-driven mode
+    std::unique_ptr<StepController> controller;
+    std::unique_ptr<EventDriver> driver;  // null in time stepping
+  };
   // Everything made from the model, so that an edit can replace it as a whole.
   struct Model {
-    Model(System system, const Mode& mode)
-        : assembly(std::move(system)),
-          stepper(assembly, std::get<TimeStepping>(mode)),
-          controller(assembly, std::get<TimeStepping>(mode)) {}
+    Model(System system, const Mode& mode) : assembly(std::move(system)), machines(assembly, mode) {}
 
     Assembly assembly;
-    TimeStepper stepper;
-    StepController controller;
+    Machines machines;
   };
 
   Impl(System system, Mode chosen)
@@ -67,6 +83,12 @@ struct Simulation::Impl {
     companion.rounding.assign(state.v.size(), 0.0);
     companion.history.known = 0;
     companion.loads.valid = false;
+    if (model->machines.driver) model->machines.driver->forget();
+  }
+  /// Distance of the times of a grid on which step() stops [s].
+  [[nodiscard]] double grid() const {
+    const auto* options = std::get_if<TimeStepping>(&mode);
+    return options ? options->step : std::get<EventDriven>(mode).interval;
   }
   void restart_grid() {
     companion.grid_start = state.time;
@@ -89,6 +111,7 @@ struct Simulation::Impl {
   State state;
   Companion companion;
   StepReport report;
+  std::vector<EventRecord> events;
   std::vector<Action> actions;  // of the periodic events, as Companion::rhythms
   std::vector<Observer> observers;
   Log log;
@@ -98,7 +121,7 @@ struct Simulation::Impl {
 
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
 void Simulation::Impl::step(Simulation& simulation, double limit) {
-  const double close = snap * std::get<TimeStepping>(mode).step;
+  const double close = snap * grid();
   if (limit - state.time <= close) {
     state.time = limit;
     return;
@@ -124,19 +147,27 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
 }
 
 void Simulation::Impl::advance(double limit) {
-  if (std::get<TimeStepping>(mode).control) {
-    model->controller.step(model->stepper, state, companion, limit, report);
+  Machines& machines = model->machines;
+  if (machines.controller && std::get<TimeStepping>(mode).control) {
+    machines.controller->step(*machines.stepper, state, companion, limit, report);
     return;
   }
-  const double full = std::get<TimeStepping>(mode).step;
+  const auto advance_to = [&](double step, double end) {
+    if (machines.stepper) {
+      machines.stepper->step(state, companion, step, end, report);
+    } else {
+      machines.driver->advance(state, companion, end, report, events);
+    }
+  };
+  const double full = grid();
   const double grid_end = companion.grid_start + static_cast<double>(companion.grid_steps + 1) * full;
   if (limit < grid_end - snap * full) {
     // Cut short: the grid starts anew from there.
-    model->stepper.step(state, companion, limit - state.time, limit, report);
+    advance_to(limit - state.time, limit);
     restart_grid();
   } else {
     const bool snapped = limit <= grid_end + snap * full;
-    model->stepper.step(state, companion, full, snapped ? limit : grid_end, report);
+    advance_to(full, snapped ? limit : grid_end);
     ++companion.grid_steps;
   }
 }
@@ -149,7 +180,7 @@ void Simulation::Impl::write_news() {
   }
   for (const ContactRecord& contact : report.contacts) {
     if (contact.outcome != Outcome::several_solutions) continue;
-    log.write(LogLevel::warning, when + "contact of " + model->stepper.finder().name(contact.key) +
+    log.write(LogLevel::warning, when + "contact of " + model->machines.finder().name(contact.key) +
                                      " has several solutions; the one with the smallest impulse was taken");
   }
 }
@@ -246,10 +277,14 @@ void Simulation::set_state(const State& state) {
 
 void Simulation::switch_to(Mode mode) {
   Impl& self = *impl_;
-  check_options(std::get<TimeStepping>(mode));
+  const Assembly& assembly = self.model->assembly;
+  Impl::Machines machines(assembly, mode);
+  if (machines.driver && self.model->machines.stepper) {
+    take_over(assembly, machines.driver->finder(), self.state, self.companion, self.report, self.events);
+  }
+  if (machines.stepper && self.model->machines.driver) self.forget_history();
   self.mode = std::move(mode);
-  self.model->stepper = TimeStepper(self.model->assembly, std::get<TimeStepping>(self.mode));
-  self.model->controller = StepController(self.model->assembly, std::get<TimeStepping>(self.mode));
+  self.model->machines = std::move(machines);
   self.companion.next_step = 0.0;
   self.restart_grid();
 }
@@ -264,7 +299,18 @@ const Statistics& Simulation::statistics() const { return impl_->companion.stati
 const ChainStatistics& Simulation::contact_statistics() const { return impl_->companion.contact_statistics; }
 const Companion& Simulation::companion() const { return impl_->companion; }
 const Mode& Simulation::mode() const { return impl_->mode; }
-std::string Simulation::name(const ContactKey& key) const { return impl_->model->stepper.finder().name(key); }
+const std::vector<EventRecord>& Simulation::events() const { return impl_->events; }
+void Simulation::clear_events() { impl_->events.clear(); }
+
+void Simulation::write_events(const std::string& path) const {
+  std::ostringstream text;
+  carom::write_events(text, impl_->events, [this](const EventRecord& event) {
+    return event.element.valid() ? system().name(event.element) : name(event.contact);
+  });
+  write_file(path, text.str(), "events");
+}
+
+std::string Simulation::name(const ContactKey& key) const { return impl_->model->machines.finder().name(key); }
 Log& Simulation::log() { return impl_->log; }
 void Simulation::show_progress(bool on) { impl_->progress = on; }
 
@@ -274,6 +320,7 @@ void Simulation::save(const std::string& path) const {
 
 void Simulation::load(const std::string& path) {
   load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
+  if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
 }
 
 }  // namespace carom

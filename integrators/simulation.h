@@ -9,6 +9,8 @@
 #include <carom/core/state.h>
 #include <carom/core/system.h>
 #include <carom/integrators/companion.h>
+#include <carom/integrators/event_driven.h>
+#include <carom/integrators/event_log.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/time_stepping.h>
 
@@ -21,7 +23,7 @@
 namespace carom {
 
 /// The modes of integration, as values.
-using Mode = std::variant<TimeStepping>;
+using Mode = std::variant<TimeStepping, EventDriven>;
 
 /// Takes a copy of a system and runs it. Every advance works on a trial and commits it when accepted: after
 /// an error the simulation stands at the last good state and can be saved, inspected and continued.
@@ -37,8 +39,8 @@ public:
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Makes one step of the mode's length (shorter where a periodic event is due before its end).
-  /// Throws SolverError; the simulation then stands where it stood.
+  /// Makes one step of the mode's length (EventDriven: of its interval), shorter where a periodic event is due
+  /// before its end. Throws SolverError; the simulation then stands where it stood.
   const StepReport& step();
   /// Runs until exactly `time` [s]. Throws ModelError for a time that is not finite or in the past,
   /// SolverError as step(): the simulation then stands at the last good state.
@@ -56,7 +58,11 @@ public:
   /// Replaces the state (time included). Throws ModelError naming the body for numbers that are not finite.
   /// Energy brought in or taken out is booked as `intervention`.
   void set_state(const State& state);
-  /// Goes on in another mode, or with other options, from the same state.
+  /// Goes on in another mode, or with other options, from the same state. From time stepping to the
+  /// event-driven mode, bodies may have sunk into obstacles: contacts that approach there are resolved by an
+  /// impact, then bodies are moved out by the smallest displacement in the sense of their masses; energies
+  /// are booked as `mode_switch`, the largest displacement is told by report().projected. Throws as the
+  /// constructor, and SolverError where bodies cannot be moved out; the mode then stays as it is.
   void switch_to(Mode mode);
 
   [[nodiscard]] const System& system() const;          ///< the model
@@ -68,6 +74,12 @@ public:
   [[nodiscard]] const Statistics& statistics() const;  ///< counts since the start
   /// Counts of the contact solvers since the start, over all sweeps of accepted steps.
   [[nodiscard]] const ChainStatistics& contact_statistics() const;
+  /// Events of the event-driven mode so far, in time (EventDriven::record_events).
+  [[nodiscard]] const std::vector<EventRecord>& events() const;
+  /// Forgets these.
+  void clear_events();
+  /// Writes these as CSV (event_log.h). Throws FileError.
+  void write_events(const std::string& path) const;
   [[nodiscard]] const Companion& companion() const;  ///< all that can influence a later step
   [[nodiscard]] const Mode& mode() const;            ///< the mode and its options
 
@@ -81,7 +93,8 @@ public:
 
   /// Saves state and companion with a fingerprint of the model. Throws FileError.
   void save(const std::string& path) const;
-  /// Loads what save() wrote; a time-stepping run then continues bit for bit. Periodic events must have been
+  /// Loads what save() wrote; a time-stepping run then continues bit for bit, an event-driven one starts its
+  /// integrators anew and continues within their tolerance. Periodic events must have been
   /// set up as they were. Throws FileError for a file that cannot be read or is of another model; the
   /// simulation then stands where it stood.
   void load(const std::string& path);

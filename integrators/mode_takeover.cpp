@@ -1,0 +1,100 @@
+// Problem: a state of time stepping that the event-driven mode accepts.
+
+#include <carom/contact/contact_cluster.h>
+#include <carom/integrators/gap_projection.h>
+#include <carom/integrators/mode_takeover.h>
+
+#include <algorithm>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+StoredEnergies stored_energies(const Assembly& assembly, const State& state, Evaluation& evaluation) {
+  StoredEnergies stored;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    add_stored_energies(assembly, island, state.view(), evaluation, stored);
+  }
+  return stored;
+}
+
+[[noreturn]] void fail(const ContactFinder& finder, const Contact& contact, double time, const char* what) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(finder.name(contact.key));
+  const std::string message = "change to the event-driven mode at t = " + to_text(time) + " s: " + what +
+                              " of " + failure.parts.front();
+  throw SolverError(message, std::move(failure));
+}
+
+}  // namespace
+
+void take_over(const Assembly& assembly, const ContactFinder& finder, State& state, Companion& companion,
+               StepReport& report, std::vector<EventRecord>& events) {
+  State trial = state;
+  Evaluation evaluation = make_evaluation(assembly);
+  SolverChain chain;
+  ContactCluster cluster;
+  GapProjection projection;
+  std::vector<Contact> contacts;
+  std::vector<EventRecord> told;
+  double shift = 0.0;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, trial.view(), evaluation);
+    contacts.clear();
+    finder.find(island, trial.view(), evaluation, 0.0, contacts);
+    for (std::size_t first = 0; first < contacts.size();) {
+      std::size_t last = first + 1;
+      while (last < contacts.size() && contacts[last].body == contacts[first].body) ++last;
+      const std::span<const Contact> of_body(contacts.data() + first, last - first);
+      first = last;
+      const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Contact& contact) {
+        return contact.velocity(0, trial.v.data()) < 0.0;
+      });
+      if (!approaches) continue;
+      cluster.build(assembly, of_body, trial.v.data());
+      cluster.set_free_velocity(trial.v.data());
+      if (!cluster.solve(chain).usable()) fail(finder, of_body.front(), state.time, "no impact is found");
+      cluster.apply(trial.v.data());
+      for (std::size_t c = 0; c < of_body.size(); ++c) {
+        EventRecord& event = told.emplace_back();
+        event.time = state.time;
+        event.kind = EventKind::mode_switch;
+        event.contact = of_body[c].key;
+        event.body = assembly.layout()->id(of_body[c].body);
+        event.obstacle = {of_body[c].key.against.serial, assembly.system().token()};
+        for (int row = 0; row < of_body[c].rows; ++row) {
+          const auto at = static_cast<std::size_t>(row);
+          const auto place = static_cast<std::size_t>(cluster.first_row(c)) + at;
+          event.velocity_before[at] = cluster.before()[place];
+          event.velocity_after[at] = of_body[c].velocity(row, trial.v.data());
+          event.impulse[at] = cluster.impulses()[place];
+        }
+        event.mode = cluster.modes()[c];
+        event.outcome = cluster.report().outcome;
+        event.residual = cluster.report().residual;
+        event.solver = cluster.report().solver;
+      }
+    }
+    const GapProjection::Result result =
+        projection.project(assembly, island, finder, contacts, chain, trial, evaluation);
+    if (result.left != nullptr) fail(finder, *result.left, state.time, "no way is found to open the gap");
+    shift = std::max(shift, result.shift);
+  }
+  const StoredEnergies stored = stored_energies(assembly, trial, evaluation);
+  EnergyFlows flows;
+  flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
+  companion.ledger.book(flows, stored);
+  companion.contact_statistics += chain.statistics();
+  companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
+      static_cast<std::int64_t>(told.size());
+  state = std::move(trial);
+  report = {};
+  report.time = state.time;
+  report.projected = shift;
+  events.insert(events.end(), told.begin(), told.end());
+}
+
+}  // namespace carom

@@ -1,0 +1,148 @@
+// Problem: dy/dt = f(t, y) for a handful of unknowns, where restarts are many and the cost is overhead: the
+// pair of orders 5 and 4 by Dormand and Prince (1980), the last stage being the first of the next step.
+
+#include <carom/core/errors.h>
+#include <carom/integrators/one_step_flow.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr std::size_t stages = 7;
+constexpr std::array<double, stages> c{0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
+constexpr std::array<std::array<double, stages>, stages> a{{
+    {},
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+}};
+// Of the difference between the two orders.
+constexpr std::array<double, stages> e{71.0 / 57600,      0.0,           -71.0 / 16695, 71.0 / 1920,
+                                       -17253.0 / 339200, 22.0 / 525,    -1.0 / 40};
+
+// The next step aims at this part of the tolerance, and is never longer or shorter by more than these factors.
+constexpr double safety = 0.9, most_growth = 10.0, most_shrinking = 0.2;
+
+}  // namespace
+
+OneStepFlow::OneStepFlow(FlowProblem& problem, double relative_tolerance)
+    : problem_(&problem), relative_tolerance_(relative_tolerance) {
+  const std::size_t n = problem.size();
+  for (std::vector<double>* array : {&start_, &end_, &trial_}) array->assign(n, 0.0);
+  slopes_.assign(n * stages, 0.0);
+  landing_.assign(n * stages, 0.0);
+}
+
+void OneStepFlow::rates(double time, const double* y, double* out) {
+  ++counts_.evaluations;
+  problem_->rates(time, y, out);
+}
+
+void OneStepFlow::start(double time, std::span<const double> y, double first_step) {
+  ++counts_.restarts;
+  begin_ = time_ = time;
+  std::copy(y.begin(), y.end(), end_.begin());
+  std::copy(y.begin(), y.end(), start_.begin());
+  next_step_ = first_step;
+  known_ = false;
+}
+
+void OneStepFlow::correct(std::span<const double> y) {
+  std::copy(y.begin(), y.end(), end_.begin());
+  known_ = false;
+}
+
+/// Stages from `from` over `length`, the first of which is known; y at the end goes to `to`.
+void OneStepFlow::make_step(double time, double length, const std::vector<double>& from,
+                            std::vector<double>& slopes, std::span<double> to) {
+  const std::size_t n = from.size();
+  for (std::size_t stage = 1; stage < stages; ++stage) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < stage; ++k) sum += a[stage][k] * slopes[k * n + i];
+      to[i] = from[i] + length * sum;
+    }
+    if (stage + 1 < stages) rates(time + c[stage] * length, to.data(), slopes.data() + stage * n);
+  }
+}
+
+/// Largest estimated error of the trial against the tolerance.
+double OneStepFlow::error(double length) const {
+  const std::size_t n = end_.size();
+  const auto tolerances = problem_->absolute_tolerances();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < stages; ++k) sum += e[k] * slopes_[k * n + i];
+    const double allowed = tolerances[i] + relative_tolerance_ * std::max(std::abs(end_[i]), std::abs(trial_[i]));
+    const double part = std::abs(length * sum) / allowed;
+    if (!(part <= worst)) worst = part;  // a NaN is kept
+  }
+  return worst;
+}
+
+/// So long that a change of first order is a hundredth of the unknowns, where nothing better is known.
+double OneStepFlow::first_guess() const {
+  const auto tolerances = problem_->absolute_tolerances();
+  double size = 0.0, rate = 0.0;
+  for (std::size_t i = 0; i < end_.size(); ++i) {
+    const double weight = tolerances[i] + relative_tolerance_ * std::abs(end_[i]);
+    size = std::max(size, std::abs(end_[i]) / weight);
+    rate = std::max(rate, std::abs(slopes_[i]) / weight);
+  }
+  return rate > 0.0 && size > 0.0 ? 0.01 * size / rate : 1e-3;
+}
+
+void OneStepFlow::advance(double longest) {
+  const std::size_t n = end_.size();
+  if (known_) {
+    std::copy_n(slopes_.end() - static_cast<std::ptrdiff_t>(n), n, slopes_.begin());
+  } else {
+    rates(time_, end_.data(), slopes_.data());
+  }
+  double length = std::min(next_step_ > 0.0 ? next_step_ : first_guess(), longest);
+  bool rejected = false;
+  for (;;) {
+    if (!(length > 16.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(time_)))) {
+      throw SolverError("steps become too short for the tolerance, or rates are not finite", {});
+    }
+    make_step(time_, length, end_, slopes_, trial_);
+    rates(time_ + length, trial_.data(), slopes_.data() + (stages - 1) * n);
+    const double worst = error(length);
+    const double wanted = worst > 0.0 ? safety * std::pow(worst, -0.2) : most_growth;
+    if (worst <= 1.0) {
+      start_.swap(end_);
+      end_.swap(trial_);
+      begin_ = time_;
+      time_ += length;
+      next_step_ = length * std::clamp(wanted, most_shrinking, rejected ? 1.0 : most_growth);
+      known_ = true;
+      ++counts_.steps;
+      return;
+    }
+    rejected = true;
+    length *= std::isfinite(worst) ? std::clamp(wanted, most_shrinking, 1.0) : most_shrinking;
+  }
+}
+
+void OneStepFlow::sample(double time, std::span<double> y) { land(time, y); }
+
+void OneStepFlow::land(double time, std::span<double> y) {
+  if (time >= time_) {
+    std::copy(end_.begin(), end_.end(), y.begin());
+    return;
+  }
+  const std::size_t n = end_.size();
+  std::copy_n(slopes_.begin(), n, landing_.begin());
+  make_step(begin_, time - begin_, start_, landing_, y);
+}
+
+}  // namespace carom
