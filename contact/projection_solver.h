@@ -17,10 +17,10 @@ inline constexpr int projection_sweeps = 2000;
 
 /// Projected Gauss-Seidel: each sweep visits the groups in order and solves each one exactly for its own
 /// impulses (a planar contact by its modes, a lone row and a contact that slips in a known direction by
-/// clamping, a disc by its secular equation,
-/// alternating with its normal row), the others held. After 10, 30, 100, ... sweeps Newton's method on the
-/// modes reached so far tries to finish (newton_polish.h). Converges for most problems met in practice,
-/// proves nothing: solved (residual below 1e-12) or not_solved, with the best impulses found.
+/// clamping, a disc by its secular equation, alternating with its normal row), the others held. After 10, 30,
+/// 100, ... sweeps Newton's method on the modes reached so far tries to finish (newton_polish.h). Converges
+/// for most problems met in practice, proves nothing: solved (residual below 1e-12) or not_solved, with the
+/// best impulses found.
 class CAROM_API ProjectionSolver final : public ContactSolver {
 public:
   [[nodiscard]] std::string_view name() const override { return "projection"; }

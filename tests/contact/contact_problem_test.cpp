@@ -18,19 +18,24 @@ RowSet disc(int bound, double mu) {
   return {.kind = SetKind::bounded_disc, .bound = bound, .coefficient = mu};
 }
 
+RowSet proportional(int bound, double coefficient) {
+  return {.kind = SetKind::proportional, .bound = bound, .coefficient = coefficient};
+}
+
 TEST(ContactProblem, GroupsContactsAndLoneRows) {
   ContactProblem problem;
-  problem.reset(9);
+  problem.reset(11);
   problem.sets()[1] = friction(0, 0.3);
   problem.sets()[2] = {.kind = SetKind::interval, .lower = -1.0, .upper = 2.0};
   problem.sets()[4] = disc(3, 0.5);
   problem.sets()[5] = disc(3, 0.5);
   problem.sets()[6] = friction(3, 0.1);  // rolling moment of the same contact
   problem.sets()[8] = friction(7, 0.0);
+  problem.sets()[10] = proportional(9, -0.3);
   problem.group();
-  ASSERT_EQ(problem.groups().size(), 4u);
-  const int first[] = {0, 2, 3, 7}, size[] = {2, 1, 4, 2};
-  for (std::size_t g = 0; g < 4; ++g) {
+  ASSERT_EQ(problem.groups().size(), 5u);
+  const int first[] = {0, 2, 3, 7, 9}, size[] = {2, 1, 4, 2, 2};
+  for (std::size_t g = 0; g < 5; ++g) {
     EXPECT_EQ(problem.groups()[g].first, first[g]);
     EXPECT_EQ(problem.groups()[g].size, size[g]);
   }
@@ -48,6 +53,14 @@ TEST(ContactProblem, RefusesSetsThatCannotBe) {
   refused(3, [](auto& p) { p.sets()[2] = friction(0, 0.1); });  // another row between
   refused(2, [](auto& p) { p.sets()[1] = friction(0, -0.1); });
   refused(2, [](auto& p) { p.sets()[1] = friction(0, std::numeric_limits<double>::quiet_NaN()); });
+  refused(2, [](auto& p) { p.sets()[1] = proportional(0, std::numeric_limits<double>::infinity()); });
+  refused(2, [](auto& p) { p.sets()[1] = proportional(1, 0.1); });
+  refused(1, [](auto& p) { p.sets()[0] = proportional(-1, 0.1); });
+  refused(3, [](auto& p) { p.sets()[2] = proportional(0, 0.1); });
+  refused(3, [](auto& p) {  // may be negative: gives nothing that could bound
+    p.sets()[1] = proportional(0, 0.1);
+    p.sets()[2] = friction(1, 0.1);
+  });
   refused(2, [](auto& p) { p.sets()[1] = disc(0, 0.1); });  // second row missing
   refused(3, [](auto& p) {
     p.sets()[1] = disc(0, 0.1);

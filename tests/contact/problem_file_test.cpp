@@ -65,12 +65,13 @@ void expect_same(const ContactProblem& a, const ContactProblem& b) {
 // Every kind of set.
 ContactProblem of_all_kinds() {
   ContactProblem problem;
-  problem.reset(7);
-  for (int i = 0; i < 7; ++i) problem.w(i, i) = 1.0 + i;
+  problem.reset(9);
+  for (int i = 0; i < 9; ++i) problem.w(i, i) = 1.0 + i;
   problem.sets()[1] = {.kind = SetKind::bounded_interval, .bound = 0, .coefficient = 0.1};
   problem.sets()[2] = {.kind = SetKind::interval, .lower = -infinity, .upper = infinity};
   problem.sets()[3] = {.kind = SetKind::interval, .lower = -0.1, .upper = -0.0};
   problem.sets()[5] = problem.sets()[6] = {.kind = SetKind::bounded_disc, .bound = 4, .coefficient = 1.0 / 3};
+  problem.sets()[8] = {.kind = SetKind::proportional, .bound = 7, .coefficient = -0.0};
   problem.group();
   return problem;
 }
@@ -87,6 +88,20 @@ TEST_F(ProblemFileTest, RandomProblemsComeBackBitForBit) {
     const ContactReport a = chain.solve(problem, first), b = chain.solve(read, second);
     EXPECT_EQ(first, second);
     EXPECT_EQ(a.residual, b.residual);
+  }
+}
+
+TEST_F(ProblemFileTest, SlidingContactsComeBackBitForBit) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const ContactProblem problem = contact_test::random_sliding_problem(seed, 3, 0.5, 3.0);
+    problem.save(path_);
+    const ContactProblem read = ContactProblem::load(path_);
+    expect_same(read, problem);
+    SolverChain chain;
+    std::vector<double> first(6), second(6);
+    const ContactReport a = chain.solve(problem, first), b = chain.solve(read, second);
+    EXPECT_EQ(first, second);
+    EXPECT_EQ(a.outcome, b.outcome);
   }
 }
 
@@ -128,13 +143,13 @@ TEST_F(ProblemFileTest, SetsOfEveryKindAndBrokenNumbersComeBack) {
   problem.save(path_);
   expect_same(ContactProblem::load(path_), problem);
   SolverChain chain;
-  std::vector<double> p(7);
+  std::vector<double> p(9);
   EXPECT_EQ(chain.solve(ContactProblem::load(path_), p).outcome, Outcome::not_solved);
 }
 
 TEST_F(ProblemFileTest, NotesComeBack) {
   ProblemNotes notes{
-      .comment = "a \"stack\"\nof bricks, \xc3\xa4", .time = 0.1, .contacts = {"a", "", "c", "d"}};
+      .comment = "a \"stack\"\nof bricks, \xc3\xa4", .time = 0.1, .contacts = {"a", "", "c", "d", "e"}};
   save_problem(path_, of_all_kinds(), notes);
   const ProblemFile read = load_problem(path_);
   expect_same(read.problem, of_all_kinds());
@@ -255,6 +270,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"\"bound\": 0, ", "", {"sets[1].bound is not given"}},
         Wrong{"0.3", "-0.3", {"sets[1].coefficient is -0.3", "finite and >= 0"}},
         Wrong{"0.3", "\"nan\"", {"sets[1].coefficient is nan", "finite and >= 0"}},
+        Wrong{"\"bounded_interval\", \"bound\": 0, \"coefficient\": 0.3",
+              "\"proportional\", \"bound\": 0, \"coefficient\": \"-inf\"",
+              {"sets[1].coefficient is -inf; allowed: finite"}},
+        Wrong{"\"bounded_interval\", \"bound\": 0", "\"proportional\", \"bound\": 1", {"sets[1].bound is 1"}},
+        Wrong{"\"half_line\"}",
+              "\"proportional\", \"bound\": 0, \"coefficient\": 1}",
+              {"sets[0].kind is \"proportional\"", "a row before it"}},
         Wrong{"0.3", "\"inf\"", {"sets[1].coefficient is inf", "finite and >= 0"}},
         Wrong{"\"lower\": -1", "\"lower\": \"inf\", \"upper\": 1}]} //", {"not JSON"}},
         Wrong{"\"upper\": \"inf\"", "\"upper\": -2", {"sets[2].upper is -2", "at least lower, -1"}},

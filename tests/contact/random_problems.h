@@ -189,4 +189,39 @@ inline RandomProblem random_problem(std::uint64_t seed, int most_contacts, doubl
   return result;
 }
 
+/// `groups` planar contacts, each of which slips in a known direction (proportional row) with probability
+/// `sliding`, coefficients up to `most_friction`. W is of condition below 10 (eigenvalues of A A^T / n + 0.2
+/// for A of random entries), so that every set of modes has a regular system for nearly all seeds.
+inline ContactProblem random_sliding_problem(std::uint64_t seed, int groups, double sliding,
+                                             double most_friction) {
+  Random random(seed);
+  const int rows = 2 * groups;
+  const auto n = static_cast<std::size_t>(rows);
+  std::vector<double> a(n * n);
+  for (double& value : a) value = random.uniform(-1.0, 1.0);
+  ContactProblem problem;
+  problem.reset(rows);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = i == j ? 0.2 : 0.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        sum += a[static_cast<std::size_t>(i) * n + k] * a[static_cast<std::size_t>(j) * n + k] /
+               static_cast<double>(rows);
+      }
+      problem.w(i, j) = problem.w(j, i) = sum;
+    }
+    const auto row = static_cast<std::size_t>(i);
+    problem.vector()[row] = random.uniform(-2.0, 2.0);
+    if (i % 2 == 0) continue;
+    const bool slides = random.chance(sliding);
+    const double mu = random.uniform(0.0, most_friction);
+    const double direction = random.chance(0.5) ? 1.0 : -1.0;
+    problem.sets()[row] = {.kind = slides ? SetKind::proportional : SetKind::bounded_interval,
+                           .bound = i - 1,
+                           .coefficient = slides ? -direction * mu : mu};
+  }
+  problem.group();
+  return problem;
+}
+
 }  // namespace carom::contact_test

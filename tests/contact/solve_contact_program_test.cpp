@@ -135,6 +135,37 @@ TEST_F(SolveContactProgram, AProblemWithoutSolutionIsNotCertified) {
   EXPECT_TRUE(json["best"].is_null());
 }
 
+// The rod of Painlevé, sliding towards its lean with mu = 2, tan theta = 2.
+TEST_F(SolveContactProgram, AContactThatSlides) {
+  ContactProblem problem;
+  problem.reset(2);
+  problem.w(0, 0) = 1.6;
+  problem.w(0, 1) = problem.w(1, 0) = -1.2;
+  problem.w(1, 1) = 3.4;
+  problem.sets()[1] = {.kind = SetKind::proportional, .bound = 0, .coefficient = 2.0};
+  problem.group();
+  problem.vector()[0] = -9.81;
+  problem.save(path_);
+  const Outcome none = run(file());
+  EXPECT_EQ(none.code, 1) << none.text;
+  EXPECT_NE(none.text.find("no solution"), std::string::npos) << none.text;
+  problem.vector()[0] = 12.5;
+  problem.save(path_);
+  const auto two = nlohmann::json::parse(run("--json " + file()).text)["answers"][0];
+  EXPECT_EQ(two["outcome"], "several solutions");
+  EXPECT_EQ(two["modes"][0], "open");
+  problem.sets()[1].coefficient = -2.0;
+  problem.vector()[0] = -9.81;
+  problem.save(path_);
+  const auto all = nlohmann::json::parse(run("--solver all --json " + file()).text)["answers"];
+  ASSERT_EQ(all.size(), 6u);
+  for (const auto& one : all) {
+    EXPECT_EQ(one["certified"], true) << one;
+    EXPECT_EQ(one["modes"][0], "slip+") << one;
+    EXPECT_NEAR(one["P"][0].get<double>(), 9.81 / 4.0, 1e-15);
+  }
+}
+
 TEST_F(SolveContactProgram, BrokenNumbersAreShown) {
   ContactProblem problem;
   problem.reset(1);
