@@ -33,7 +33,7 @@ public:
 enum class FlowMethod : std::uint8_t {
   explicit_runge_kutta,  ///< SUNDIALS' ARKODE, order 5: cheap restarts, for motion that is not stiff
   adams,                 ///< SUNDIALS' CVODE, Adams-Moulton with fixed point: long smooth phases
-  bdf,                   ///< SUNDIALS' CVODE, BDF with Newton's method: stiff couplings
+  bdf,                   ///< SUNDIALS' CVODE, BDF with Newton's method, dense matrices: stiff couplings
   one_step               ///< our own explicit Runge-Kutta, order 5: the least overhead, for small islands
 };
 
@@ -49,22 +49,33 @@ class CAROM_API Flow {
 public:
   virtual ~Flow() = default;
 
-  /// Starts anew at y. \param first_step length to try first [s], 0: the method's own guess
+  /// Starts anew at y. \param first_step length to try first [s], 0: the method's own guess. The step in use
+  /// before serves explicit_runge_kutta well; adams and bdf begin at order 1 and guess better.
   virtual void start(double time, std::span<const double> y, double first_step) = 0;
-  /// Makes one step of the method's choice, of length `longest` [s] at most. Throws SolverError, without the
-  /// names of parts, where it cannot go on.
+  /// Makes one step of the method's choice, of length `longest` [s] at most; to a step that is cut by it,
+  /// end() == begin() + longest. A cut costs explicit_runge_kutta one evaluation; adams and bdf grow back
+  /// from it by a factor of ten every few steps, so rather let them step over a time and land() there.
+  ///
+  /// Throws SolverError, without the names of parts, where it cannot go on: rates not finite, a blow-up,
+  /// tolerances below rounding; also what rates() or jacobian() throw. Then state() is the last good one, and
+  /// start() is needed before the next step. ModelError: before start(), or longest not > 0.
   virtual void advance(double longest) = 0;
   /// Times of the last step [s].
   [[nodiscard]] virtual double begin() const = 0;
   [[nodiscard]] virtual double end() const = 0;
   /// y at the end of the last step. Valid until the next call.
   [[nodiscard]] virtual std::span<const double> state() const = 0;
-  /// Writes y at a time within the last step, by interpolation.
+  /// Writes y at a time within the last step, by interpolation with an error near that of the step. With
+  /// explicit_runge_kutta three evaluations for the first time in a step, none later. ModelError: another
+  /// time.
   virtual void sample(double time, std::span<double> y) = 0;
-  /// Writes y at a time within the last step, as accurate as steps are.
+  /// Writes y at a time within the last step, as accurate as steps are: explicit_runge_kutta integrates again
+  /// from begin() (seven evaluations), adams and bdf interpolate. Steps to come are not affected in any bit.
   virtual void land(double time, std::span<double> y) = 0;
   /// Replaces y at the end of the last step by one that differs little (a projection) and goes on from there
-  /// without the cost of a start where the method allows.
+  /// without the cost of a start: explicit_runge_kutta keeps its step for one evaluation more; adams and bdf
+  /// keep step and order, and their error test sees a change that is not small. Afterwards the last step is
+  /// empty.
   virtual void correct(std::span<const double> y) = 0;
   /// Length of the step that would be tried next [s], 0 if the method would choose anew.
   [[nodiscard]] virtual double next_step() const = 0;
@@ -72,7 +83,9 @@ public:
   [[nodiscard]] virtual const FlowCounts& counts() const = 0;
 };
 
-/// Makes a flow. `problem` must outlive it. \param relative_tolerance > 0
+/// Makes a flow. The estimated error of a step is at most relative_tolerance |y_i| + absolute tolerance, in
+/// each unknown. `problem` must outlive the flow. ModelError: a tolerance that is not finite and > 0, no
+/// unknowns. \param relative_tolerance > 0
 [[nodiscard]] CAROM_API std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem,
                                                         double relative_tolerance);
 

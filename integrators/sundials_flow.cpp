@@ -1,0 +1,132 @@
+// Problem: steps of an integrator as a sequence that somebody watches: where each began and ended, what was
+// there, and in plain words why there is no next one.
+
+#include <carom/integrators/sundials_flow.h>
+
+#include <carom/core/part_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+void demand_size(std::size_t given, std::size_t size, const char* call) {
+  if (given == size) return;
+  throw ModelError(std::string("flow: ") + call + "() is given " + std::to_string(given) +
+                   " numbers; allowed: " + std::to_string(size));
+}
+
+}  // namespace
+
+SundialsFlow::SundialsFlow(FlowProblem& problem, double relative_tolerance)
+    : link_(problem, relative_tolerance), begin_state_(link_.size()), end_state_(link_.size()) {
+  begin_vector_ = link_.vector(begin_state_.data());
+  end_vector_ = link_.vector(end_state_.data());
+  out_vector_ = link_.vector(end_state_.data());
+}
+
+void SundialsFlow::start(double time, std::span<const double> y, double first_step) {
+  demand_size(y.size(), link_.size(), "start");
+  if (!std::isfinite(time)) throw ModelError("flow: start() at t = " + to_text(time) + "; allowed: finite");
+  if (!(std::isfinite(first_step) && first_step >= 0.0)) {
+    throw ModelError("flow: the first step is " + to_text(first_step) + "; allowed: finite and >= 0 s");
+  }
+  begin_ = end_ = time;
+  next_ = first_step;
+  std::copy(y.begin(), y.end(), end_state_.begin());
+  begin_state_ = end_state_;
+  started_ = true;
+  stepped_ = false;
+  ++counts_.restarts;
+  forget();
+}
+
+void SundialsFlow::advance(double longest) {
+  if (!started_) throw ModelError("flow: advance() before start(), or after an error without one");
+  if (!(longest > 0.0)) {
+    throw ModelError("flow: a step of " + to_text(longest) + " s at most; allowed: > 0");
+  }
+  begin_ = end_;
+  std::copy(end_state_.begin(), end_state_.end(), begin_state_.begin());
+  const double wanted = next_ > 0.0 ? std::min(next_, longest) : longest;
+  if (!(begin_ + longest > begin_)) {
+    SundialsLink::fail("the length allowed for the step is below the rounding of time", begin_, longest);
+  }
+
+  link_.clear();
+  started_ = false;  // unless the step succeeds
+  double reached = begin_;
+  const int flag = step(longest, reached);
+  if (flag < 0 || link_.thrown()) {
+    std::copy(begin_state_.begin(), begin_state_.end(), end_state_.begin());
+    link_.fail(flag, begin_, wanted);
+  }
+  // Who asks for a step to some time shall be there.
+  const double last = begin_ + longest;
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  if (std::abs(reached - last) <= 16.0 * epsilon * (std::abs(last) + longest)) reached = last;
+  // SUNDIALS goes on with steps that are lost in the rounding of time, and nobody would ever arrive.
+  const double rounding = 8.0 * epsilon * std::abs(begin_);
+  const double length = reached - begin_;
+  if (!(length > 0.0) || (length <= rounding && length < 0.5 * longest)) {
+    std::copy(begin_state_.begin(), begin_state_.end(), end_state_.begin());
+    const double hole = link_.not_finite_at() - begin_;
+    if (hole >= 0.0 && hole <= 1e3 * rounding) link_.fail_not_finite(begin_, length);
+    SundialsLink::fail("steps have shrunk to the rounding of time; the motion has no smooth continuation",
+                       begin_, length);
+  }
+  end_ = reached;
+  started_ = stepped_ = true;
+  ++counts_.steps;
+}
+
+void SundialsFlow::demand_step(double time, std::size_t size, const char* call) const {
+  demand_size(size, link_.size(), call);
+  if (time >= begin_ && time <= end_) return;
+  throw ModelError(std::string("flow: ") + call + "() at t = " + to_text(time) +
+                   " s; allowed: within the last step, " + to_text(begin_) + " to " + to_text(end_) + " s");
+}
+
+void SundialsFlow::sample(double time, std::span<double> y) {
+  demand_step(time, y.size(), "sample");
+  if (time == end_) {
+    std::copy(end_state_.begin(), end_state_.end(), y.begin());
+  } else if (time == begin_) {
+    std::copy(begin_state_.begin(), begin_state_.end(), y.begin());
+  } else {
+    interpolate(time, y.data());
+  }
+}
+
+void SundialsFlow::land(double time, std::span<double> y) {
+  demand_step(time, y.size(), "land");
+  if (time == end_ || time == begin_) {
+    sample(time, y);
+  } else {
+    integrate_to(time, y.data());
+  }
+}
+
+void SundialsFlow::correct(std::span<const double> y) {
+  demand_size(y.size(), link_.size(), "correct");
+  if (stepped_) shift(y);
+  std::copy(y.begin(), y.end(), end_state_.begin());
+  std::copy(y.begin(), y.end(), begin_state_.begin());
+  begin_ = end_;
+}
+
+const FlowCounts& SundialsFlow::counts() const {
+  counts_.evaluations = link_.evaluations();
+  return counts_;
+}
+
+double SundialsFlow::horizon(double longest) const {
+  // Not infinite: the guess of a first step is bounded below by the rounding of this time.
+  return begin_ + std::min(longest, 1e3 + std::abs(begin_));
+}
+
+}  // namespace carom

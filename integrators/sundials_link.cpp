@@ -1,0 +1,240 @@
+// Problem: let a library written in C evaluate our rates, in vectors of ours, and learn what went wrong.
+
+#include <carom/integrators/sundials_link.h>
+
+#include <carom/core/part_check.h>
+#include <carom/integrators/sundials_loops.h>
+
+#include <arkode/arkode.h>
+#include <cvode/cvode.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+namespace loops = sundials_loops;
+
+std::size_t length(N_Vector v) { return static_cast<std::size_t>(NV_LENGTH_S(v)); }
+
+// The operations the integrators call. Norms are the largest component in place of the mean square: otherwise
+// the error of one body would be diluted by the many that rest.
+void use_own_loops(N_Vector vector) {
+  auto& ops = *vector->ops;
+  ops.nvlinearsum = [](sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z) {
+    loops::linear_sum(length(x), a, NV_DATA_S(x), b, NV_DATA_S(y), NV_DATA_S(z));
+  };
+  ops.nvconst = [](sunrealtype c, N_Vector z) { loops::fill(length(z), c, NV_DATA_S(z)); };
+  ops.nvprod = [](N_Vector x, N_Vector y, N_Vector z) {
+    loops::multiply(length(x), NV_DATA_S(x), NV_DATA_S(y), NV_DATA_S(z));
+  };
+  ops.nvdiv = [](N_Vector x, N_Vector y, N_Vector z) {
+    loops::divide(length(x), NV_DATA_S(x), NV_DATA_S(y), NV_DATA_S(z));
+  };
+  ops.nvscale = [](sunrealtype c, N_Vector x, N_Vector z) {
+    loops::scale(length(x), c, NV_DATA_S(x), NV_DATA_S(z));
+  };
+  ops.nvabs = [](N_Vector x, N_Vector z) { loops::absolute(length(x), NV_DATA_S(x), NV_DATA_S(z)); };
+  ops.nvinv = [](N_Vector x, N_Vector z) { loops::invert(length(x), NV_DATA_S(x), NV_DATA_S(z)); };
+  ops.nvaddconst = [](N_Vector x, sunrealtype b, N_Vector z) {
+    loops::add_constant(length(x), NV_DATA_S(x), b, NV_DATA_S(z));
+  };
+  ops.nvdotprod = [](N_Vector x, N_Vector y) { return loops::dot(length(x), NV_DATA_S(x), NV_DATA_S(y)); };
+  ops.nvmaxnorm = [](N_Vector x) { return loops::maximum(length(x), NV_DATA_S(x)); };
+  ops.nvmin = [](N_Vector x) { return loops::minimum(length(x), NV_DATA_S(x)); };
+  ops.nvwrmsnorm = [](N_Vector x, N_Vector w) {
+    return loops::weighted_maximum(length(x), NV_DATA_S(x), NV_DATA_S(w));
+  };
+  ops.nvlinearcombination = [](int count, sunrealtype* c, N_Vector* x, N_Vector z) {
+    loops::combine(
+        length(z), static_cast<std::size_t>(count), c, [x](std::size_t j) { return NV_DATA_S(x[j]); },
+        NV_DATA_S(z));
+    return 0;
+  };
+  ops.nvscaleaddmulti = [](int count, sunrealtype* c, N_Vector x, N_Vector* y, N_Vector* z) {
+    for (int j = 0; j < count; ++j) {
+      loops::linear_sum(length(x), c[j], NV_DATA_S(x), 1.0, NV_DATA_S(y[j]), NV_DATA_S(z[j]));
+    }
+    return 0;
+  };
+  ops.nvscalevectorarray = [](int count, sunrealtype* c, N_Vector* x, N_Vector* z) {
+    for (int j = 0; j < count; ++j) loops::scale(length(x[j]), c[j], NV_DATA_S(x[j]), NV_DATA_S(z[j]));
+    return 0;
+  };
+}
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+SUNComm no_communicator() { return SUN_COMM_NULL; }
+#else
+void* no_communicator() { return nullptr; }
+#endif
+
+static_assert(CV_TOO_MUCH_ACC == ARK_TOO_MUCH_ACC && CV_ERR_FAILURE == ARK_ERR_FAILURE &&
+              CV_CONV_FAILURE == ARK_CONV_FAILURE && CV_LSETUP_FAIL == ARK_LSETUP_FAIL &&
+              CV_LSOLVE_FAIL == ARK_LSOLVE_FAIL && CV_TOO_CLOSE == ARK_TOO_CLOSE);
+
+std::string reason(int flag) {
+  switch (flag) {
+    case CV_TOO_MUCH_ACC:
+      return "the tolerances ask for more digits than numbers have";
+    case CV_ERR_FAILURE:
+      return "the error is above the tolerances however short the step";
+    case CV_CONV_FAILURE:
+      return "the corrector iteration does not converge however short the step";
+    case CV_LSETUP_FAIL:
+    case CV_LSOLVE_FAIL:
+      return "the linear equations of a step cannot be solved";
+    case CV_TOO_CLOSE:
+      return "the length allowed for the step is too small to choose a step";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+SundialsLink::SundialsLink(FlowProblem& problem, double relative_tolerance)
+    : problem_(&problem), size_(problem.size()), relative_tolerance_(relative_tolerance) {
+  const auto refuse = [](const char* what, const std::string& value, const char* allowed) {
+    throw ModelError(std::string("flow: ") + what + " is " + value + "; allowed: " + allowed);
+  };
+  if (!(std::isfinite(relative_tolerance) && relative_tolerance > 0.0)) {
+    refuse("the relative tolerance", to_text(relative_tolerance), "finite and > 0");
+  }
+  if (size_ == 0) refuse("the number of unknowns", "0", "at least 1");
+  const auto tolerances = problem.absolute_tolerances();
+  if (tolerances.size() != size_) {
+    refuse("the number of absolute tolerances", std::to_string(tolerances.size()), "one for each unknown");
+  }
+  for (const double tolerance : tolerances) {
+    if (!(std::isfinite(tolerance) && tolerance > 0.0)) {
+      refuse("an absolute tolerance", to_text(tolerance), "finite and > 0");
+    }
+  }
+  demand(SUNContext_Create(no_communicator(), &context_) == 0, "SUNContext_Create");
+#if SUNDIALS_VERSION_MAJOR >= 7
+  SUNContext_ClearErrHandlers(context_);
+  SUNContext_PushErrHandler(
+      context_,
+      [](int, const char*, const char*, const char* message, SUNErrCode code, void* link, SUNContext) {
+        static_cast<SundialsLink*>(link)->keep_message(code, message);
+      },
+      this);
+#endif
+}
+
+SundialsLink::~SundialsLink() { SUNContext_Free(&context_); }
+
+SundialsVector SundialsLink::vector(double* numbers) const {
+  SundialsVector made(N_VMake_Serial(static_cast<sunindextype>(size_), numbers, context_));
+  demand(made != nullptr, "N_VMake_Serial");
+  use_own_loops(made.get());  // what SUNDIALS clones from it has them too
+  return made;
+}
+
+double SundialsLink::in_tolerances(const double* x, const double* y) const {
+  const double* const absolute = problem_->absolute_tolerances().data();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < size_; ++i) {
+    largest = std::max(largest, std::abs(x[i]) / (relative_tolerance_ * std::abs(y[i]) + absolute[i]));
+  }
+  return largest;
+}
+
+bool SundialsLink::evaluate(double time, const double* y, double* rates) {
+  ++evaluations_;
+  problem_->rates(time, y, rates);
+  if (loops::all_finite(size_, rates)) return true;
+  not_finite_ = true;
+  not_finite_at_ = time;
+  return false;
+}
+
+void SundialsLink::clear() {
+  not_finite_ = false;
+  exception_ = nullptr;
+  message_[0] = '\0';
+}
+
+// Exceptions must not cross a library written in C: negative ends the step, positive asks for a shorter one.
+int SundialsLink::rates(sunrealtype time, N_Vector y, N_Vector rates, void* link) noexcept {
+  auto& self = *static_cast<SundialsLink*>(link);
+  if (self.thrown()) return -1;  // CVODE tries shorter steps even so
+  try {
+    return self.evaluate(time, NV_DATA_S(y), NV_DATA_S(rates)) ? 0 : 1;
+  } catch (...) {
+    self.exception_ = std::current_exception();
+    return -1;
+  }
+}
+
+int SundialsLink::weights(N_Vector y, N_Vector weights, void* link) noexcept {
+  const auto& self = *static_cast<SundialsLink*>(link);
+  try {
+    loops::tolerance_weights(self.size_, self.relative_tolerance_, NV_DATA_S(y),
+                             self.problem_->absolute_tolerances().data(), NV_DATA_S(weights));
+    return 0;
+  } catch (...) {
+    return -1;
+  }
+}
+
+int SundialsLink::jacobian(sunrealtype time, N_Vector y, N_Vector, SUNMatrix jacobian, void* link, N_Vector,
+                           N_Vector, N_Vector) noexcept {
+  auto& self = *static_cast<SundialsLink*>(link);
+  if (self.thrown()) return -1;
+  try {
+    double* const numbers = SM_DATA_D(jacobian);
+    self.problem_->jacobian(time, NV_DATA_S(y), numbers);
+    if (loops::all_finite(self.size_ * self.size_, numbers)) return 0;
+    self.not_finite_ = true;
+    self.not_finite_at_ = time;
+    return 1;
+  } catch (...) {
+    self.exception_ = std::current_exception();
+    return -1;
+  }
+}
+
+#if SUNDIALS_VERSION_MAJOR < 7
+void SundialsLink::take_message(int code, const char*, const char*, char* message, void* link) noexcept {
+  static_cast<SundialsLink*>(link)->keep_message(code, message);
+}
+#endif
+
+void SundialsLink::keep_message(int code, const char* message) noexcept {
+  if (code == CV_WARNING || message == nullptr) return;
+  std::strncpy(message_.data(), message, message_.size() - 1);
+}
+
+void SundialsLink::fail(int flag, double time, double step) const {
+  if (exception_) std::rethrow_exception(exception_);
+  if (not_finite_) fail_not_finite(time, step);
+  std::string why = reason(flag);
+  if (why.empty()) why = "SUNDIALS gives up (" + std::to_string(flag) + "): " + message_.data();
+  fail(why, time, step);
+}
+
+void SundialsLink::fail_not_finite(double time, double step) const {
+  fail("the rates are not finite at t = " + to_text(not_finite_at_) + " s, however short the step", time,
+       step);
+}
+
+void SundialsLink::fail(const std::string& why, double time, double step) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.step = step;
+  throw SolverError("smooth motion at t = " + to_text(time) + " s, step " + to_text(step) + " s: " + why,
+                    std::move(failure));
+}
+
+void SundialsLink::demand(bool success, const char* what) const {
+  if (success) return;
+  fail(std::string(what) + " fails: " + message_.data(), 0.0, 0.0);
+}
+
+}  // namespace carom
