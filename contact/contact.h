@@ -49,6 +49,9 @@ struct Contact {
       obstacle_velocity{};  ///< of the obstacle where it is touched, along the rows [m/s]
   std::array<double, static_cast<std::size_t>(max_rows)>
       drift{};  ///< rate of the contact velocity at constant velocities of the body [m/s^2]
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      obstacle_velocity_after{};  ///< of the same place of the obstacle at the end of a time step; else the
+                                  ///< same as obstacle_velocity [m/s]
 
   /// Row of the map from the body's velocities to the contact velocity.
   [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
@@ -63,7 +66,11 @@ struct Contact {
   [[nodiscard]] double velocity(int i, const double* velocities) const {
     return times(i, velocities) - obstacle_velocity[static_cast<std::size_t>(i)];
   }
-  /// Its rate along row i. \param accelerations of all bodies
+  /// Contact velocity along row i after the time step or impact. \param velocities of all bodies, then
+  [[nodiscard]] double velocity_after(int i, const double* velocities) const {
+    return times(i, velocities) - obstacle_velocity_after[static_cast<std::size_t>(i)];
+  }
+  /// Rate of the contact velocity along row i. \param accelerations of all bodies
   [[nodiscard]] double acceleration(int i, const double* accelerations) const {
     return times(i, accelerations) + drift[static_cast<std::size_t>(i)];
   }

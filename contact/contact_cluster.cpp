@@ -168,7 +168,7 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     for (int i = 0; i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
-      b[row] = contacts_[c].velocity(i, velocity_free) + restitution_[row] * before_[row];
+      b[row] = contacts_[c].velocity_after(i, velocity_free) + restitution_[row] * before_[row];
     }
   }
 }
@@ -217,6 +217,17 @@ void ContactCluster::keep_modes() {
   std::copy(kept_impulse_.begin(), kept_impulse_.end(), impulse_.begin());
   modes_.assign(kept_modes_.begin(), kept_modes_.end());
   changed_modes_ = false;
+}
+
+double ContactCluster::obstacle_work(std::size_t contact) const {
+  const Contact& at = contacts_[contact];
+  double work = 0.0;
+  for (int i = 0; i < at.rows; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    work += 0.5 * impulse_[static_cast<std::size_t>(first_row_[contact] + i)] *
+            (at.obstacle_velocity[row] + at.obstacle_velocity_after[row]);
+  }
+  return work;
 }
 
 void ContactCluster::apply(double* velocity) const {

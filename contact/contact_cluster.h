@@ -29,7 +29,8 @@ public:
   void couple(Range v, const std::function<void(double*)>& solve);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
   void slide(std::size_t contact, double ratio);
-  /// Makes b from the velocities that the step would end with if no contact acted.
+  /// Makes b from the velocities that the step would end with if no contact acted, against those of the
+  /// obstacles then (Contact::velocity_after).
   void set_free_velocity(const double* velocity_free);
   /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
   /// again since build() keeps to the modes of the answer before as long as they are one of them: an
@@ -47,6 +48,10 @@ public:
   void apply_coupled(double* velocity) const;
   /// Adds `scale` H^T P to the loads.
   void add_loads(double scale, double* load) const;
+
+  /// Work of the impulses on what moves the obstacles of one contact, P.(w^- + w^+)/2 with the obstacle's
+  /// velocities w before and after: what enters as external work [J].
+  [[nodiscard]] double obstacle_work(std::size_t contact) const;
 
   /// The problem.
   [[nodiscard]] const ContactProblem& problem() const { return problem_; }

@@ -1,8 +1,11 @@
 #include <carom/contact/contact_finder.h>
+#include <carom/contact/prescribed_motion.h>
 #include <carom/core/space.h>
 
 #include <algorithm>
+#include <cassert>
 #include <type_traits>
+#include <utility>
 
 namespace carom {
 
@@ -27,7 +30,9 @@ void ContactFinder::collect_obstacles() {
   const auto& registry = assembly_->system().obstacle_kinds();
   for (const Index serial : registry.serials()) {
     const auto place = registry.place(serial);
-    obstacles_.push_back({registry.entries()[place.entry].kind.get(), place.slot, serial});
+    const ObstacleKind& kind = *registry.entries()[place.entry].kind;
+    const Index moving = kind.moves(place.slot) ? moving_++ : none;
+    obstacles_.push_back({&kind, place.slot, serial, moving});
   }
 }
 
@@ -127,12 +132,59 @@ std::string ContactFinder::name(const ContactKey& key) const {
   return text + " on " + system.name(ObstacleId{key.against.serial, token});
 }
 
+ObstacleMotion ContactFinder::motion(const Obstacle& obstacle, double time) const {
+  const ObstacleMotion motion = obstacle.kind->place(obstacle.slot, time);
+  const NonFiniteMotion bad = find_non_finite(motion);
+  if (bad.quantity == nullptr) return motion;
+  const System& system = assembly_->system();
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(system.name(ObstacleId{obstacle.serial, system.token()}));
+  const std::string message = failure.parts.front() + ": " + bad.quantity +
+                              " of its motion at t = " + to_text(time) + " s is " + to_text(bad.value) + " " +
+                              bad.unit + "; allowed: a finite number";
+  throw SolverError(message, std::move(failure));
+}
+
+void ContactFinder::place(double time, ObstaclePlaces& places) const {
+  if (places.time_ == time && places.motions_.size() == moving_) return;
+  places.time_ = std::numeric_limits<double>::quiet_NaN();  // for as long as it takes
+  places.motions_.clear();
+  if (moving_ > 0) {
+    for (const Obstacle& obstacle : obstacles_) {
+      if (obstacle.moving != none) places.motions_.push_back(motion(obstacle, time));
+    }
+  }
+  places.time_ = time;
+}
+
+std::vector<double> ContactFinder::breaks() const {
+  std::vector<double> times;
+  for (const Obstacle& obstacle : obstacles_) obstacle.kind->breaks(obstacle.slot, times);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
 void ContactFinder::find(Index island, const StateView& state, const Evaluation& evaluation, double margin,
                          std::vector<Contact>& out) const {
+  ObstaclePlaces places;
+  place(state.time, places);
+  find(island, {state, evaluation, &places, nullptr, margin}, out);
+}
+
+void ContactFinder::find(Index island, const StateView& state, const Evaluation& evaluation,
+                         const ObstaclePlaces& places, const ObstaclePlaces* after, double margin,
+                         std::vector<Contact>& out) const {
+  assert(moving_ == 0 || places.time_ == state.time);
+  find(island, {state, evaluation, &places, after, margin}, out);
+}
+
+void ContactFinder::find(Index island, const Query& query, std::vector<Contact>& out) const {
   if (assembly_->layout()->dimension() == 2) {
-    find_in<2>(island, state, evaluation, margin, out);
+    find_in<2>(island, query, out);
   } else {
-    find_in<3>(island, state, evaluation, margin, out);
+    find_in<3>(island, query, out);
   }
 }
 
@@ -177,28 +229,91 @@ void ContactFinder::fill(const BodySlot& body, const Feature& feature, Index obs
   }
 }
 
+void ContactFinder::fill_motion(const BodySlot& body, double radius, const Vec<2>& arm,
+                                const StateView& state, const ObstacleMotion& motion,
+                                const ObstacleMotion* after, Contact& contact) {
+  // docs/method.md, section 1: C the centre of the feature, o the obstacle's point, w its spin, r = C - o.
+  const Vec<2> n = Eigen::Map<const Vec<2>>(contact.row(0)), t = Eigen::Map<const Vec<2>>(contact.row(1));
+  const Vec<2> centre = Eigen::Map<const Vec<2>>(state.q + body.q) + arm;
+  const auto vec = [](const std::array<double, 3>& numbers) { return Vec<2>(numbers[0], numbers[1]); };
+  const Vec<2> r = centre - vec(motion.point), velocity = vec(motion.velocity);
+  const double w = motion.spin, along = t.dot(r), above = n.dot(r);
+  contact.obstacle_velocity = {n.dot(velocity) + w * along, t.dot(velocity) - w * (above - radius), 0.0};
+  contact.obstacle_velocity_after = contact.obstacle_velocity;
+
+  Vec<2> relative = Eigen::Map<const Vec<2>>(state.v + body.v) - velocity;
+  if (body.rotation != none) relative += Space<2>::lever_velocity(state.v + body.v + 2, arm);
+  const Vec<2> acceleration = vec(motion.acceleration);
+  contact.drift[0] -=
+      n.dot(acceleration) + 2.0 * w * t.dot(relative) + motion.angular_acceleration * along + w * w * above;
+  contact.drift[1] += -t.dot(acceleration) + 2.0 * w * n.dot(relative) +
+                      motion.angular_acceleration * (above - radius) - w * w * along;
+  if (after == nullptr) return;
+
+  // The place that is touched goes with the obstacle: its arm turns from the one angle to the other.
+  const std::array<double, 2> turn{after->cosine * motion.cosine + after->sine * motion.sine,
+                                   after->sine * motion.cosine - after->cosine * motion.sine};
+  const Vec<2> end =
+      vec(after->velocity) +
+      Space<2>::lever_velocity(&after->spin, Space<2>::rotate(turn.data(), Vec<2>(r - radius * n)));
+  contact.obstacle_velocity_after = {n.dot(end), t.dot(end), 0.0};
+}
+
 template <int D>
-void ContactFinder::add(const BodySlot& body, const Feature& feature, const StateView& state,
-                        const Evaluation& evaluation, double margin, std::vector<Contact>& out) const {
-  const Vec<D> off = arm<D>(body, feature, evaluation);
-  const Vec<D> centre = Eigen::Map<const Vec<D>>(state.q + body.q) + off;
+void ContactFinder::add(const BodySlot& body, const Feature& feature, const Query& query,
+                        std::vector<Contact>& out) const {
+  const Vec<D> off = arm<D>(body, feature, query.evaluation);
+  const Vec<D> centre = Eigen::Map<const Vec<D>>(query.state.q + body.q) + off;
   for (Index o = 0; o < obstacles_.size(); ++o) {
-    const Gap gap = obstacles_[o].kind->gap(obstacles_[o].slot, centre.data());
-    if (!(gap.distance - feature.radius <= margin)) continue;
-    fill<D>(body, feature, o, gap, off, state, out.emplace_back());
+    const Obstacle& obstacle = obstacles_[o];
+    const ObstacleMotion* const motion =
+        obstacle.moving == none ? nullptr : &query.places->motions_[obstacle.moving];
+    const Gap gap = motion == nullptr ? obstacle.kind->gap(obstacle.slot, centre.data())
+                                      : obstacle.kind->moved_gap(obstacle.slot, *motion, centre.data());
+    if (!(gap.distance - feature.radius <= query.margin)) continue;
+    Contact& contact = out.emplace_back();
+    fill<D>(body, feature, o, gap, off, query.state, contact);
+    if constexpr (D == 2) {
+      if (motion == nullptr) continue;
+      const ObstacleMotion* const after =
+          query.after == nullptr ? nullptr : &query.after->motions_[obstacle.moving];
+      fill_motion(body, feature.radius, off, query.state, *motion, after, contact);
+    }
   }
 }
 
 void ContactFinder::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             Contact& out) const {
+  const Obstacle& obstacle = obstacles_[pair.obstacle];
+  if (obstacle.moving == none) return make_contact(pair, state, evaluation, nullptr, out);
+  const ObstacleMotion now = motion(obstacle, state.time);
+  make_contact(pair, state, evaluation, &now, out);
+}
+
+void ContactFinder::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                            const ObstaclePlaces& places, Contact& out) const {
+  assert(moving_ == 0 || places.time_ == state.time);
+  const Index moving = obstacles_[pair.obstacle].moving;
+  make_contact(pair, state, evaluation, moving == none ? nullptr : &places.motions_[moving], out);
+}
+
+void ContactFinder::make_contact(const ContactPair& pair, const StateView& state,
+                                 const Evaluation& evaluation, const ObstacleMotion* motion,
+                                 Contact& out) const {
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const Feature feature =
       pair.feature == none ? centre_of(body, pair.body, pair.material) : features_[pair.feature];
   const Obstacle& obstacle = obstacles_[pair.obstacle];
+  out = {};  // it may have held a contact of another body
   const auto with_dimension = [&]<int D>(std::integral_constant<int, D>) {
     const Vec<D> off = arm<D>(body, feature, evaluation);
     const Vec<D> centre = Eigen::Map<const Vec<D>>(state.q + body.q) + off;
-    fill<D>(body, feature, pair.obstacle, obstacle.kind->gap(obstacle.slot, centre.data()), off, state, out);
+    const Gap gap = motion == nullptr ? obstacle.kind->gap(obstacle.slot, centre.data())
+                                      : obstacle.kind->moved_gap(obstacle.slot, *motion, centre.data());
+    fill<D>(body, feature, pair.obstacle, gap, off, state, out);
+    if constexpr (D == 2) {
+      if (motion != nullptr) fill_motion(body, feature.radius, off, state, *motion, nullptr, out);
+    }
   };
   if (assembly_->layout()->dimension() == 2) {
     with_dimension(std::integral_constant<int, 2>{});
@@ -232,8 +347,7 @@ std::vector<ContactPair> ContactFinder::pairs(Index island) const {
 }
 
 template <int D>
-void ContactFinder::find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
-                            std::vector<Contact>& out) const {
+void ContactFinder::find_in(Index island, const Query& query, std::vector<Contact>& out) const {
   // Centres are looked at so many at a time; one by one only where any of them touches.
   constexpr Index at_once = 64;
   const auto& bodies = assembly_->layout()->bodies();
@@ -241,7 +355,7 @@ void ContactFinder::find_in(Index island, const StateView& state, const Evaluati
   Index next = touching.features.begin;
   const auto add_features_before = [&](Index body) {
     for (; next < touching.features.end && features_[next].body < body; ++next) {
-      add<D>(bodies[features_[next].body], features_[next], state, evaluation, margin, out);
+      add<D>(bodies[features_[next].body], features_[next], query, out);
     }
   };
   for (Index i = touching.centres.begin; i < touching.centres.end; ++i) {
@@ -250,13 +364,18 @@ void ContactFinder::find_in(Index island, const StateView& state, const Evaluati
       const Index last = std::min(first + at_once, centres.bodies.end);
       const BodySlot slot = bodies[first];
       const auto touches = [&](const Obstacle& obstacle) {
-        return obstacle.kind->any_within(obstacle.slot, state.q + slot.q, slot.q_size, last - first, margin);
+        const double* const points = query.state.q + slot.q;
+        if (obstacle.moving == none) {
+          return obstacle.kind->any_within(obstacle.slot, points, slot.q_size, last - first, query.margin);
+        }
+        return obstacle.kind->any_within_moved(obstacle.slot, query.places->motions_[obstacle.moving], points,
+                                               slot.q_size, last - first, query.margin);
       };
       if (std::none_of(obstacles_.begin(), obstacles_.end(), touches)) continue;
       for (Index body = first; body < last; ++body) {
         add_features_before(body);
         const BodySlot at = bodies[body];
-        add<D>(at, centre_of(at, body, centres.material), state, evaluation, margin, out);
+        add<D>(at, centre_of(at, body, centres.material), query, out);
       }
     }
   }

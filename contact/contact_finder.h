@@ -10,6 +10,7 @@
 #include <carom/core/space.h>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,51 @@ struct ContactPair {
   friend bool operator==(const ContactPair&, const ContactPair&) = default;
 };
 
+/// Where the moving obstacles of a finder are at one time. A workspace that ContactFinder::place() fills.
+class ObstaclePlaces {
+public:
+  /// The time; NaN before it was ever filled [s].
+  [[nodiscard]] double time() const { return time_; }
+
+private:
+  friend class ContactFinder;
+  double time_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ObstacleMotion> motions_;  // of the obstacles that move, in the finder's order
+};
+
 /// Features of the bodies of an assembly and the laws they obey.
 class CAROM_API ContactFinder {
 public:
   /// Throws ModelError where a feature and an obstacle have no contact law.
   explicit ContactFinder(const Assembly& assembly);
 
+  /// True if an obstacle moves.
+  [[nodiscard]] bool has_moving_obstacles() const { return moving_ > 0; }
+  /// Says where the moving obstacles are at a time; does nothing if `places` already says so for this finder.
+  /// Throws SolverError, naming the obstacle, where a prescribed motion is not finite.
+  void place(double time, ObstaclePlaces& places) const;
+  /// Writes the times at which motions of obstacles have jumps or kinks, ascending [s]. Made at each call.
+  [[nodiscard]] std::vector<double> breaks() const;
+
   /// Appends the contacts of one island whose gap is <= `margin` [m], ordered by body, then feature, then
-  /// obstacle. The position group of `evaluation` must be up to date.
+  /// obstacle. The position group of `evaluation` must be up to date. Places obstacles by itself.
   void find(Index island, const StateView& state, const Evaluation& evaluation, double margin,
             std::vector<Contact>& out) const;
+  /// Likewise with the obstacles at `places`, which must be of the state's time.
+  /// \param after obstacles at the end of the step that begins with the state, for
+  /// Contact::obstacle_velocity_after; null: no time passes
+  void find(Index island, const StateView& state, const Evaluation& evaluation, const ObstaclePlaces& places,
+            const ObstaclePlaces* after, double margin, std::vector<Contact>& out) const;
 
   /// All pairs of one island, in the order of find(). Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index island) const;
-  /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date.
+  /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date. Places
+  /// its obstacle by itself.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Contact& out) const;
+  /// Likewise with the obstacles at `places`, which must be of the state's time.
+  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+               const ObstaclePlaces& places, Contact& out) const;
 
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
@@ -69,6 +99,15 @@ private:
     const ObstacleKind* kind;
     Index slot;
     Index serial;
+    Index moving;  // its place among those that move; `none`: at rest
+  };
+  // What find() is asked about.
+  struct Query {
+    const StateView& state;
+    const Evaluation& evaluation;
+    const ObstaclePlaces* places;  // null where nothing moves
+    const ObstaclePlaces* after;   // null where no time passes
+    double margin;
   };
 
   void collect_obstacles();
@@ -77,21 +116,27 @@ private:
   void collect_centres();
   void make_law_table();
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
+  [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
-  void add(const BodySlot& body, const Feature& feature, const StateView& state, const Evaluation& evaluation,
-           double margin, std::vector<Contact>& out) const;
+  void add(const BodySlot& body, const Feature& feature, const Query& query, std::vector<Contact>& out) const;
   // Position of the centre of a feature from its body's centre of mass.
   template <int D>
   [[nodiscard]] static Vec<D> arm(const BodySlot& body, const Feature& feature, const Evaluation& evaluation);
   template <int D>
   void fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap, const Vec<D>& arm,
             const StateView& state, Contact& out) const;
+  // What the motion of the obstacle adds. `after` may be null.
+  static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
+                          const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
+  void make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                    const ObstacleMotion* motion, Contact& out) const;
+  void find(Index island, const Query& query, std::vector<Contact>& out) const;
   template <int D>
-  void find_in(Index island, const StateView& state, const Evaluation& evaluation, double margin,
-               std::vector<Contact>& out) const;
+  void find_in(Index island, const Query& query, std::vector<Contact>& out) const;
 
   const Assembly* assembly_;
   std::vector<Obstacle> obstacles_;
+  Index moving_ = 0;               // obstacles that move
   std::vector<Centres> centres_;   // ordered by body
   std::vector<Feature> features_;  // ordered by body
   std::vector<Touching> of_island_;

@@ -2,7 +2,9 @@
 
 /// \file
 /// Half-planes and half-spaces as obstacles: gap(x) = n.(x - p), the distance of a point from the boundary.
+/// A half-plane may move as prescribed.
 
+#include <carom/contact/prescribed_motion.h>
 #include <carom/core/obstacle_kind.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
@@ -19,7 +21,7 @@ namespace generic {
 template <int D>
 class HalfSpaceKind;
 
-/// Everything behind a plane (a line, in the plane) is solid.
+/// Everything behind a plane is solid.
 template <int D>
 struct HalfSpace {
   static constexpr Role role = Role::obstacle;
@@ -29,6 +31,19 @@ struct HalfSpace {
   Vec<D> normal =
       Vec<D>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
   MaterialId material{};                                           ///< for laws between materials
+};
+
+/// Everything behind a line is solid; the line may move.
+template <>
+struct HalfSpace<2> {
+  static constexpr Role role = Role::obstacle;
+  using Kind = HalfSpaceKind<2>;
+
+  Vec<2> point = Vec<2>::Zero();  ///< a point of the boundary, about which it turns [m]
+  Vec<2> normal =
+      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
+  MaterialId material{};                                           ///< for laws between materials
+  planar::PrescribedMotion motion{};  ///< of `point`, and about it; empty: at rest
 };
 
 /// All half-spaces of a system.
@@ -47,9 +62,15 @@ public:
   [[nodiscard]] int dimension() const override { return D; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  [[nodiscard]] bool moves(Index slot) const override;
+  [[nodiscard]] ObstacleMotion place(Index slot, double time) const override;
+  void breaks(Index slot, std::vector<double>& out) const override;
   [[nodiscard]] Gap gap(Index slot, const double* point) const override;
+  [[nodiscard]] Gap moved_gap(Index slot, const ObstacleMotion& motion, const double* point) const override;
   [[nodiscard]] bool any_within(Index slot, const double* points, Index stride, Index count,
                                 double margin) const override;
+  [[nodiscard]] bool any_within_moved(Index slot, const ObstacleMotion& motion, const double* points,
+                                      Index stride, Index count, double margin) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:

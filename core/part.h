@@ -20,7 +20,7 @@ enum class Role : std::uint8_t {
   body,      ///< a node
   force,     ///< an edge that pushes, or a load
   shape,     ///< geometry fixed to a body
-  obstacle,  ///< geometry fixed to the ground
+  obstacle,  ///< geometry fixed to the ground, or moved as prescribed
 };
 
 /// Interface and identity that belong to a role.

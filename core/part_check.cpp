@@ -54,6 +54,14 @@ void PartCheck::between(double value, double lower, double upper, std::string_vi
   refuse(quantity, to_text(value), "in [" + to_text(lower) + ", " + to_text(upper) + "]");
 }
 
+void PartCheck::breaks(std::span<const double> times, std::string_view quantity) const {
+  finite(times, quantity, "s");
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) continue;
+    refuse(quantity, to_text(times[i]) + " s after " + to_text(times[i - 1]) + " s", "ascending times");
+  }
+}
+
 void PartCheck::surface(const Surface& surface) const {
   non_negative(surface.friction, "friction", "");
   between(surface.normal_restitution, 0.0, 1.0, "normal_restitution");

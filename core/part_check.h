@@ -43,6 +43,8 @@ public:
   void non_negative(double value, std::string_view quantity, std::string_view unit) const;
   /// Demands a number in [lower, upper].
   void between(double value, double lower, double upper, std::string_view quantity) const;
+  /// Demands times that are finite and ascend.
+  void breaks(std::span<const double> times, std::string_view quantity) const;
   /// Demands coefficients of a contact law that are possible.
   void surface(const Surface& surface) const;
   /// Demands a body of this system (or `ground` where `may_be_ground`).

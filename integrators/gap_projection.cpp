@@ -22,11 +22,12 @@ double rounding_depth(const Assembly& assembly, Index island, const State& state
 }  // namespace
 
 /// Contacts near enough to matter, of those that took part (both lists are in the finder's order).
-void GapProjection::find(Index island, const ContactFinder& finder, std::span<const Contact> taking_part,
-                         double margin, const State& state, const Evaluation& evaluation) {
+void GapProjection::find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
+                         std::span<const Contact> taking_part, double margin, const State& state,
+                         const Evaluation& evaluation) {
   found_.clear();
   contacts_.clear();
-  finder.find(island, state.view(), evaluation, margin, found_);
+  finder.find(island, state.view(), evaluation, places, nullptr, margin, found_);
   auto wanted = taking_part.begin();
   for (const Contact& contact : found_) {
     auto at = wanted;
@@ -38,7 +39,7 @@ void GapProjection::find(Index island, const ContactFinder& finder, std::span<co
 }
 
 GapProjection::Result GapProjection::project(const Assembly& assembly, Index island,
-                                             const ContactFinder& finder,
+                                             const ContactFinder& finder, const ObstaclePlaces& places,
                                              std::span<const Contact> taking_part, SolverChain& chain,
                                              State& state, Evaluation& evaluation) {
   // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
@@ -51,7 +52,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
   Result result;
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
-    find(island, finder, taking_part, 2.0 * result.shift, state, evaluation);
+    find(island, finder, places, taking_part, 2.0 * result.shift, state, evaluation);
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;

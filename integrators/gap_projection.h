@@ -28,15 +28,16 @@ public:
   };
 
   /// Moves bodies until the gaps of `taking_part`, in the order of the finder, are at most rounding below
-  /// zero; those that keep a body from falling back end there, still closed. The position group of
-  /// `evaluation` must be up to date, and is so afterwards.
+  /// zero; those that keep a body from falling back end there, still closed. Obstacles are at `places`. The
+  /// position group of `evaluation` must be up to date, and is so afterwards.
   Result project(const Assembly& assembly, Index island, const ContactFinder& finder,
-                 std::span<const Contact> taking_part, SolverChain& chain, State& state,
-                 Evaluation& evaluation);
+                 const ObstaclePlaces& places, std::span<const Contact> taking_part, SolverChain& chain,
+                 State& state, Evaluation& evaluation);
 
 private:
-  void find(Index island, const ContactFinder& finder, std::span<const Contact> taking_part, double margin,
-            const State& state, const Evaluation& evaluation);
+  void find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
+            std::span<const Contact> taking_part, double margin, const State& state,
+            const Evaluation& evaluation);
   /// Makes a better estimate for one body; false if there is none.
   bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
                  State& state, double depth);

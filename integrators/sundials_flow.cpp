@@ -1,9 +1,9 @@
 // Problem: steps of an integrator as a sequence that somebody watches: where each began and ended, what was
 // there, and in plain words why there is no next one.
 
-#include <carom/integrators/sundials_flow.h>
-
 #include <carom/core/part_check.h>
+#include <carom/integrators/one_step_flow.h>
+#include <carom/integrators/sundials_flow.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +127,12 @@ const FlowCounts& SundialsFlow::counts() const {
 double SundialsFlow::horizon(double longest) const {
   // Not infinite: the guess of a first step is bounded below by the rounding of this time.
   return begin_ + std::min(longest, 1e3 + std::abs(begin_));
+}
+
+std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem, double relative_tolerance) {
+  if (method == FlowMethod::one_step) return std::make_unique<OneStepFlow>(problem, relative_tolerance);
+  if (method == FlowMethod::explicit_runge_kutta) return make_runge_kutta_flow(problem, relative_tolerance);
+  return make_multistep_flow(method, problem, relative_tolerance);
 }
 
 }  // namespace carom

@@ -91,6 +91,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.energy_gain = 0.0;
   report_.projected = 0.0;
   report_.control = {};
+  place_obstacles(state, step, end_time);
   start_loads(state, companion);
   if (chain_.statistics().problems > 0) chain_.reset_statistics();  // of a step that failed
   const auto islands = static_cast<Index>(assembly_->islands().size());
@@ -98,6 +99,17 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     advance_island(island, state, companion, step);
   }
   commit(state, companion, end_time, report);
+}
+
+void TimeStepper::place_obstacles(const State& state, double step, double end_time) {
+  if (!finder_.has_moving_obstacles()) return;
+  try {
+    if (places_after_.time() == state.time) std::swap(places_, places_after_);
+    finder_.place(state.time, places_);
+    finder_.place(end_time, places_after_);
+  } catch (const SolverError& error) {
+    fail_motion(error, state, step);
+  }
 }
 
 void TimeStepper::start_loads(const State& state, Companion& companion) {
@@ -171,7 +183,7 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
 void TimeStepper::find_contacts(Index island, const State& state) {
   contacts_.clear();
   clusters_in_use_ = 0;
-  finder_.find(island, state.view(), start_, 0.0, contacts_);
+  finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_);
   if (contacts_.empty()) return;
   const Range v = assembly_->islands()[island].v;
   response_.resize(trial_.v.size());
@@ -180,7 +192,8 @@ void TimeStepper::find_contacts(Index island, const State& state) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together
     return;
   }
-  // Obstacles are fixed, so contacts share a problem where they share a body; they come ordered by body.
+  // Obstacles go their own way, so contacts share a problem where they share a body; they come ordered by
+  // body.
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
     while (last < contacts_.size() && contacts_[last].body == contacts_[first].body) ++last;

@@ -3,7 +3,7 @@
 /// \file
 /// The machine of the time-stepping mode. One step from t_j to t_{j+1} (Johansson 1999, section 4):
 ///
-///   contacts     those with gap <= 0 at t_j
+///   contacts     those with gap <= 0 at t_j; against the velocities of the obstacles at t_j and t_{j+1}
 ///   guess        F_{j+1} by extrapolation
 ///   repeat       v_free = v_j + M^-1 h (F_j + F_{j+1})/2
 ///                v_{j+1} = v_free + M^-1 H^T P,  P from the contact problem
@@ -52,6 +52,7 @@ public:
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 
 private:
+  void place_obstacles(const State& state, double step, double end_time);
   void start_loads(const State& state, Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
   void find_contacts(Index island, const State& state);
@@ -85,6 +86,7 @@ private:
   void find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps);
   [[noreturn]] void fail_contraction(Index island, const State& state, const Companion& companion,
                                      double step, const FixedPointJudge& judge);
+  [[noreturn]] static void fail_motion(const SolverError& error, const State& state, double step);
   [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state,
                                  double step);
   [[noreturn]] void fail_account(Index island, const State& state, double step);
@@ -118,6 +120,8 @@ private:
   ContactFinder finder_;
   SolverChain chain_;
 
+  ObstaclePlaces places_;              // of the obstacles at the start
+  ObstaclePlaces places_after_;        // and at the end
   State trial_;                        // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
   State middle_;                       // halfway, where elements look at it
   Evaluation start_;                   // rotation: at the start

@@ -73,7 +73,7 @@ void TimeStepper::project(Index island, const State& state, double step) {
   const Assembly& assembly = *assembly_;
   evaluate_positions(assembly, island, trial_.view(), evaluation_);
   const GapProjection::Result result =
-      projection_.project(assembly, island, finder_, contacts_, chain_, trial_, evaluation_);
+      projection_.project(assembly, island, finder_, places_after_, contacts_, chain_, trial_, evaluation_);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
@@ -99,6 +99,7 @@ void TimeStepper::book_contacts(const State& state, double step) {
     double scale = 0.0;
     for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
       record(cluster, contact);
+      if (finder_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
       const ContactRecord& entry = report_.contacts.back();
       impact = impact || entry.impact;
       for (int direction = 0; direction < entry.directions; ++direction) {
@@ -133,7 +134,7 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
     const auto direction = static_cast<std::size_t>(row);
     const auto place = static_cast<std::size_t>(cluster.first_row(contact) + row);
     entry.velocity_before[direction] = cluster.before()[place];
-    entry.velocity_after[direction] = at.velocity(row, trial_.v.data());
+    entry.velocity_after[direction] = at.velocity_after(row, trial_.v.data());
     entry.impulse[direction] = cluster.impulses()[place];
     entry.work[direction] =
         0.5 * entry.impulse[direction] * (entry.velocity_before[direction] + entry.velocity_after[direction]);

@@ -152,6 +152,13 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   throw SolverError(message, std::move(failure));
 }
 
+void TimeStepper::fail_motion(const SolverError& error, const State& state, double step) {
+  SolverFailure failure = error.failure();
+  failure.time = state.time;
+  failure.step = step;
+  throw SolverError(place(state, step) + error.what(), std::move(failure));
+}
+
 void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, const State& state, double step) {
   SolverFailure failure = failure_of(cluster, finder_, state, step);
   const auto b = cluster.problem().vector();
