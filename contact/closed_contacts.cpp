@@ -20,9 +20,9 @@ constexpr double dependent = 1e-11;
 }  // namespace
 
 void ClosedContacts::locate(const ContactFinder& finder, const StateView& state,
-                            const Evaluation& evaluation) {
+                            const Evaluation& evaluation, const ObstaclePlaces& places) {
   for (ClosedContact& contact : contacts_) {
-    finder.contact(contact.pair, state, evaluation, contact.at);
+    finder.contact(contact.pair, state, evaluation, places, contact.at);
     contact.friction = contact.slippery ? 0.0 : contact.at.law.friction;
   }
 }

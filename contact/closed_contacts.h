@@ -52,7 +52,8 @@ public:
   [[nodiscard]] const std::vector<ClosedContact>& list() const { return contacts_; }
 
   /// Brings `at` and the coefficients of sliding contacts to a state.
-  void locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation);
+  void locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation,
+              const ObstaclePlaces& places);
   /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in: a_free
   /// False where no forces keep the constraints; the contacts' forces are then not finite.
   bool add_reactions(const Assembly& assembly, double* acceleration);

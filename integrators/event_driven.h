@@ -18,7 +18,7 @@ struct EventDriven {
   /// Of every step, > 0: of positions [m] and, per second, velocities; angles are weighed with the radius of
   /// gyration; works with the mass of their island times 1 m^2/s^2.
   double absolute_tolerance = 1e-11;
-  FlowMethod method = FlowMethod::one_step;  ///< of the smooth phases
+  FlowMethod method = FlowMethod::explicit_runge_kutta;  ///< of the smooth phases
 
   /// Distance of the times at which step() stops and observers are called, > 0 [s]. It does not change the
   /// motion: every island goes at its own pace, and is looked at in between.

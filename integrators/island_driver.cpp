@@ -26,7 +26,8 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
       work_(&work),
       motion_(assembly, finder, island, options, work.motion),
       y_(motion_.size()),
-      seen_(motion_.size()) {
+      seen_(motion_.size()),
+      breaks_(finder.breaks()) {
   closed_at_.assign(motion_.pairs().size(), 0);
 }
 
@@ -46,8 +47,8 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   motion_.closed().list().clear();
   motion_.evaluate(time_, y_.data(), false);
   Contact contact;
-  for (const ContactPair& pair : motion_.pairs()) {
-    finder_->contact(pair, work_->motion.trial.view(), work_->motion.evaluation, contact);
+  for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
+    motion_.contact(i, contact);
     if (contact.gap < -options_.gap_tolerance) {
       throw ModelError("event-driven mode: gap of " + finder_->name(contact.key) + " is " +
                        to_text(contact.gap) + " m at the start; allowed: not below -gap_tolerance, " +
@@ -57,7 +58,7 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
                                     [&](const auto& entry) { return entry.first == contact.key; });
     if (known == present.end() || known->second == ContactMode::open) continue;
     ClosedContact& closed = motion_.closed().list().emplace_back();
-    closed.pair = pair;
+    closed.pair = motion_.pairs()[i];
     closed.mode = known->second;
     closed.at = contact;
   }
@@ -102,8 +103,10 @@ void IslandDriver::write(State& state, ContactModes& modes) const {
 }
 
 void IslandDriver::take_step() {
+  const auto due = std::upper_bound(breaks_.begin(), breaks_.end(), time_);
+  const double until_break = due == breaks_.end() ? never : *due - time_;
   try {
-    flow_->advance(options_.longest_step);
+    flow_->advance(std::min(options_.longest_step, until_break));
   } catch (const SolverError& error) {
     fail(error.what(), {});
   }
@@ -123,6 +126,8 @@ void IslandDriver::take_step() {
     }
   }
   next_ = find_event();
+  const bool at_break = until_break < never && flow_->end() >= *due - 2.0 * epsilon * std::abs(*due);
+  if (next_.guard == Guard::nothing && at_break) next_ = {*due, Guard::law, 0};
   pending_ = true;
 }
 
@@ -136,7 +141,7 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
   Contact contact;
   for (std::size_t i = 0; i < out.gaps.size(); ++i) {
     if (closed_at_[i] != 0) continue;
-    finder_->contact(motion_.pairs()[i], state, work.evaluation, contact);
+    motion_.contact(i, contact);
     out.gaps[i] = {contact.gap, contact.velocity(0, state.v), contact.acceleration(0, acceleration)};
     finite = finite && std::isfinite(out.gaps[i].second);
   }
@@ -216,7 +221,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     const StateView state = work_->motion.trial.view();
     if (rough.guard == Guard::gap) {
       Contact contact;
-      finder_->contact(motion_.pairs()[rough.which], state, work_->motion.evaluation, contact);
+      motion_.contact(rough.which, contact);
       value = contact.gap;
       rate = contact.velocity(0, state.v);
       noise = gap_noise_ / 16.0;
@@ -266,7 +271,7 @@ bool IslandDriver::settle(DriverNews& news) {
 
 void IslandDriver::go_to_event(DriverNews& news) {
   time_ = next_.time;
-  flow_->land(time_, y_);
+  flow_->land(std::min(time_, flow_->end()), y_);
   pending_ = in_phase_ = false;
   step_ = std::min(flow_->next_step(), options_.longest_step);
   motion_.evaluate(time_, y_.data(), true);
@@ -287,6 +292,7 @@ void IslandDriver::go_to_event(DriverNews& news) {
       }
     }
   }
+  if (next_.guard == Guard::law) ++news.counts[static_cast<std::size_t>(EventKind::law_break)];
   stopped_ = next_.guard == Guard::slip ? closed[next_.which].pair : ContactPair{};
   settle(news);
   begin_phase(news);

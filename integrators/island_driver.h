@@ -69,8 +69,8 @@ public:
   [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
 private:
-  // What is found: nothing, an end of a gap, of a force, of slipping; or that the flow is to start anew.
-  enum class Guard : std::uint8_t { nothing, gap, force, slip, restart };
+  // What is found: nothing, an end of a gap, of a force, of slipping; a break of a law; or that the flow is to start anew.
+  enum class Guard : std::uint8_t { nothing, gap, force, slip, law, restart };
   struct Found {
     double time;
     Guard guard = Guard::nothing;
@@ -152,6 +152,7 @@ private:
   double gap_noise_ = 0.0;       // rounding of gaps [m]
   std::vector<Break> breaking_;
   std::vector<ContactPair> lifting_;
+  std::vector<double> breaks_;  // of laws of time, ascending [s]
   ContactPair stopped_;  // has just stopped slipping
   std::vector<ClosedContact> before_;  // closed before the event
   ClosedContacts capture_;

@@ -51,10 +51,7 @@ double IslandDriver::speed_noise() const {
 void IslandDriver::locate_contacts() {
   std::vector<Contact>& contacts = work_->contacts;
   contacts.resize(motion_.pairs().size());
-  const StateView state = work_->motion.trial.view();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    finder_->contact(motion_.pairs()[i], state, work_->motion.evaluation, contacts[i]);
-  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) motion_.contact(i, contacts[i]);
 }
 
 bool IslandDriver::touches(std::size_t pair) const {

@@ -35,7 +35,7 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     books_dissipative_ = books_dissipative_ || elements.books_dissipative();
     books_external_ = books_external_ || elements.books_external();
   }
-  depends_on_time_ = books_external_;
+  depends_on_time_ = books_external_ || (finder.has_moving_obstacles() && !pairs_.empty());
   double mass = 0.0;
   const Island& all = assembly.islands()[island];
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
@@ -51,6 +51,10 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     }
   });
   for (Index i = 0; i < work_lines; ++i) tolerances_[size_ - 1 - i] = mass * options.absolute_tolerance;
+}
+
+void IslandMotion::contact(std::size_t pair, Contact& out) const {
+  finder_->contact(pairs_[pair], work_->trial.view(), work_->evaluation, work_->places, out);
 }
 
 void IslandMotion::gather(const State& state, std::span<double> y) const {
@@ -74,6 +78,7 @@ bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
   const Assembly& assembly = *assembly_;
   scatter({y, size_}, work.trial);
   work.trial.time = time;
+  finder_->place(time, work.places);
   const StateView state = work.trial.view();
   evaluate_positions(assembly, island_, state, work.evaluation);
   double* const force = work.evaluation.force.data();
@@ -93,7 +98,7 @@ bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
     kind.apply_inverse_mass(slots, work.momentum.data() + at, work.acceleration.data() + at);
   });
   if (!with_reactions || closed_.list().empty()) return true;
-  closed_.locate(*finder_, state, work.evaluation);
+  closed_.locate(*finder_, state, work.evaluation, work.places);
   return closed_.add_reactions(assembly, work.acceleration.data());
 }
 

@@ -30,6 +30,7 @@ struct CAROM_API MotionWorkspace {
   std::vector<double> of_position, of_velocity, momentum;  ///< corrections
   std::vector<double> lengths;                             ///< Assembly::length_scales()
   std::vector<double> z_rates;
+  ObstaclePlaces places;  ///< at the time of the state looked at
 };
 
 /// Works that are integrated along.
@@ -76,6 +77,8 @@ public:
   }
   /// Kinetic energy of one body in the workspace's state [J].
   [[nodiscard]] double kinetic_energy(Index body) const;
+  /// The contact of a pair in the workspace's state.
+  void contact(std::size_t pair, Contact& out) const;
   /// True if the loads or obstacles depend on time.
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
 

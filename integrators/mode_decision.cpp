@@ -53,7 +53,7 @@ Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> cand
     taking_part_.push_back(i);
     // In accelerations: what the velocity of the obstacle is to velocities, minus the drift is to these.
     for (std::size_t row = 0; row < Contact::max_rows; ++row) {
-      contact.obstacle_velocity[row] = -contact.drift[row];
+      contact.obstacle_velocity[row] = contact.obstacle_velocity_after[row] = -contact.drift[row];
     }
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     if (slides_[i].sign == 0.0) contact.law.friction = candidates[i].at.law.friction;

@@ -38,6 +38,8 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
   SolverChain chain;
   ContactCluster cluster;
   GapProjection projection;
+  ObstaclePlaces places;
+  finder.place(state.time, places);
   std::vector<Contact> contacts;
   std::vector<EventRecord> told;
   double shift = 0.0;
@@ -79,7 +81,7 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
       }
     }
     const GapProjection::Result result =
-        projection.project(assembly, island, finder, contacts, chain, trial, evaluation);
+        projection.project(assembly, island, finder, places, contacts, chain, trial, evaluation);
     if (result.left != nullptr) fail(finder, *result.left, state.time, "no way is found to open the gap");
     shift = std::max(shift, result.shift);
   }
