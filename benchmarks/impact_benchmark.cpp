@@ -134,6 +134,7 @@ public:
       contact.columns = 3;
       contact.rows = 2;
       contact.law = {i.friction, i.normal_restitution, i.tangential_restitution};
+      contact.friction = i.friction;
       // Normal along y, tangent along x.
       const std::array<double, 3> normal{0.0, 1.0, i.lever_t}, tangent{1.0, 0.0, -i.lever_n};
       std::copy(normal.begin(), normal.end(), contact.row(0));

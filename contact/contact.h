@@ -7,6 +7,7 @@
 #include <carom/core/surface.h>
 
 #include <array>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 
@@ -43,6 +44,9 @@ struct Contact {
   int rows = 0;       ///< 2 in the plane, 3 in space
   double gap = 0.0;   ///< negative where violated [m]
   Surface law;        ///< coefficients
+  /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
+  /// law.sticking_friction() where it stuck in the step before.
+  double friction = 0.0;
   std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
       jacobian{};  ///< row-major, stride max_columns
   std::array<double, static_cast<std::size_t>(max_rows)>
@@ -65,6 +69,11 @@ struct Contact {
   /// Contact velocity along row i: of the body against the obstacle. \param velocities of all bodies
   [[nodiscard]] double velocity(int i, const double* velocities) const {
     return times(i, velocities) - obstacle_velocity[static_cast<std::size_t>(i)];
+  }
+  /// Speed of sliding [m/s]. \param velocities of all bodies
+  [[nodiscard]] double sliding_speed(const double* velocities) const {
+    const double along = velocity(1, velocities);
+    return rows == 2 ? std::abs(along) : std::hypot(along, velocity(2, velocities));
   }
   /// Contact velocity along row i after the time step or impact. \param velocities of all bodies, then
   [[nodiscard]] double velocity_after(int i, const double* velocities) const {

@@ -47,7 +47,7 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
     problem_.w(0, 0) = product(0, 0);
     problem_.w(0, 1) = problem_.w(1, 0) = product(1, 0);
     problem_.w(1, 1) = product(1, 1);
-    problem_.sets()[1].coefficient = contact.law.friction;
+    problem_.sets()[1].coefficient = contact.friction;
     before_[0] = contact.velocity(0, velocity_before);
     before_[1] = contact.velocity(1, velocity_before);
     restitution_[0] = contact.law.normal_restitution;
@@ -84,7 +84,7 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
       } else {
         set.kind = contact.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
         set.bound = first_row_[c];
-        set.coefficient = contact.law.friction;
+        set.coefficient = contact.friction;
       }
     }
   }

@@ -95,6 +95,7 @@ void ContactFinder::make_law_table() {
       const auto law = system.law(materials_[material], {obstacle.serial, system.token()});
       if (law) {
         laws_.push_back(*law);
+        has_static_friction_ = has_static_friction_ || law->has_static_friction();
         continue;
       }
       const auto uses = [material](const auto& candidate) { return candidate.material == material; };
@@ -213,6 +214,7 @@ void ContactFinder::fill(const BodySlot& body, const Feature& feature, Index obs
   contact.rows = D;
   contact.gap = gap.distance - feature.radius;
   contact.law = laws_[feature.material * obstacles_.size() + obstacle];
+  contact.friction = contact.law.friction;
   const Vec<D> normal = Eigen::Map<const Vec<D>>(gap.normal.data());
   const auto tangents = Space<D>::tangent_frame(normal);
   for (int row = 0; row < D; ++row) {
@@ -259,6 +261,11 @@ void ContactFinder::fill_motion(const BodySlot& body, double radius, const Vec<2
   contact.obstacle_velocity_after = {n.dot(end), t.dot(end), 0.0};
 }
 
+void ContactFinder::set_friction(const StateView& state, Contact& contact) {
+  if (!contact.law.has_static_friction()) return;
+  contact.friction = contact.law.friction_at(contact.sliding_speed(state.v));
+}
+
 template <int D>
 void ContactFinder::add(const BodySlot& body, const Feature& feature, const Query& query,
                         std::vector<Contact>& out) const {
@@ -274,11 +281,13 @@ void ContactFinder::add(const BodySlot& body, const Feature& feature, const Quer
     Contact& contact = out.emplace_back();
     fill<D>(body, feature, o, gap, off, query.state, contact);
     if constexpr (D == 2) {
-      if (motion == nullptr) continue;
-      const ObstacleMotion* const after =
-          query.after == nullptr ? nullptr : &query.after->motions_[obstacle.moving];
-      fill_motion(body, feature.radius, off, query.state, *motion, after, contact);
+      if (motion != nullptr) {
+        const ObstacleMotion* const after =
+            query.after == nullptr ? nullptr : &query.after->motions_[obstacle.moving];
+        fill_motion(body, feature.radius, off, query.state, *motion, after, contact);
+      }
     }
+    if (has_static_friction_) set_friction(query.state, contact);
   }
 }
 
@@ -314,6 +323,7 @@ void ContactFinder::make_contact(const ContactPair& pair, const StateView& state
     if constexpr (D == 2) {
       if (motion != nullptr) fill_motion(body, feature.radius, off, state, *motion, nullptr, out);
     }
+    if (has_static_friction_) set_friction(state, out);
   };
   if (assembly_->layout()->dimension() == 2) {
     with_dimension(std::integral_constant<int, 2>{});

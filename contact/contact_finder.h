@@ -71,6 +71,9 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const ObstaclePlaces& places, Contact& out) const;
 
+  /// True if some surface takes more to slip than to slide.
+  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
+
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
 
@@ -128,6 +131,8 @@ private:
   // What the motion of the obstacle adds. `after` may be null.
   static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
                           const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
+  // Friction where it depends on the speed of sliding.
+  static void set_friction(const StateView& state, Contact& contact);
   void make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                     const ObstacleMotion* motion, Contact& out) const;
   void find(Index island, const Query& query, std::vector<Contact>& out) const;
@@ -142,6 +147,7 @@ private:
   std::vector<Touching> of_island_;
   std::vector<MaterialId> materials_;  // rows of the law table
   std::vector<Surface> laws_;          // row-major: material, obstacle
+  bool has_static_friction_ = false;   // any of them
 };
 
 }  // namespace carom

@@ -66,6 +66,16 @@ void PartCheck::surface(const Surface& surface) const {
   non_negative(surface.friction, "friction", "");
   between(surface.normal_restitution, 0.0, 1.0, "normal_restitution");
   between(surface.tangential_restitution, 0.0, 1.0, "tangential_restitution");
+  non_negative(surface.stribeck_speed, "stribeck_speed", "m/s");
+  if (std::isnan(surface.static_friction)) {
+    if (surface.stribeck_speed == 0.0) return;
+    refuse("stribeck_speed", with_unit(surface.stribeck_speed, "m/s"),
+           "0 where static_friction is not given");
+  }
+  finite(surface.static_friction, "static_friction", "");
+  if (surface.static_friction >= surface.friction) return;
+  refuse("static_friction", to_text(surface.static_friction),
+         "not less than friction, " + to_text(surface.friction));
 }
 
 void PartCheck::body(BodyId id, std::string_view quantity, bool may_be_ground) const {

@@ -3,15 +3,36 @@
 /// \file
 /// The contact law of a pair of surfaces (docs/method.md, section 2; Johansson 1999, section 2).
 
+#include <cmath>
 #include <limits>
 
 namespace carom {
 
 /// Coefficients of the contact law between two surfaces. `friction` and `normal_restitution` are required.
 struct Surface {
-  double friction = std::numeric_limits<double>::quiet_NaN();            ///< coefficient of friction, >= 0
+  double friction = std::numeric_limits<double>::quiet_NaN();  ///< coefficient of sliding friction mu_k, >= 0
   double normal_restitution = std::numeric_limits<double>::quiet_NaN();  ///< e_n in [0, 1]
   double tangential_restitution = 0.0;                                   ///< e_t in [0, 1]
+  /// Coefficient of sticking mu_s >= mu_k; NaN: the same as `friction`.
+  double static_friction = std::numeric_limits<double>::quiet_NaN();
+  /// Speed over which mu_s - mu_k falls by a factor of e, >= 0 [m/s]; 0: at once. Needs static_friction.
+  double stribeck_speed = 0.0;
+
+  /// True if sticking takes more than sliding.
+  [[nodiscard]] bool has_static_friction() const { return static_friction > friction; }
+  /// Coefficient of a contact that sticks: mu_s.
+  [[nodiscard]] double sticking_friction() const {
+    return has_static_friction() ? static_friction : friction;
+  }
+  /// Coefficient at a sliding speed >= 0 [m/s]: mu_k + (mu_s - mu_k) exp(-speed/stribeck_speed); with the
+  /// stribeck_speed 0 mu_s at rest and mu_k at any other speed.
+  [[nodiscard]] double friction_at(double speed) const {
+    if (!has_static_friction()) return friction;
+    if (stribeck_speed > 0.0) {
+      return friction + (static_friction - friction) * std::exp(-speed / stribeck_speed);
+    }
+    return speed > 0.0 ? friction : static_friction;
+  }
 };
 
 }  // namespace carom

@@ -186,6 +186,9 @@ std::uint64_t System::fingerprint() const {
     print.add(surface.friction);
     print.add(surface.normal_restitution);
     print.add(surface.tangential_restitution);
+    if (!surface.has_static_friction()) return;
+    print.add(surface.static_friction);
+    print.add(surface.stribeck_speed);
   };
   for (const auto& [pair, surface] : laws_) {
     print.add(std::uint64_t{pair.first});

@@ -251,7 +251,10 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   }
   self.model = std::move(edited);
   self.state = std::move(state);
+  // What stuck goes on sticking: velocities have not changed.
+  auto modes = std::move(self.companion.modes);
   self.forget_history();
+  self.companion.modes = std::move(modes);
   self.book_intervention();
 }
 

@@ -93,6 +93,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.control = {};
   place_obstacles(state, step, end_time);
   start_loads(state, companion);
+  remember_sticking(companion);
   if (chain_.statistics().problems > 0) chain_.reset_statistics();  // of a step that failed
   const auto islands = static_cast<Index>(assembly_->islands().size());
   for (Index island = 0; island < islands; ++island) {
@@ -127,6 +128,15 @@ void TimeStepper::start_loads(const State& state, Companion& companion) {
   }
   loads.valid = true;
   loads.mean = mean_rule();
+}
+
+void TimeStepper::remember_sticking(const Companion& companion) {
+  if (!finder_.has_static_friction()) return;
+  sticking_.clear();
+  for (const auto& [key, mode] : companion.modes) {
+    if (mode == ContactMode::stick) sticking_.push_back(key);
+  }
+  std::sort(sticking_.begin(), sticking_.end());
 }
 
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
@@ -185,6 +195,12 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   clusters_in_use_ = 0;
   finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_);
   if (contacts_.empty()) return;
+  if (finder_.has_static_friction()) {
+    for (Contact& contact : contacts_) {
+      if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
+      contact.friction = contact.law.sticking_friction();
+    }
+  }
   const Range v = assembly_->islands()[island].v;
   response_.resize(trial_.v.size());
   std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);

@@ -54,6 +54,7 @@ public:
 private:
   void place_obstacles(const State& state, double step, double end_time);
   void start_loads(const State& state, Companion& companion);
+  void remember_sticking(const Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
@@ -147,9 +148,10 @@ private:
   bool contacts_need_rotations_ = false;
   bool start_needs_rotations_ = false;          // the one or the other
   std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
-  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
-  std::vector<double> response_;  // changes of velocity by contact, empty until anything touches
-  std::vector<double> update_;    // changes of velocities, of the linearly implicit iteration
+  std::vector<double> rounding_;      // what rounding cuts off v_{j+1}; velocities without contact before
+  std::vector<double> response_;      // changes of velocity by contact, empty until anything touches
+  std::vector<double> update_;        // changes of velocities, of the linearly implicit iteration
+  std::vector<ContactKey> sticking_;  // in the last step, ordered; where static friction asks
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
