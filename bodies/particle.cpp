@@ -1,7 +1,7 @@
 #include <carom/bodies/particle.h>
 
-#include <algorithm>
 #include <carom/core/pair.h>
+#include <algorithm>
 
 namespace carom::generic {
 

@@ -1,7 +1,7 @@
 #include <carom/bodies/rigid_body.h>
 
-#include <algorithm>
 #include <carom/core/compensated_sum.h>
+#include <algorithm>
 
 #include <cmath>
 #include <limits>

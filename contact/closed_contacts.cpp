@@ -19,11 +19,14 @@ constexpr double dependent = 1e-11;
 
 }  // namespace
 
-void ClosedContacts::locate(const ContactFinder& finder, const StateView& state,
-                            const Evaluation& evaluation, const ObstaclePlaces& places) {
+void ClosedContacts::locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation,
+                            const ObstaclePlaces& places) {
   for (ClosedContact& contact : contacts_) {
     finder.contact(contact.pair, state, evaluation, places, contact.at);
-    contact.friction = contact.slippery ? 0.0 : contact.at.law.friction;
+    const Surface& law = contact.at.law;
+    contact.friction = contact.slippery   ? 0.0
+                       : contact.sticks() ? law.sticking_friction()
+                                          : law.sliding_friction(contact.at.sliding_speed(state.v));
   }
 }
 
@@ -151,7 +154,9 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
 /// Keeps the vectors along which forces may change without anybody noticing.
 void ClosedContacts::spread(std::size_t first, std::size_t last) {
   const std::size_t n = rows_.size();
-  const auto entry = [&](std::size_t i, std::size_t j) { return matrix_[row_order_[i] * n + column_order_[j]]; };
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    return matrix_[row_order_[i] * n + column_order_[j]];
+  };
   for (std::size_t free = rank_; free < n; ++free) {
     work_.assign(n, 0.0);
     work_[column_order_[free]] = 1.0;
@@ -236,8 +241,8 @@ bool ClosedContacts::corrections(const Assembly& assembly, const double* velocit
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Contact& at = contacts_[rows_[i].contact].at;
         // What sticks has no place of its own: its tangent is kept on velocity level.
-        unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap)
-                               : -at.velocity(rows_[i].tangent ? 1 : 0, velocity);
+        unknown_[i] =
+            position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(rows_[i].tangent ? 1 : 0, velocity);
         any = any || unknown_[i] != 0.0;
       }
       if (!solve()) continue;

@@ -1,10 +1,10 @@
 #pragma once
 
 /// \file
-/// Contacts that stay closed for a while (docs/method.md, section 7). Their normals, and the tangents of those
-/// that stick, are constraints on the accelerations; those that slip rub against their motion. With the rows
-/// G of the constraints and the columns D along which their forces act (the normal turned into the cone of
-/// friction where a contact slips) find lambda with
+/// Contacts that stay closed for a while (docs/method.md, section 7). Their normals, and the tangents of
+/// those that stick, are constraints on the accelerations; those that slip rub against their motion. With the
+/// rows G of the constraints and the columns D along which their forces act (the normal turned into the cone
+/// of friction where a contact slips) find lambda with
 ///
 ///     G a + drift = 0,   a = a_free + M^-1 D lambda.
 ///
@@ -54,11 +54,11 @@ public:
   /// Brings `at` and the coefficients of sliding contacts to a state.
   void locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation,
               const ObstaclePlaces& places);
-  /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in: a_free
-  /// False where no forces keep the constraints; the contacts' forces are then not finite.
+  /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in:
+  /// a_free False where no forces keep the constraints; the contacts' forces are then not finite.
   bool add_reactions(const Assembly& assembly, double* acceleration);
-  /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces are
-  /// not unique (a brick that sticks at two corners), they are shared out so that the margin is largest.
+  /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces
+  /// are not unique (a brick that sticks at two corners), they are shared out so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);
 
   /// Takes the gaps out of the positions, and what moves the constraints out of the velocities, by the
@@ -79,14 +79,14 @@ private:
   void spread(std::size_t first, std::size_t last);
 
   std::vector<ClosedContact> contacts_;
-  std::vector<Row> rows_;          // of the group at hand
-  std::vector<double> response_;   // M^-1 D, by row, Contact::max_columns numbers each
-  std::vector<double> matrix_;     // G M^-1 D, then its factors
-  std::vector<double> unknown_;    // right side, then lambda
+  std::vector<Row> rows_;         // of the group at hand
+  std::vector<double> response_;  // M^-1 D, by row, Contact::max_columns numbers each
+  std::vector<double> matrix_;    // G M^-1 D, then its factors
+  std::vector<double> unknown_;   // right side, then lambda
   std::vector<double> work_;
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;
-  std::vector<double> null_;       // null vectors of the systems last solved, by group
+  std::vector<double> null_;  // null vectors of the systems last solved, by group
   struct Spread {
     std::size_t first = 0, last = 0;  // contacts
     std::size_t vector = 0;           // begin in null_: normal and tangential numbers of the contacts in turn

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The machine of the event-driven mode: all islands of a model, each at its own pace, met at times asked for.
+/// The machine of the event-driven mode: all islands of a model, each at its own pace, met at times asked
+/// for.
 
 #include <carom/contact/contact_finder.h>
 #include <carom/core/assembly.h>

@@ -99,7 +99,8 @@ void IslandDriver::advance(double target, DriverNews& news) {
 
 void IslandDriver::write(State& state, ContactModes& modes) const {
   motion_.scatter(seen_, state);
-  for (const ClosedContact& contact : motion_.closed().list()) modes.emplace_back(contact.at.key, contact.mode);
+  for (const ClosedContact& contact : motion_.closed().list())
+    modes.emplace_back(contact.at.key, contact.mode);
 }
 
 void IslandDriver::take_step() {
@@ -246,7 +247,8 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       below = true;
     }
     if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) break;
-    double next = rough.guard == Guard::force ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
+    double next =
+        rough.guard == Guard::force ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
     if (!(next > low && next < high) || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
   }
@@ -304,13 +306,16 @@ bool IslandDriver::at_rest() {
   const Range v = assembly_->islands()[motion_.island()].v;
   const MotionWorkspace& work = work_->motion;
   double fastest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) fastest = std::max(fastest, std::abs(work.trial.v[i]) * work.lengths[i]);
+  for (Index i = v.begin; i < v.end; ++i)
+    fastest = std::max(fastest, std::abs(work.trial.v[i]) * work.lengths[i]);
   if (fastest > no_speed) return false;
   double free = 0.0, left = 0.0;
   motion_.evaluate(time_, y_.data(), false);
-  for (Index i = v.begin; i < v.end; ++i) free = std::max(free, std::abs(work.acceleration[i]) * work.lengths[i]);
+  for (Index i = v.begin; i < v.end; ++i)
+    free = std::max(free, std::abs(work.acceleration[i]) * work.lengths[i]);
   motion_.evaluate(time_, y_.data(), true);
-  for (Index i = v.begin; i < v.end; ++i) left = std::max(left, std::abs(work.acceleration[i]) * work.lengths[i]);
+  for (Index i = v.begin; i < v.end; ++i)
+    left = std::max(left, std::abs(work.acceleration[i]) * work.lengths[i]);
   return left <= no_acceleration * free;
 }
 

@@ -32,8 +32,8 @@ struct CAROM_API DriverWorkspace {
   SolverChain chain;
   ContactCluster cluster;
   ModeDecision decision;
-  std::vector<Contact> contacts;      // of all pairs of an island
-  std::vector<Contact> touching;      // of one body
+  std::vector<Contact> contacts;  // of all pairs of an island
+  std::vector<Contact> touching;  // of one body
   std::vector<Contact> captured;
   std::vector<Candidate> candidates;  // of one body
   std::vector<ForceMargin> margins;
@@ -55,8 +55,8 @@ using ContactModes = std::vector<std::pair<ContactKey, ContactMode>>;
 /// Drives one island. Its memory is its own but for the workspace.
 class CAROM_API IslandDriver {
 public:
-  IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options, Index island,
-               DriverWorkspace& work);
+  IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options,
+               Index island, DriverWorkspace& work);
 
   /// Starts at a state. \param present modes of contacts before, if known
   void start(const State& state, const ContactModes& present);
@@ -69,7 +69,8 @@ public:
   [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
 private:
-  // What is found: nothing, an end of a gap, of a force, of slipping; a break of a law; or that the flow is to start anew.
+  // What is found: nothing, an end of a gap, of a force, of slipping; a break of a law; or that the flow is
+  // to start anew.
   enum class Guard : std::uint8_t { nothing, gap, force, slip, law, restart };
   struct Found {
     double time;
@@ -133,27 +134,27 @@ private:
   IslandMotion motion_;
   std::unique_ptr<Flow> flow_;
 
-  double time_ = 0.0;        // up to which the island is decided
-  std::vector<double> y_;    // at time_
-  double looked_at_ = 0.0;   // time last advanced to
-  std::vector<double> seen_; // y then
+  double time_ = 0.0;                           // up to which the island is decided
+  std::vector<double> y_;                       // at time_
+  double looked_at_ = 0.0;                      // time last advanced to
+  std::vector<double> seen_;                    // y then
   std::array<double, work_lines> delivered_{};  // works told so far
-  bool fresh_ = true;        // start_gap_ counts as touching
-  bool pending_ = false;     // the flow's last step is ahead of time_
-  bool in_phase_ = false;    // modes are decided and the flow has started
+  bool fresh_ = true;                           // start_gap_ counts as touching
+  bool pending_ = false;                        // the flow's last step is ahead of time_
+  bool in_phase_ = false;                       // modes are decided and the flow has started
   bool resting_ = false;
-  Found next_{};             // event in the pending step
+  Found next_{};  // event in the pending step
   Watch start_, end_;
   std::array<std::vector<double>, samples> between_;  // margins at equal distances
-  double step_ = 0.0;        // to try first in the next phase
-  std::vector<char> closed_at_;  // by pair
-  double velocity_scale_ = 0.0;  // of the island at the start of the phase [m/s]
-  double force_scale_ = 0.0;     // [N]
-  double gap_noise_ = 0.0;       // rounding of gaps [m]
+  double step_ = 0.0;                                 // to try first in the next phase
+  std::vector<char> closed_at_;                       // by pair
+  double velocity_scale_ = 0.0;                       // of the island at the start of the phase [m/s]
+  double force_scale_ = 0.0;                          // [N]
+  double gap_noise_ = 0.0;                            // rounding of gaps [m]
   std::vector<Break> breaking_;
   std::vector<ContactPair> lifting_;
-  std::vector<double> breaks_;  // of laws of time, ascending [s]
-  ContactPair stopped_;  // has just stopped slipping
+  std::vector<double> breaks_;         // of laws of time, ascending [s]
+  ContactPair stopped_;                // has just stopped slipping
   std::vector<ClosedContact> before_;  // closed before the event
   ClosedContacts capture_;
   SolutionList solutions_;
@@ -164,8 +165,8 @@ private:
   };
   static constexpr std::size_t remembered = 16;
   std::vector<Impact> last_impacts_;  // the latest, in time
-  std::int64_t counted_ = 0;   // events in the window
-  double window_start_ = 0.0;  // of event_limit
+  std::int64_t counted_ = 0;          // events in the window
+  double window_start_ = 0.0;         // of event_limit
 };
 
 }  // namespace carom

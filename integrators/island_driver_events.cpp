@@ -83,7 +83,8 @@ void IslandDriver::begin_phase(DriverNews& news) {
   stopped_ = {};
   fresh_ = false;
 
-  if (!motion_.evaluate(time_, y_.data(), true)) fail("the forces of closed contacts contradict each other", {});
+  if (!motion_.evaluate(time_, y_.data(), true))
+    fail("the forces of closed contacts contradict each other", {});
   if (settle(news)) motion_.evaluate(time_, y_.data(), true);
   in_phase_ = true;
   resting_ = at_rest();
@@ -125,7 +126,9 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   std::vector<Contact>& touching = work_->touching;
   touching.clear();
   for (std::size_t i = first; i < last; ++i) {
-    if (touches(i)) touching.push_back(work_->contacts[i]);
+    if (!touches(i)) continue;
+    Contact& contact = touching.emplace_back(work_->contacts[i]);
+    contact.friction = contact.law.friction_at(contact.sliding_speed(velocity));
   }
   const bool captured = fastest <= options_.capture_speed;
   if (captured) take_captured(first, last);
@@ -136,12 +139,14 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   if (!cluster.solve(work_->chain).usable()) {
     std::vector<std::string> names;
     for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
-    fail("the contact problem of an impact is not solved (" + std::string(to_string(cluster.report().outcome)) + ")",
+    fail("the contact problem of an impact is not solved (" +
+             std::string(to_string(cluster.report().outcome)) + ")",
          std::move(names), &cluster);
   }
   cluster.apply(velocity);
   const Range v = assembly_->islands()[motion_.island()].v;
-  std::copy(velocity + v.begin, velocity + v.end, y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
+  std::copy(velocity + v.begin, velocity + v.end,
+            y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
   book_impact(captured, energy_before, news);
   if (captured) close_captured(news);
 }
@@ -201,7 +206,7 @@ void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& 
       const double gained = 0.5 * impulse * (before + after);
       gain += gained;
       scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
-      news.flows[captured  ? EnergyFlow::accumulation
+      news.flows[captured   ? EnergyFlow::accumulation
                  : row == 0 ? EnergyFlow::impact_normal
                             : EnergyFlow::impact_tangential] -= gained;
       news.flows[EnergyFlow::external] += impulse * contact.obstacle_velocity[at];
@@ -221,7 +226,8 @@ void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& 
   if (!options_.refuse_energy_gain) return;
   std::vector<std::string> names;
   for (const Contact& contact : cluster.contacts()) names.push_back(finder_->name(contact.key));
-  fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names), &cluster);
+  fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
+       &cluster);
 }
 
 void IslandDriver::decide_modes(DriverNews& news) {
@@ -258,7 +264,7 @@ void IslandDriver::collect_candidates(std::size_t first, std::size_t last) {
     candidate.at = contact;
     const double slip = contact.rows == 2 ? contact.velocity(1, velocity) : 0.0;
     candidate.slip = std::abs(slip) > speed_noise() && candidate.pair != stopped_ ? slip : 0.0;
-    candidate.slippery = contact.law.friction == 0.0;
+    candidate.slippery = contact.law.sticking_friction() == 0.0;
     const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
     const auto before = std::find_if(before_.begin(), before_.end(), same);
     if (before != before_.end()) candidate.present = before->mode;
@@ -285,7 +291,8 @@ bool IslandDriver::decide_body(std::size_t first, std::size_t last, DriverNews& 
   if (decision == Decision::failed) {
     std::vector<std::string> names;
     for (const Candidate& candidate : candidates) names.push_back(finder_->name(candidate.at.key));
-    fail("the contact problem of the accelerations is not solved", std::move(names), &work_->decision.cluster());
+    fail("the contact problem of the accelerations is not solved", std::move(names),
+         &work_->decision.cluster());
   }
   if (decision == Decision::several) tell_choice(EventKind::several_accelerations, news);
   for (const Candidate& candidate : candidates) {
@@ -327,8 +334,10 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   ContactCluster& cluster = work_->cluster;
   cluster.build(*assembly_, touching, velocity);
   cluster.set_free_velocity(velocity);
-  if (!cluster.solve(work_->chain).usable() || solutions_.enumerate(cluster.problem()) == Outcome::not_solved) {
-    fail("no forces keep the contact and the impact without collision is not solved", std::move(names), &cluster);
+  if (!cluster.solve(work_->chain).usable() ||
+      solutions_.enumerate(cluster.problem()) == Outcome::not_solved) {
+    fail("no forces keep the contact and the impact without collision is not solved", std::move(names),
+         &cluster);
   }
   std::vector<double> restitution;
   for (const Contact& contact : touching) {
@@ -356,7 +365,8 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   const double energy_before = motion_.kinetic_energy(touching.front().body);
   cluster.apply(velocity);
   const Range v = assembly_->islands()[motion_.island()].v;
-  std::copy(velocity + v.begin, velocity + v.end, y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
+  std::copy(velocity + v.begin, velocity + v.end,
+            y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
   const std::size_t told = news.events.size();
   book_impact(false, energy_before, news);
   for (std::size_t i = told; i < news.events.size(); ++i) {
@@ -380,8 +390,8 @@ void IslandDriver::tell_changes(DriverNews& news) {
   const auto change = [&](EventKind kind, const Contact& contact, ContactMode mode) {
     EventRecord& event = tell(kind, contact, news);
     for (int row = 0; row < contact.rows; ++row) {
-      event.velocity_before[static_cast<std::size_t>(row)] = event.velocity_after[static_cast<std::size_t>(row)] =
-          contact.velocity(row, velocity);
+      event.velocity_before[static_cast<std::size_t>(row)] =
+          event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
     }
     event.energy_before = event.energy_after = motion_.kinetic_energy(contact.body);
     event.mode = mode;
@@ -431,13 +441,14 @@ void IslandDriver::count_event() {
 }
 
 void IslandDriver::remember_impact(const ContactKey& contact) {
-  if (!last_impacts_.empty() && last_impacts_.back().time == time_ && last_impacts_.back().contact == contact) return;
+  if (!last_impacts_.empty() && last_impacts_.back().time == time_ && last_impacts_.back().contact == contact)
+    return;
   if (last_impacts_.size() == remembered) last_impacts_.erase(last_impacts_.begin());
   last_impacts_.push_back({time_, contact});
 }
 
-/// Where the pattern of contacts repeats (by one to four impacts) and its intervals shrink in a settled ratio r,
-/// the sum of all that would follow the last interval D is D r/(1 - r).
+/// Where the pattern of contacts repeats (by one to four impacts) and its intervals shrink in a settled ratio
+/// r, the sum of all that would follow the last interval D is D r/(1 - r).
 double IslandDriver::accumulation_time() const {
   constexpr double settled = 1e-3;
   const std::size_t n = last_impacts_.size();

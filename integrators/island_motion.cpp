@@ -150,18 +150,19 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   };
   clear(work.of_position);
   clear(work.of_velocity);
-  changed = closed_.corrections(assembly, work.trial.v.data(), work.of_position.data(), work.of_velocity.data());
+  changed =
+      closed_.corrections(assembly, work.trial.v.data(), work.of_position.data(), work.of_velocity.data());
   if (!changed) return 0.0;
   double lost = 0.0;
-  // The potential changes by minus the work of its forces, to first order: the rest is the square of rounding.
+  // The potential changes by minus the work of its forces, to first order: the rest is the square of
+  // rounding.
   for (Index i = all.v.begin; i < all.v.end; ++i) {
     lost += work.evaluation.force[i] * work.of_position[i];
     shift = std::max(shift, std::abs(work.of_position[i]) * work.lengths[i]);
   }
   assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     kind.apply_mass(slots, work.of_velocity.data() + v, work.momentum.data() + v);
-    kind.advance(slots, work.trial.q.data() + q, work.of_position.data() + v,
-                 y.data() + (q - all.q.begin));
+    kind.advance(slots, work.trial.q.data() + q, work.of_position.data() + v, y.data() + (q - all.q.begin));
   });
   for (Index i = all.v.begin; i < all.v.end; ++i) {
     lost -= (work.trial.v[i] + 0.5 * work.of_velocity[i]) * work.momentum[i];

@@ -56,7 +56,8 @@ Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> cand
       contact.obstacle_velocity[row] = contact.obstacle_velocity_after[row] = -contact.drift[row];
     }
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    if (slides_[i].sign == 0.0) contact.law.friction = candidates[i].at.law.friction;
+    contact.friction = slides_[i].sign == 0.0 ? contact.law.sticking_friction()
+                                              : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
   if (contacts_.empty()) {
     acceleration_.assign(acceleration, acceleration + zero_.size());
@@ -65,7 +66,7 @@ Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> cand
   cluster_.build(assembly, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
-    if (sign != 0.0) cluster_.slide(c, -sign * contacts_[c].law.friction);
+    if (sign != 0.0) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
   const ContactReport& report = cluster_.solve(chain);
@@ -92,7 +93,7 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
     const double normal = force[static_cast<std::size_t>(cluster_.first_row(c))];
     const ContactMode found = cluster_.modes()[c];
     if (slides_[i].sign != 0.0) {
-      candidates[i].mode = !(normal > 0.0)          ? ContactMode::open
+      candidates[i].mode = !(normal > 0.0)         ? ContactMode::open
                            : slides_[i].sign > 0.0 ? ContactMode::slip_positive
                                                    : ContactMode::slip_negative;
     } else {
@@ -115,9 +116,8 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
       if (rate(0) >= -no_acceleration * std::max(size, std::abs(rate(0)))) continue;
       slide.out = false;
       changed = true;
-    } else if (slide.sign == 0.0 &&
-               (candidate.mode == ContactMode::slip_positive ||
-                candidate.mode == ContactMode::slip_negative)) {
+    } else if (slide.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
+                                     candidate.mode == ContactMode::slip_negative)) {
       slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
       changed = true;
     } else if (candidate.breaks && !slide.back && candidate.mode != ContactMode::open &&
@@ -134,7 +134,7 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
     const int row = cluster_.first_row(c);
-    const double ratio = -slides_[i].sign * contacts_[c].law.friction;
+    const double ratio = -slides_[i].sign * contacts_[c].friction;
     candidates[i].stiffness = problem.w(row, row) + ratio * problem.w(row, row + 1);
     candidates[i].free_acceleration = problem.vector()[static_cast<std::size_t>(row)];
   }

@@ -2,8 +2,8 @@
 
 /// \file
 /// Which contacts of a body stay closed, which of these stick? Decided on the level of accelerations
-/// (docs/method.md, section 7): contacts that touch without speed get forces by the law of contact with e = 0,
-/// written for accelerations; one that slips already rubs against its motion. What has no answer, or
+/// (docs/method.md, section 7): contacts that touch without speed get forces by the law of contact with e =
+/// 0, written for accelerations; one that slips already rubs against its motion. What has no answer, or
 /// several, is Painleve's: it is told which contact and which quantity is to blame.
 
 #include <carom/contact/closed_contacts.h>
@@ -22,13 +22,13 @@ namespace carom {
 struct Candidate {
   ContactPair pair;
   Contact at;
-  double slip = 0.0;                       ///< tangential velocity, 0 if it may stick [m/s]
-  ContactMode present = ContactMode::open; ///< before the decision
-  ContactMode mode = ContactMode::open;    ///< decided
-  bool breaks = false;   ///< its friction is exhausted: it slips against `push`, unless that cannot be
-  bool slippery = false; ///< without friction
-  bool lifts = false;    ///< its force has come to an end: it opens, unless that cannot be
-  double push = 0.0;     ///< the friction force that was exhausted [N]
+  double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
+  ContactMode present = ContactMode::open;  ///< before the decision
+  ContactMode mode = ContactMode::open;     ///< decided
+  bool breaks = false;    ///< its friction is exhausted: it slips against `push`, unless that cannot be
+  bool slippery = false;  ///< without friction
+  bool lifts = false;     ///< its force has come to an end: it opens, unless that cannot be
+  double push = 0.0;      ///< the friction force that was exhausted [N]
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]

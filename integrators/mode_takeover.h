@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside obstacles. Contacts
-/// that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section 7).
+/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside obstacles.
+/// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
+/// 7).
 
 #include <carom/contact/contact_finder.h>
 #include <carom/core/assembly.h>

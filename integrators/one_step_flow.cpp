@@ -25,10 +25,11 @@ constexpr std::array<std::array<double, stages>, stages> a{{
     {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
 }};
 // Of the difference between the two orders.
-constexpr std::array<double, stages> e{71.0 / 57600,      0.0,           -71.0 / 16695, 71.0 / 1920,
-                                       -17253.0 / 339200, 22.0 / 525,    -1.0 / 40};
+constexpr std::array<double, stages> e{71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
+                                       -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-// The next step aims at this part of the tolerance, and is never longer or shorter by more than these factors.
+// The next step aims at this part of the tolerance, and is never longer or shorter by more than these
+// factors.
 constexpr double safety = 0.9, most_growth = 10.0, most_shrinking = 0.2;
 
 }  // namespace
@@ -82,7 +83,8 @@ double OneStepFlow::error(double length) const {
   for (std::size_t i = 0; i < n; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < stages; ++k) sum += e[k] * slopes_[k * n + i];
-    const double allowed = tolerances[i] + relative_tolerance_ * std::max(std::abs(end_[i]), std::abs(trial_[i]));
+    const double allowed =
+        tolerances[i] + relative_tolerance_ * std::max(std::abs(end_[i]), std::abs(trial_[i]));
     const double part = std::abs(length * sum) / allowed;
     if (!(part <= worst)) worst = part;  // a NaN is kept
   }

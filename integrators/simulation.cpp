@@ -45,7 +45,9 @@ struct Simulation::Impl {
         driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode));
       }
     }
-    [[nodiscard]] const ContactFinder& finder() const { return stepper ? stepper->finder() : driver->finder(); }
+    [[nodiscard]] const ContactFinder& finder() const {
+      return stepper ? stepper->finder() : driver->finder();
+    }
 
     std::unique_ptr<TimeStepper> stepper;  // null in the event-driven mode
     std::unique_ptr<StepController> controller;
@@ -313,7 +315,9 @@ void Simulation::write_events(const std::string& path) const {
   write_file(path, text.str(), "events");
 }
 
-std::string Simulation::name(const ContactKey& key) const { return impl_->model->machines.finder().name(key); }
+std::string Simulation::name(const ContactKey& key) const {
+  return impl_->model->machines.finder().name(key);
+}
 Log& Simulation::log() { return impl_->log; }
 void Simulation::show_progress(bool on) { impl_->progress = on; }
 

@@ -39,8 +39,8 @@ public:
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Makes one step of the mode's length (EventDriven: of its interval), shorter where a periodic event is due
-  /// before its end. Throws SolverError; the simulation then stands where it stood.
+  /// Makes one step of the mode's length (EventDriven: of its interval), shorter where a periodic event is
+  /// due before its end. Throws SolverError; the simulation then stands where it stood.
   const StepReport& step();
   /// Runs until exactly `time` [s]. Throws ModelError for a time that is not finite or in the past,
   /// SolverError as step(): the simulation then stands at the last good state.
