@@ -1,0 +1,125 @@
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/model_error.h"
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+constexpr double gravity = 9.81;
+
+System ball_over_floor(const Surface& surface, const Vec<2>& position, const Vec<2>& velocity) {
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
+  system.add(Particle{.mass = 2.0, .position = position, .velocity = velocity}, "ball");
+  return system;
+}
+
+TEST(ModeSwitch, InFlightNothingChangesButTheMode) {
+  const System system = ball_over_floor({.friction = 0.3, .normal_restitution = 0.5}, {0.0, 1.0}, {1.0, 0.0});
+  Simulation simulation(system, TimeStepping{.step = 1e-3});
+  simulation.run_until(0.2);
+  const State before = simulation.state();
+  simulation.switch_to(EventDriven{});
+  EXPECT_EQ(simulation.state().q, before.q);
+  EXPECT_EQ(simulation.state().v, before.v);
+  EXPECT_EQ(simulation.energy().flow(EnergyFlow::mode_switch), 0.0);
+  simulation.run_until(0.3);
+  const BodyId ball = simulation.system().body("ball");
+  // Free fall: time stepping is exact in it, and so is the other mode, but for rounding.
+  EXPECT_NEAR(simulation.state().position(ball)[1], 1.0 - 0.5 * gravity * 0.09, 1e-13);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-12);
+}
+
+TEST(ModeSwitch, ViolationThatApproachesIsResolvedByAnImpactAndMovedOut) {
+  const System system =
+      ball_over_floor({.friction = 0.3, .normal_restitution = 0.5}, {0.0, 0.05}, {1.0, -3.0});
+  Simulation simulation(system, TimeStepping{.step = 1e-2});
+  simulation.run_until(0.02);
+  const BodyId ball = simulation.system().body("ball");
+  const double depth = -simulation.state().position(ball)[1];
+  const double speed = simulation.state().velocity(ball)[1];
+  ASSERT_GT(depth, 1e-3);
+  ASSERT_LT(speed, -3.0);
+  simulation.switch_to(EventDriven{});
+  EXPECT_NEAR(simulation.state().velocity(ball)[1], -0.5 * speed, 1e-12);
+  EXPECT_NEAR(simulation.state().position(ball)[1], 0.0, 1e-14);
+  EXPECT_NEAR(simulation.report().projected, depth, 1e-14);
+  ASSERT_EQ(simulation.events().size(), 1U);
+  EXPECT_EQ(simulation.events().front().kind, EventKind::mode_switch);
+  // What the impact took, less the potential energy that lifting the ball out brought in.
+  const double taken = simulation.energy().flow(EnergyFlow::mode_switch);
+  const double friction = 0.3 * 1.5 * -speed;  // sliding: change of the tangential velocity
+  const double kinetic =
+      0.5 * 2.0 * (speed * speed * (1.0 - 0.25) + 1.0 - (1.0 - friction) * (1.0 - friction));
+  if (friction < 1.0) EXPECT_NEAR(taken, kinetic - 2.0 * gravity * depth, 1e-12);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-12);
+  simulation.run_until(5.0);
+  EXPECT_EQ(simulation.state().velocity(ball)[1], 0.0);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-10);
+}
+
+TEST(ModeSwitch, BackAndForthWhileSliding) {
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  system.add(HalfPlane{.normal = incline(-0.3)}, Surface{.friction = 0.2, .normal_restitution = 0.0});
+  const Vec<2> down(std::cos(0.3), -std::sin(0.3));
+  const BodyId block = system.add(Particle{.mass = 1.0, .velocity = 2.0 * down});
+  const double acceleration = gravity * (std::sin(0.3) - 0.2 * std::cos(0.3));
+  Simulation simulation(system, EventDriven{});
+  const auto expect_on_its_way = [&](double tolerance) {
+    const double t = simulation.time();
+    EXPECT_NEAR(simulation.state().position(block).dot(down), 2.0 * t + 0.5 * acceleration * t * t,
+                tolerance);
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-10);
+  };
+  simulation.run_until(0.5);
+  expect_on_its_way(1e-10);
+  simulation.switch_to(TimeStepping{.step = 1e-3});
+  simulation.run_until(1.0);
+  // Lasting contact is found a step late at most once, at the change: h^2 g.
+  expect_on_its_way(1e-4);
+  simulation.switch_to(EventDriven{});
+  simulation.run_until(1.5);
+  expect_on_its_way(1e-4);
+}
+
+TEST(ModeSwitch, StickingStaysSticking) {
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  system.add(HalfPlane{.normal = incline(0.2)}, Surface{.friction = 0.5, .normal_restitution = 0.3});
+  const BodyId brick =
+      system.add(RigidBody{.mass = box(1.0, 0.4, 0.2), .position = 0.1 * incline(0.2), .angle = 0.2});
+  system.add(Polygon{.body = brick, .vertices = {{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}}});
+  Simulation simulation(system, EventDriven{});
+  const State start = simulation.state();
+  for (int i = 1; i <= 3; ++i) {
+    simulation.run_until(0.2 * i - 0.1);
+    simulation.switch_to(TimeStepping{.step = 1e-3});
+    simulation.run_until(0.2 * i);
+    simulation.switch_to(EventDriven{});
+  }
+  for (std::size_t i = 0; i < start.q.size(); ++i) {
+    EXPECT_NEAR(simulation.state().q[i], start.q[i], 1e-4) << i;  // h^2 g at every change
+  }
+  simulation.run_until(1.0);
+  for (const double v : simulation.state().v) EXPECT_NEAR(v, 0.0, 1e-12);
+}
+
+TEST(ModeSwitch, ImpossibleOptionsChangeNothing) {
+  Simulation simulation(ball_over_floor({.friction = 0.0, .normal_restitution = 1.0}, {0.0, 1.0}, {0.0, 0.0}),
+                        TimeStepping{});
+  simulation.run_until(0.1);
+  EXPECT_MODEL_ERROR(simulation.switch_to(EventDriven{.relative_tolerance = 0.0}), "relative_tolerance is 0");
+  EXPECT_TRUE(std::holds_alternative<TimeStepping>(simulation.mode()));
+  simulation.run_until(0.2);
+  EXPECT_EQ(simulation.time(), 0.2);
+}
+
+}  // namespace
