@@ -25,7 +25,7 @@ System bouncing_bar() {
 
 TEST(CrossCheck, SmoothMotionHasOrderTwo) {
   System system;
-  const BodyId mass = system.add(Particle{.mass = 1.0, .position = {1.0, 0.5}});
+  const BodyId mass = system.add(Particle{.mass = 1.0, .position = {1.0, 0.5}, .velocity = {-2.0, 4.0}});
   system.add(SpringDamper{.from = {ground, {0.0, 0.0}}, .to = mass, .stiffness = 100.0, .free_length = 0.5});
   CrossCheckOptions options;
   options.end = 1.0;
