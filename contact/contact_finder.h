@@ -74,6 +74,9 @@ public:
   /// True if some surface takes more to slip than to slide.
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
 
+  /// True if the obstacle of a pair moves.
+  [[nodiscard]] bool moves(const ContactPair& pair) const { return obstacles_[pair.obstacle].moving != none; }
+
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
 

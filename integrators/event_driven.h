@@ -23,8 +23,8 @@ struct EventDriven {
   /// Distance of the times at which step() stops and observers are called, > 0 [s]. It does not change the
   /// motion: every island goes at its own pace, and is looked at in between.
   double interval = 1e-2;
-  /// No step of the integrator is longer, > 0 [s]. What a law of time does between the stages of a step goes
-  /// unseen; shorter than the shortest pulse of a load keeps it seen.
+  /// No step is longer where loads or obstacles depend on time, > 0 [s]. What happens between the stages of a
+  /// step goes unseen: it must be shorter than the shortest pulse of a load, and than a period of a motion.
   double longest_step = 0.1;
 
   /// Two surfaces this near at the start touch; deeper ones are refused, > 0 [m].

@@ -80,6 +80,7 @@ private:
   // What is watched over a step: values at its start and at its end, and between them where asked.
   struct Watch {
     std::vector<StepPolynomial::End> gaps;   // by pair
+    std::vector<double> bends;               // by pair: bound of the sixth derivative by turning [m/s^6]
     std::vector<StepPolynomial::End> slips;  // by closed contact
     std::vector<double> margins;             // by body that touches
     std::vector<double> noises;              // rounding of the margins
@@ -94,8 +95,16 @@ private:
 
   // Smooth phases.
   void take_step();
+  [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
   [[nodiscard]] Found find_event();
+  // A gap at a time, with what bounds its sixth derivative.
+  struct GapLook {
+    double time;
+    StepPolynomial::End gap;  // derivatives with respect to time
+  };
+  [[nodiscard]] GapLook look_at_gap(std::size_t pair, double time);
+  [[nodiscard]] double first_closing(std::size_t pair, const GapLook& from, const GapLook& to, int depth);
   [[nodiscard]] Found locate(const Found& rough);
   void go_to_event(DriverNews& news);
   void accept_step(DriverNews& news);

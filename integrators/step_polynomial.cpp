@@ -2,6 +2,7 @@
 
 #include <carom/integrators/step_polynomial.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -56,6 +57,8 @@ double StepPolynomial::at(const Coefficients& b, double tau) const {
   }
   return work[0];
 }
+
+double StepPolynomial::lower_bound() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
 
 double StepPolynomial::value(double tau) const { return at(b_, tau); }
 

@@ -26,6 +26,8 @@ public:
   /// Degree 4, through five values at equal distances.
   [[nodiscard]] static StepPolynomial through(std::span<const double, 5> values);
 
+  /// A number that it does not fall below: the least of its coefficients.
+  [[nodiscard]] double lower_bound() const;
   /// Its value.
   [[nodiscard]] double value(double tau) const;
   /// The polynomial plus a constant.
