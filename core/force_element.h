@@ -15,8 +15,8 @@
 ///       double potential(const ElementView<2>& at) const {                      // of the conservative part
 ///         return 0.5 * strength * at.position(body).squaredNorm();
 ///       }
-///       void check(const PartCheck& check) const { check.positive(strength, "strength", "N/m"); }  //
-///       optional void fingerprint(Fingerprint& print) const { print.add(strength); } // optional
+///       void check(const PartCheck& check) const { check.positive(strength, "strength", "N/m"); }
+///       void fingerprint(Fingerprint& print) const { print.add(strength); }  // as check(), optional
 ///     };
 ///
 /// Optional, for the rule `energy_momentum`: `void mean_loads(const ElementStep<D>&, ElementLoads<D>&)
@@ -26,11 +26,19 @@
 /// Optional internal variables, numbers of its own that follow a differential equation:
 ///
 ///       static constexpr int internal_size = 1;
-///       void initial_internal(double* z) const;                                   // optional, zero without
-///       void internal_rates(const ElementView<D>& at, double* rates) const;       // dz/dt, z in
-///       at.internal() double internal_loss_rate(const ElementView<D>& at) const;                // optional
-///       [W] void advance_internal(const ElementStep<D>& step, double* z) const;       // optional: by closed
-///       form double internal_loss(const ElementStep<D>& step) const;                   // optional [J]
+///       void initial_internal(double* z) const;                              // optional, zero without
+///       void internal_rates(const ElementView<D>& at, double* rates) const;  // dz/dt, z in at.internal()
+///       double internal_loss_rate(const ElementView<D>& at) const;           // optional [W]
+///       void advance_internal(const ElementStep<D>& step, double* z) const;  // optional: by closed form
+///       double internal_loss(const ElementStep<D>& step) const;              // optional [J]
+///
+/// Optional, for motion between events (ForceKind says more):
+///
+///       static constexpr bool depends_on_time = false;  // loads never ask for the time; else true
+///       std::vector<double> breaks{};                   // when laws of time jump: finite, ascending [s]
+///       static constexpr int guard_size = 1;            // numbers whose change of sign is a kink or
+///                                                       // a jump of the loads
+///       void guards(const ElementView<D>& at, double* out) const;
 ///
 /// An element may look at and push only bodies that it names in bodies(). Its potential is booked as
 /// `potential` unless it says `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
@@ -125,6 +133,7 @@ public:
       only_ground = only_ground && body == ground;
     }
     if (only_ground) check.refuse("body", "ground", "at least one body of this system");
+    if constexpr (has_breaks) check.breaks(part.breaks, "breaks");
     parts_.push_back(part);
   }
 
@@ -246,12 +255,35 @@ public:
       ForceKind::derivatives(at, element, out);
     }
   }
+  [[nodiscard]] Index guard_size() const override { return static_cast<Index>(guard_count); }
+  void guards(const EvaluationContext& at, Range elements, double* out) const override {
+    if constexpr (guard_count > 0) {
+      for (Index i = elements.begin; i < elements.end; ++i, out += guard_count) {
+        parts_[i].guards(view(at, i), out);
+      }
+    }
+  }
+  void breaks(Index element, std::vector<double>& out) const override {
+    if constexpr (has_breaks) {
+      out.insert(out.end(), parts_[element].breaks.begin(), parts_[element].breaks.end());
+    }
+  }
+  [[nodiscard]] bool depends_on_time() const override {
+    if constexpr (requires { P::depends_on_time; }) {
+      return P::depends_on_time;
+    } else {
+      return true;
+    }
+  }
   void fingerprint(Fingerprint& print) const override {
     for (const P& part : parts_) {
       const std::vector<BodyId> bodies = part.bodies();
       print.add(std::uint64_t{bodies.size()});
       for (const BodyId body : bodies) print.add(std::uint64_t{body.serial});
       if constexpr (requires { part.fingerprint(print); }) part.fingerprint(print);
+      if constexpr (has_breaks) {
+        if (!part.breaks.empty()) print.add(part.breaks);
+      }
     }
   }
 
@@ -264,6 +296,19 @@ private:
       return 0;
     }
   }();
+  /// Guards of an element.
+  static constexpr int guard_count = [] {
+    if constexpr (requires { P::guard_size; }) {
+      return static_cast<int>(P::guard_size);
+    } else {
+      return 0;
+    }
+  }();
+  static_assert(
+      guard_count == 0 ||
+          requires(const P& part, const ElementView<D>& view, double* out) { part.guards(view, out); },
+      "an element with guard_size has guards()");
+  static constexpr bool has_breaks = requires(const P& part) { std::span<const double>(part.breaks); };
   static constexpr bool has_mean_loads =
       requires(const P& part, const ElementStep<D>& step, ElementLoads<D>& out) {
     part.mean_loads(step, out);

@@ -130,6 +130,17 @@ public:
   [[nodiscard]] virtual double internal_loss(const StepContext& at, Range elements) const {
     return at.step * internal_loss_rate(at.middle, elements);
   }
+
+  /// What motion between events must know. Numbers of each element, equally many for all of a kind, whose
+  /// changes of sign are kinks or jumps of its loads.
+  [[nodiscard]] virtual Index guard_size() const { return 0; }
+  /// Writes them for a range of elements, one element after the other.
+  virtual void guards(const EvaluationContext& /*at*/, Range /*elements*/, double* /*out*/) const {}
+  /// Appends the times [s], ascending, at which the law of an element jumps or has a kink.
+  virtual void breaks(Index /*element*/, std::vector<double>& /*out*/) const {}
+  /// True if loads may depend on the time, other than by positions, velocities and internal variables.
+  [[nodiscard]] virtual bool depends_on_time() const { return true; }
+
   /// Adds all that distinguishes this kind's elements (functions cannot).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

@@ -59,6 +59,7 @@ struct LinearActuator {
   /// the step 6e-6 l, 6e-6 max(1 m/s, |dl/dt|).
   ActuatorLaw force_by_length{};
   ActuatorLaw force_by_rate{};
+  std::vector<double> breaks{};  ///< when `force` jumps or has a kink in time, ascending [s]
 
   /// The bodies it joins.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
@@ -123,6 +124,7 @@ struct RotaryActuator {
   /// `torque` with the step 6e-6 max(1 rad, |a|), 6e-6 max(1 rad/s, |da/dt|).
   ActuatorLaw torque_by_angle{};
   ActuatorLaw torque_by_rate{};
+  std::vector<double> breaks{};  ///< when `torque` jumps or has a kink in time, ascending [s]
 
   /// The bodies it joins.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }

@@ -23,6 +23,7 @@ struct AppliedForce {
 
   End<D> on{};                                 ///< body, or body and point (required)
   std::function<Vec<D>(double time)> force{};  ///< [N] (required)
+  std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
   /// The body it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
@@ -57,6 +58,7 @@ struct AppliedTorque {
 
   BodyId on{};                                  ///< a rigid body (required)
   std::function<double(double time)> torque{};  ///< counter-clockwise [N m] (required)
+  std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
   /// The body it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on}; }

@@ -27,6 +27,7 @@ struct Bushing {
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "bushing";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
+  static constexpr bool depends_on_time = false;
 
   End<2> from{};                      ///< a rigid body or ground, whose frame is that of K and C (required)
   End<2> to{};                        ///< a rigid body or ground (required)

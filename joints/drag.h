@@ -18,6 +18,7 @@ struct Drag {
   static constexpr Role role = Role::force;
   static constexpr int dimension = D;
   static constexpr std::string_view label = "drag";
+  static constexpr bool depends_on_time = false;
 
   End<D> on{};             ///< body, or body and point (required)
   double linear = 0.0;     ///< c1 >= 0 [N s/m]

@@ -19,6 +19,7 @@ struct FollowerLoad {
 
   End<2> on{};                                 ///< rigid body, or rigid body and point (required)
   std::function<Vec<2>(double time)> force{};  ///< in the body's frame [N] (required)
+  std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
   /// The body it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }

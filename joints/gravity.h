@@ -53,6 +53,7 @@ public:
   [[nodiscard]] bool needs_rotations() const override { return false; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] bool uses_middle() const override { return false; }
+  [[nodiscard]] bool depends_on_time() const override { return false; }
   void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override {
     evaluate(at.end, elements, loads);  // it is everywhere the same
   }

@@ -26,6 +26,7 @@ struct MaxwellElement {
   static constexpr std::string_view label = "Maxwell element";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr int internal_size = 1;
+  static constexpr bool depends_on_time = false;
 
   End<D> from{};             ///< required
   End<D> to{};               ///< required

@@ -29,6 +29,7 @@ struct NonlinearSpring {
   static constexpr int dimension = D;
   static constexpr std::string_view label = "nonlinear spring";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
+  static constexpr bool depends_on_time = false;
 
   End<D> from{};                                        ///< required
   End<D> to{};                                          ///< required

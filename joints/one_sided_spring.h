@@ -31,6 +31,8 @@ struct OneSidedSpring {
   static constexpr int dimension = D;
   static constexpr std::string_view label = Pulls ? "cable" : "bumper";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
+  static constexpr bool depends_on_time = false;
+  static constexpr int guard_size = 1;
 
   End<D> from{};             ///< required
   End<D> to{};               ///< required
@@ -85,6 +87,10 @@ struct OneSidedSpring {
     } else {
       line.add_pull(out, from, to, side * (spring + dashpot), stiffness, damping);
     }
+  }
+  /// Where it goes taut or slack: l - L [m].
+  void guards(const ElementView<D>& at, double* out) const {
+    out[0] = (at.position(to) - at.position(from)).norm() - free_length;
   }
   /// k x^2 / 2 [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {

@@ -61,6 +61,7 @@ public:
                                  const Loads& loads) const override;
   void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] bool uses_middle() const override { return false; }
+  [[nodiscard]] bool depends_on_time() const override { return false; }
   void derivatives(const EvaluationContext& at, Index element,
                    std::vector<LoadDerivative>& out) const override;
   [[nodiscard]] bool has_derivatives() const override { return true; }

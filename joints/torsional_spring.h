@@ -19,6 +19,7 @@ struct TorsionalSpring {
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "torsional spring";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
+  static constexpr bool depends_on_time = false;
 
   BodyId from{};            ///< a rigid body or ground (required)
   BodyId to{};              ///< a rigid body or ground (required)
