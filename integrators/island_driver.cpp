@@ -16,6 +16,9 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
 constexpr double force_rounding = 1e-11;
 
+// Numbers of kinks this small against their size over the step are zero.
+constexpr double kink_rounding = 1e-13;
+
 }  // namespace
 
 IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options,
@@ -26,8 +29,7 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
       work_(&work),
       motion_(assembly, finder, island, options, work.motion),
       y_(motion_.size()),
-      seen_(motion_.size()),
-      breaks_(finder.breaks()) {
+      seen_(motion_.size()) {
   closed_at_.assign(motion_.pairs().size(), 0);
 }
 
@@ -110,32 +112,40 @@ double IslandDriver::longest_step() const {
 }
 
 void IslandDriver::take_step() {
-  const auto due = std::upper_bound(breaks_.begin(), breaks_.end(), time_);
-  const double until_break = due == breaks_.end() ? never : *due - time_;
+  const std::vector<double>& breaks = motion_.breaks();
+  const auto due = std::upper_bound(breaks.begin(), breaks.end(), time_);
+  const double until_break = due == breaks.end() ? never : *due - time_;
   try {
     flow_->advance(std::min(longest_step(), until_break));
   } catch (const SolverError& error) {
     fail(error.what(), {});
   }
-  const double begin = flow_->begin(), length = flow_->end() - begin;
   if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
-  if (!start_.margins.empty()) {
-    between_.front() = start_.margins;
-    between_.back() = end_.margins;
-    for (std::size_t i = 1; i + 1 < samples; ++i) {
-      const double time = begin + length * static_cast<double>(i) / static_cast<double>(samples - 1);
-      work_->y.resize(motion_.size());
-      flow_->sample(time, work_->y);
-      motion_.evaluate(time, work_->y.data(), true);
-      motion_.closed().margins(work_->margins);
-      between_[i].clear();
-      for (const ForceMargin& margin : work_->margins) between_[i].push_back(margin.margin);
-    }
-  }
+  sample_step();
   next_ = find_event();
   const bool at_break = until_break < never && flow_->end() >= *due - 2.0 * epsilon * std::abs(*due);
   if (next_.guard == Guard::nothing && at_break) next_ = {*due, Guard::law, 0};
   pending_ = true;
+}
+
+/// What has no derivatives at hand is known by more values.
+void IslandDriver::sample_step() {
+  if (start_.margins.empty() && start_.kinks.empty()) return;
+  const double begin = flow_->begin(), length = flow_->end() - begin;
+  between_.front().margins = start_.margins;
+  between_.front().kinks = start_.kinks;
+  between_.back().margins = end_.margins;
+  between_.back().kinks = end_.kinks;
+  work_->y.resize(motion_.size());
+  for (std::size_t i = 1; i + 1 < samples; ++i) {
+    const double time = begin + length * static_cast<double>(i) / static_cast<double>(samples - 1);
+    flow_->sample(time, work_->y);
+    motion_.evaluate(time, work_->y.data(), true);
+    motion_.kinks(between_[i].kinks);
+    motion_.closed().margins(work_->margins);
+    between_[i].margins.clear();
+    for (const ForceMargin& margin : work_->margins) between_[i].margins.push_back(margin.margin);
+  }
 }
 
 bool IslandDriver::watch(double time, const double* y, Watch& out) {
@@ -175,6 +185,7 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
     out.margins.push_back(margin.margin);
     out.noises.push_back(force_rounding * std::max(size, force_scale_));
   }
+  motion_.kinks(out.kinks);
   return finite;
 }
 
@@ -206,9 +217,24 @@ IslandDriver::Found IslandDriver::find_event() {
   }
   for (std::size_t i = 0; i < end_.margins.size(); ++i) {
     std::array<double, samples> values{};
-    for (std::size_t k = 0; k < samples; ++k) values[k] = between_[k][i];
+    for (std::size_t k = 0; k < samples; ++k) values[k] = between_[k].margins[i];
     const double noise = std::max(start_.noises[i], end_.noises[i]);
     take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::force, i);
+  }
+  for (std::size_t i = 0; i < end_.kinks.size(); ++i) {
+    std::array<double, samples> values{};
+    double size = 0.0;
+    for (std::size_t k = 0; k < samples; ++k) {
+      values[k] = between_[k].kinks[i];
+      size = std::max(size, std::abs(values[k]));
+    }
+    const double noise = kink_rounding * size;
+    // One that has just been passed is at zero: the side it goes to counts.
+    const double sign = std::copysign(1.0, std::abs(values[0]) > noise ? values[0] : values[1]);
+    for (double& value : values) value *= sign;
+    const double before = first;
+    take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::kink, i);
+    if (first < before) found.sign = sign;
   }
   return found.guard == Guard::nothing ? found : locate(found);
 }
@@ -270,7 +296,12 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     f_low = start_.margins[rough.which];
     f_high = end_.margins[rough.which];
     below = f_high < 0.0;
+  } else if (rough.guard == Guard::kink) {
+    f_low = rough.sign * start_.kinks[rough.which];
+    f_high = rough.sign * end_.kinks[rough.which];
+    below = f_high < 0.0;
   }
+  const bool by_values = rough.guard == Guard::force || rough.guard == Guard::kink;
   for (int i = 0; i < most_landings; ++i) {
     flow_->land(time, work_->y);
     double value = 0.0, rate = 0.0, noise = 0.0;
@@ -287,13 +318,17 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       value = closed.slip_sign() * closed.at.velocity(1, state.v);
       rate = closed.slip_sign() * closed.at.acceleration(1, work_->motion.acceleration.data());
       noise = speed_noise() / 16.0;
+    } else if (rough.guard == Guard::kink) {
+      motion_.kinks(kinks_);
+      value = rough.sign * kinks_[rough.which];
+      noise = 0.25 * kink_rounding * std::max(std::abs(f_low), std::abs(f_high));
     } else {
       motion_.closed().margins(work_->margins);
       value = work_->margins[rough.which].margin;
       noise = std::max(start_.noises[rough.which], end_.noises[rough.which]);
     }
-    if (std::abs(value) <= noise) return {time, rough.guard, rough.which};
-    if (rough.guard != Guard::force && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
+    if (std::abs(value) <= noise) return {time, rough.guard, rough.which, rough.sign};
+    if (!by_values && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
     if (value > 0.0) {
       low = time;
       f_low = value;
@@ -303,12 +338,11 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       below = true;
     }
     if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) break;
-    double next =
-        rough.guard == Guard::force ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
+    double next = by_values ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
     if (!(next > low && next < high) || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
   }
-  return below ? Found{high, rough.guard, rough.which} : Found{high, Guard::restart, 0};
+  return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{high, Guard::restart, 0};
 }
 
 void IslandDriver::accept_step(DriverNews& news) {
@@ -350,7 +384,11 @@ void IslandDriver::go_to_event(DriverNews& news) {
       }
     }
   }
-  if (next_.guard == Guard::law) ++news.counts[static_cast<std::size_t>(EventKind::law_break)];
+  if (next_.guard == Guard::law || next_.guard == Guard::kink) {
+    const bool kink = next_.guard == Guard::kink;
+    EventRecord& event = tell(kink ? EventKind::kink : EventKind::law_break, {}, news);
+    if (kink) event.element = motion_.kink_element(next_.which);
+  }
   stopped_ = next_.guard == Guard::slip ? closed[next_.which].pair : ContactPair{};
   settle(news);
   begin_phase(news);

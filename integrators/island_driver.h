@@ -69,13 +69,14 @@ public:
   [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
 private:
-  // What is found: nothing, an end of a gap, of a force, of slipping; a break of a law; or that the flow is
-  // to start anew.
-  enum class Guard : std::uint8_t { nothing, gap, force, slip, law, restart };
+  // What is found: nothing, an end of a gap, of a force, of slipping; a kink of loads; a break of a law; or
+  // that the flow is to start anew.
+  enum class Guard : std::uint8_t { nothing, gap, force, slip, kink, law, restart };
   struct Found {
     double time;
     Guard guard = Guard::nothing;
-    std::size_t which = 0;  // pair; first contact of a margin; closed contact
+    std::size_t which = 0;  // pair, body that touches, closed contact, or kink
+    double sign = 1.0;      // of a kink's number before
   };
   // What is watched over a step: values at its start and at its end, and between them where asked.
   struct Watch {
@@ -84,6 +85,7 @@ private:
     std::vector<StepPolynomial::End> slips;  // by closed contact
     std::vector<double> margins;             // by body that touches
     std::vector<double> noises;              // rounding of the margins
+    std::vector<double> kinks;
   };
   static constexpr std::size_t samples = 5;
 
@@ -95,6 +97,7 @@ private:
 
   // Smooth phases.
   void take_step();
+  void sample_step();
   [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
   [[nodiscard]] Found find_event();
@@ -154,15 +157,18 @@ private:
   bool resting_ = false;
   Found next_{};  // event in the pending step
   Watch start_, end_;
-  std::array<std::vector<double>, samples> between_;  // margins at equal distances
-  double step_ = 0.0;                                 // to try first in the next phase
-  std::vector<char> closed_at_;                       // by pair
-  double velocity_scale_ = 0.0;                       // of the island at the start of the phase [m/s]
-  double force_scale_ = 0.0;                          // [N]
-  double gap_noise_ = 0.0;                            // rounding of gaps [m]
+  struct Sample {
+    std::vector<double> margins, kinks;
+  };
+  std::array<Sample, samples> between_;  // at equal distances over the step
+  double step_ = 0.0;                    // to try first in the next phase
+  std::vector<char> closed_at_;          // by pair
+  double velocity_scale_ = 0.0;          // of the island at the start of the phase [m/s]
+  double force_scale_ = 0.0;             // [N]
+  double gap_noise_ = 0.0;               // rounding of gaps [m]
   std::vector<Break> breaking_;
+  std::vector<double> kinks_;
   std::vector<ContactPair> lifting_;
-  std::vector<double> breaks_;         // of laws of time, ascending [s]
   ContactPair stopped_;                // has just stopped slipping
   std::vector<ClosedContact> before_;  // closed before the event
   ClosedContacts capture_;

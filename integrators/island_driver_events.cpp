@@ -414,6 +414,7 @@ EventRecord& IslandDriver::tell(EventKind kind, const Contact& contact, DriverNe
   EventRecord& event = news.events.emplace_back();
   event.time = time_;
   event.kind = kind;
+  if (contact.body == none) return event;
   event.contact = contact.key;
   event.body = assembly_->layout()->id(contact.body);
   event.obstacle = {contact.key.against.serial, assembly_->system().token()};

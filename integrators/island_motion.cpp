@@ -34,8 +34,19 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     const ForceKind& elements = *assembly.force_kinds()[kind];
     books_dissipative_ = books_dissipative_ || elements.books_dissipative();
     books_external_ = books_external_ || elements.books_external();
+    depends_on_time_ = depends_on_time_ || elements.depends_on_time();
+    const Range acting = assembly.elements(island, kind);
+    for (Index element = acting.begin; element < acting.end; ++element) {
+      elements.breaks(element, breaks_);
+      kink_elements_.insert(kink_elements_.end(), elements.guard_size(), assembly.element_id(kind, element));
+    }
   }
-  depends_on_time_ = books_external_ || (finder.has_moving_obstacles() && !pairs_.empty());
+  if (!pairs_.empty() && finder.has_moving_obstacles()) {
+    depends_on_time_ = true;
+    const std::vector<double> of_obstacles = finder.breaks();
+    breaks_.insert(breaks_.end(), of_obstacles.begin(), of_obstacles.end());
+  }
+  std::sort(breaks_.begin(), breaks_.end());
   double mass = 0.0;
   const Island& all = assembly.islands()[island];
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
@@ -169,6 +180,20 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
     y[q_size_ + (i - all.v.begin)] += work.of_velocity[i];
   }
   return lost;
+}
+
+void IslandMotion::kinks(std::vector<double>& out) const {
+  out.resize(kink_elements_.size());
+  if (out.empty()) return;
+  const EvaluationContext at{*assembly_, work_->trial.view(), work_->evaluation, island_};
+  std::size_t place = 0;
+  for (Index kind = 0; kind < assembly_->force_kinds().size(); ++kind) {
+    const Range elements = assembly_->elements(island_, kind);
+    const Index each = assembly_->force_kinds()[kind]->guard_size();
+    if (elements.empty() || each == 0) continue;
+    assembly_->force_kinds()[kind]->guards(at, elements, out.data() + place);
+    place += static_cast<std::size_t>(each) * elements.size();
+  }
 }
 
 double IslandMotion::kinetic_energy(Index body) const {

@@ -79,6 +79,14 @@ public:
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.
   void contact(std::size_t pair, Contact& out) const;
+  /// Numbers of the elements whose changes of sign are kinks of the loads, in the workspace's state.
+  void kinks(std::vector<double>& out) const;
+  /// The element of a kink.
+  [[nodiscard]] ElementId kink_element(std::size_t kink) const { return kink_elements_[kink]; }
+  /// How many there are.
+  [[nodiscard]] std::size_t kink_count() const { return kink_elements_.size(); }
+  /// Times at which laws of the island's elements and of obstacles jump, ascending [s].
+  [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
   /// True if the loads or obstacles depend on time.
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
 
@@ -91,6 +99,8 @@ private:
   std::vector<double> tolerances_;
   std::vector<ContactPair> pairs_;
   ClosedContacts closed_;
+  std::vector<ElementId> kink_elements_;
+  std::vector<double> breaks_;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false;
 };
 
