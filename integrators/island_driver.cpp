@@ -251,6 +251,10 @@ IslandDriver::GapLook IslandDriver::look_at_gap(std::size_t pair, double time) {
            contact.acceleration(0, work.acceleration.data())}};
 }
 
+/// Where a gap that falls is an event: what separates from a little below zero (of two corners that hit at
+/// almost the same time one is found late) does not fall through it once more.
+double IslandDriver::level(std::size_t pair) const { return std::min(0.0, start_.gaps[pair].value); }
+
 /// When a gap closes first. Between two looks it is taken for a polynomial of degree 5; where that might hide
 /// a root, a third look is taken in the middle. The flow's own accuracy covers what forces do between two
 /// looks, but a body that turns freely costs the flow no effort, and obstacles move unseen by it.
@@ -277,7 +281,7 @@ double IslandDriver::first_closing(std::size_t pair, const GapLook& from, const 
   const bool deep = !moving || depth >= least_of_moving;
   if (deep && gap.lower_bound() > error) return never;
   if ((deep && error <= fine) || depth == deepest) {
-    const double tau = gap.raised(gap_noise_).first_fall();
+    const double tau = gap.raised(gap_noise_ - level(pair)).first_fall();
     return tau < never ? from.time + tau * length : never;
   }
   if (!moving) middle = look_at_gap(pair, from.time + 0.5 * length);
@@ -310,7 +314,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     if (rough.guard == Guard::gap) {
       Contact contact;
       motion_.contact(rough.which, contact);
-      value = contact.gap;
+      value = contact.gap - level(rough.which);
       rate = contact.velocity(0, state.v);
       noise = gap_noise_ / 16.0;
     } else if (rough.guard == Guard::slip) {
