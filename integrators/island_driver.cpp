@@ -176,6 +176,8 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
   motion_.closed().margins(work_->margins);
   out.margins.clear();
   out.noises.clear();
+  // Where there are no loads all forces are rounding: of the mass times the tolerance of accelerations.
+  const double no_force = 0.1 * motion_.absolute_tolerances().back();
   for (const ForceMargin& margin : work_->margins) {
     double size = 0.0;
     for (std::size_t i = margin.first; i < margin.last; ++i) {
@@ -183,7 +185,7 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
       size += std::abs(closed.normal) + std::abs(closed.tangential);
     }
     out.margins.push_back(margin.margin);
-    out.noises.push_back(force_rounding * std::max(size, force_scale_));
+    out.noises.push_back(force_rounding * std::max(size, force_scale_) + no_force);
   }
   motion_.kinks(out.kinks);
   return finite;
