@@ -214,7 +214,8 @@ IslandDriver::Found IslandDriver::find_event() {
   for (std::size_t i = 0; i < closed.size(); ++i) {
     if (closed[i].sticks() || closed[i].slippery) continue;
     const double noise = speed_noise();
-    const auto slip = StepPolynomial::cubic(scaled(start_.slips[i]), scaled(end_.slips[i])).raised(noise);
+    const auto slip =
+        StepPolynomial::cubic(scaled(start_.slips[i]), scaled(end_.slips[i])).raised(noise - slip_level(i));
     take(slip.first_fall(), Guard::slip, i);
   }
   for (std::size_t i = 0; i < end_.margins.size(); ++i) {
@@ -256,6 +257,11 @@ IslandDriver::GapLook IslandDriver::look_at_gap(std::size_t pair, double time) {
 /// Where a gap that falls is an event: what separates from a little below zero (of two corners that hit at
 /// almost the same time one is found late) does not fall through it once more.
 double IslandDriver::level(std::size_t pair) const { return std::min(0.0, start_.gaps[pair].value); }
+
+/// Likewise of sliding: what has just turned round may still creep the other way after a projection.
+double IslandDriver::slip_level(std::size_t closed) const {
+  return std::min(0.0, start_.slips[closed].value);
+}
 
 /// When a gap closes first. Between two looks it is taken for a polynomial of degree 5; where that might hide
 /// a root, a third look is taken in the middle. The flow's own accuracy covers what forces do between two
@@ -321,7 +327,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       noise = gap_noise_ / 16.0;
     } else if (rough.guard == Guard::slip) {
       const ClosedContact& closed = motion_.closed().list()[rough.which];
-      value = closed.slip_sign() * closed.at.velocity(1, state.v);
+      value = closed.slip_sign() * closed.at.velocity(1, state.v) - slip_level(rough.which);
       rate = closed.slip_sign() * closed.at.acceleration(1, work_->motion.acceleration.data());
       noise = speed_noise() / 16.0;
     } else if (rough.guard == Guard::kink) {

@@ -107,6 +107,7 @@ private:
     StepPolynomial::End gap;  // derivatives with respect to time
   };
   [[nodiscard]] double level(std::size_t pair) const;
+  [[nodiscard]] double slip_level(std::size_t closed) const;
   [[nodiscard]] GapLook look_at_gap(std::size_t pair, double time);
   [[nodiscard]] double first_closing(std::size_t pair, const GapLook& from, const GapLook& to, int depth);
   [[nodiscard]] Found locate(const Found& rough);
