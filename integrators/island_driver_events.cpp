@@ -172,10 +172,19 @@ void IslandDriver::close_captured(DriverNews& news) {
   MotionWorkspace& work = work_->motion;
   std::vector<ClosedContact>& list = capture_.list();
   list.clear();
+  const double* const velocity = work.trial.v.data();
+  // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
+  // lifts it by, it falls again.
+  double fall = 0.0;
   for (const Contact& contact : work_->touching) {
-    if (contact.velocity(0, work.trial.v.data()) > options_.capture_speed) continue;
+    fall = std::max(fall, std::abs(contact.acceleration(0, work.acceleration.data())));
+  }
+  const double rounding = std::sqrt(2.0 * 4.0 * gap_noise_ * fall);
+  for (const Contact& contact : work_->touching) {
+    if (contact.velocity(0, velocity) > options_.capture_speed) continue;
     ClosedContact& closed = list.emplace_back();
-    closed.mode = ContactMode::slip_positive;
+    const bool stops = contact.sliding_speed(velocity) <= rounding;
+    closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
     closed.at = contact;
   }
   motion_.closed().list().swap(list);
