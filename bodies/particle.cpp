@@ -1,6 +1,7 @@
 #include <carom/bodies/particle.h>
 
 #include <carom/core/pair.h>
+
 #include <algorithm>
 
 namespace carom::generic {

@@ -1,8 +1,8 @@
 #include <carom/bodies/rigid_body.h>
 
 #include <carom/core/compensated_sum.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>

@@ -121,7 +121,7 @@ bool ClosedContacts::solve() {
   return std::all_of(unknown_.begin(), unknown_.end(), [](double number) { return std::isfinite(number); });
 }
 
-bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleration) {
+bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleration, bool change) {
   bool solved = true;
   spreads_.clear();
   null_.clear();
@@ -130,7 +130,9 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
     const std::size_t n = rows_.size();
     unknown_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      unknown_[i] = -contacts_[rows_[i].contact].at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
+      const Contact& at = contacts_[rows_[i].contact].at;
+      const int row = rows_[i].tangent ? 1 : 0;
+      unknown_[i] = change ? -at.times(row, acceleration) : -at.acceleration(row, acceleration);
     }
     solved = solve() && solved;
     for (std::size_t i = 0; i < n; ++i) {

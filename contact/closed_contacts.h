@@ -56,7 +56,8 @@ public:
               const ObstaclePlaces& places);
   /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in:
   /// a_free False where no forces keep the constraints; the contacts' forces are then not finite.
-  bool add_reactions(const Assembly& assembly, double* acceleration);
+  /// \param change the accelerations are a small change of others: the drift of the constraints is none of it
+  bool add_reactions(const Assembly& assembly, double* acceleration, bool change = false);
   /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces
   /// are not unique (a brick that sticks at two corners), they are shared out so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);

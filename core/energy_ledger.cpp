@@ -14,19 +14,14 @@ std::string_view to_string(StoredEnergy term) {
 }
 
 std::string_view to_string(EnergyFlow term) {
-  constexpr std::array<std::string_view, energy_flow_count> names{"external",
-                                                                  "intervention",
-                                                                  "dashpot",
-                                                                  "impact_normal",
-                                                                  "impact_tangential",
-                                                                  "contact_normal",
-                                                                  "sliding",
-                                                                  "joint_friction",
-                                                                  "rolling",
-                                                                  "accumulation",
-                                                                  "projection",
-                                                                  "mode_switch",
-                                                                  "coupling_discretisation"};
+  constexpr std::array<std::string_view, energy_flow_count> names{
+      "external",          "intervention",
+      "dashpot",           "impact_normal",
+      "impact_tangential", "impact_without_collision",
+      "contact_normal",    "sliding",
+      "joint_friction",    "rolling",
+      "accumulation",      "projection",
+      "mode_switch",       "coupling_discretisation"};
   return names[static_cast<std::size_t>(term)];
 }
 

@@ -20,22 +20,23 @@ inline constexpr std::size_t stored_energy_count = 4;
 /// Ways by which energy enters or leaves the store. All but `external` and `intervention` are counted as
 /// losses: positive where energy is lost.
 enum class EnergyFlow : std::uint8_t {
-  external,                 ///< work of prescribed loads, drivers and moving obstacles (a gain)
-  intervention,             ///< brought in by edits of the model or of the state (a gain)
-  dashpot,                  ///< lost in dashpots
-  impact_normal,            ///< lost in the normal direction of impacts
-  impact_tangential,        ///< lost in the tangential direction of impacts
-  contact_normal,           ///< normal work of lasting contact
-  sliding,                  ///< tangential work of lasting contact
-  joint_friction,           ///< lost in dry friction of joints
-  rolling,                  ///< lost in rolling resistance
-  accumulation,             ///< thrown away where an accumulation of impacts is closed
-  projection,               ///< taken out by moving bodies back onto constraints
-  mode_switch,              ///< taken out when the mode of integration is changed
-  coupling_discretisation,  ///< -(change of potential energy + work of the couplings over the steps)
+  external,                  ///< work of prescribed loads, drivers and moving obstacles (a gain)
+  intervention,              ///< brought in by edits of the model or of the state (a gain)
+  dashpot,                   ///< lost in dashpots
+  impact_normal,             ///< lost in the normal direction of impacts
+  impact_tangential,         ///< lost in the tangential direction of impacts
+  impact_without_collision,  ///< lost in impacts of contacts that did not approach (Painleve)
+  contact_normal,            ///< normal work of lasting contact
+  sliding,                   ///< tangential work of lasting contact
+  joint_friction,            ///< lost in dry friction of joints
+  rolling,                   ///< lost in rolling resistance
+  accumulation,              ///< thrown away where an accumulation of impacts is closed
+  projection,                ///< taken out by moving bodies back onto constraints
+  mode_switch,               ///< taken out when the mode of integration is changed
+  coupling_discretisation,   ///< -(change of potential energy + work of the couplings over the steps)
 };
 /// Number of ways.
-inline constexpr std::size_t energy_flow_count = 13;
+inline constexpr std::size_t energy_flow_count = 14;
 
 /// Name of a term, as used in tables and files: "kinetic", "impact_normal", ...
 [[nodiscard]] CAROM_API std::string_view to_string(StoredEnergy term);

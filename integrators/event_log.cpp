@@ -1,8 +1,6 @@
 // Problem: tell events to people and programs.
 
 #include <carom/core/csv.h>
-#include <carom/core/errors.h>
-#include <carom/core/part_check.h>
 #include <carom/integrators/event_log.h>
 
 #include <ostream>
@@ -30,14 +28,28 @@ void write_events(std::ostream& out, const std::vector<EventRecord>& events,
          "normal velocity after [m/s],tangential velocity after [m/s],normal impulse [N s],"
          "tangential impulse [N s],kinetic energy before [J],kinetic energy after [J],mode,outcome,solver,"
          "residual,accumulation time [s]\n";
+  std::string line;
+  const auto add = [&line](const auto& cell) {
+    if (!line.empty()) line += ',';
+    append_csv(line, cell);
+  };
   for (const EventRecord& event : events) {
-    out << to_text(event.time) << ',' << to_string(event.kind) << ',' << '"' << name_of(event) << '"';
+    line.clear();
+    add(event.time);
+    add(to_string(event.kind));
+    add(std::string_view(name_of(event)));
     for (const auto* numbers : {&event.velocity_before, &event.velocity_after, &event.impulse}) {
-      out << ',' << to_text((*numbers)[0]) << ',' << to_text((*numbers)[1]);
+      add((*numbers)[0]);
+      add((*numbers)[1]);
     }
-    out << ',' << to_text(event.energy_before) << ',' << to_text(event.energy_after) << ','
-        << to_string(event.mode) << ',' << to_string(event.outcome) << ',' << event.solver << ','
-        << to_text(event.residual) << ',' << to_text(event.accumulation_time) << '\n';
+    add(event.energy_before);
+    add(event.energy_after);
+    add(to_string(event.mode));
+    add(to_string(event.outcome));
+    add(event.solver);
+    add(event.residual);
+    add(event.accumulation_time);
+    out << line << '\n';
   }
 }
 

@@ -124,7 +124,7 @@ private:
   void resolve_body(std::size_t first, std::size_t last, double fastest, DriverNews& news);
   void take_captured(std::size_t first, std::size_t last);
   void close_captured(DriverNews& news);
-  void book_impact(bool captured, double energy_before, DriverNews& news);
+  void book_impact(EventKind kind, double energy_before, DriverNews& news);
   void decide_modes(DriverNews& news);
   bool decide_body(std::size_t first, std::size_t last, DriverNews& news);
   void collect_candidates(std::size_t first, std::size_t last);

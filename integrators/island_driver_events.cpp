@@ -24,6 +24,13 @@ constexpr double speed_rounding = 1e-12;
 // e = 1 in a corner.
 constexpr int most_impacts_at_once = 10000;
 
+/// Line of the account for the work of an impact along a row of a contact.
+EnergyFlow line_of(EventKind kind, int row) {
+  if (kind == EventKind::accumulation) return EnergyFlow::accumulation;
+  if (kind == EventKind::impact_without_collision) return EnergyFlow::impact_without_collision;
+  return row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential;
+}
+
 }  // namespace
 
 void IslandDriver::set_scales() {
@@ -90,7 +97,10 @@ void IslandDriver::begin_phase(DriverNews& news) {
   resting_ = at_rest();
   if (resting_) return;
   if (!watch(time_, y_.data(), start_)) fail("the loads are not finite", {});
-  flow_->start(time_, y_, step_);
+  // A method of many steps is not helped by the length that the last step had.
+  const bool one_step =
+      options_.method == FlowMethod::explicit_runge_kutta || options_.method == FlowMethod::one_step;
+  flow_->start(time_, y_, one_step ? step_ : 0.0);
 }
 
 /// Impacts at this instant, body by body, until nothing that touches approaches. True if there was one.
@@ -147,7 +157,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   const Range v = assembly_->islands()[motion_.island()].v;
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
-  book_impact(captured, energy_before, news);
+  book_impact(captured ? EventKind::accumulation : EventKind::impact, energy_before, news);
   if (captured) close_captured(news);
 }
 
@@ -196,14 +206,14 @@ void IslandDriver::close_captured(DriverNews& news) {
   locate_contacts();
 }
 
-void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& news) {
+void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews& news) {
   const ContactCluster& cluster = work_->cluster;
   const MotionWorkspace& work = work_->motion;
   double gain = 0.0, scale = 0.0;
   const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body);
   for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
     const Contact& contact = cluster.contacts()[c];
-    EventRecord& event = tell(captured ? EventKind::accumulation : EventKind::impact, contact, news);
+    EventRecord& event = tell(kind, contact, news);
     for (int row = 0; row < contact.rows; ++row) {
       const auto at = static_cast<std::size_t>(row);
       const auto place = static_cast<std::size_t>(cluster.first_row(c) + row);
@@ -215,9 +225,7 @@ void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& 
       const double gained = 0.5 * impulse * (before + after);
       gain += gained;
       scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
-      news.flows[captured   ? EnergyFlow::accumulation
-                 : row == 0 ? EnergyFlow::impact_normal
-                            : EnergyFlow::impact_tangential] -= gained;
+      news.flows[line_of(kind, row)] -= gained;
       news.flows[EnergyFlow::external] += impulse * contact.obstacle_velocity[at];
     }
     event.energy_before = energy_before;
@@ -226,7 +234,7 @@ void IslandDriver::book_impact(bool captured, double energy_before, DriverNews& 
     event.outcome = cluster.report().outcome;
     event.residual = cluster.report().residual;
     event.solver = cluster.report().solver;
-    if (captured) event.accumulation_time = accumulation_time();
+    if (kind == EventKind::accumulation) event.accumulation_time = accumulation_time();
     if (event.impulse[0] > 0.0) remember_impact(contact.key);
   }
   constexpr double rounding = 1e-13;  // of the sum of works
@@ -377,9 +385,8 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
   const std::size_t told = news.events.size();
-  book_impact(false, energy_before, news);
+  book_impact(EventKind::impact_without_collision, energy_before, news);
   for (std::size_t i = told; i < news.events.size(); ++i) {
-    news.events[i].kind = EventKind::impact_without_collision;
     news.events[i].stiffness = candidates[i - told].stiffness;
     news.events[i].free_acceleration = candidates[i - told].free_acceleration;
   }

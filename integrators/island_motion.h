@@ -49,6 +49,13 @@ public:
   void rates(double time, const double* y, double* rates) override;
   [[nodiscard]] std::span<const double> absolute_tolerances() const override { return tolerances_; }
 
+  /// Where coordinates and velocities correspond one to one and elements have no internal variables.
+  [[nodiscard]] bool has_jacobian() const override { return q_size_ == v_size_ && z_size_ == 0; }
+  /// By the elements' derivatives; reactions answer to a change of the loads, but for that of their
+  /// directions. The works' rows are zero: nothing depends on works, and Newton's method finds them as they
+  /// are.
+  void jacobian(double time, const double* y, double* jacobian) override;
+
   /// Contacts that are closed.
   [[nodiscard]] ClosedContacts& closed() { return closed_; }
   [[nodiscard]] const ClosedContacts& closed() const { return closed_; }
@@ -99,6 +106,7 @@ private:
   std::vector<double> tolerances_;
   std::vector<ContactPair> pairs_;
   ClosedContacts closed_;
+  std::vector<LoadDerivative> derivatives_;
   std::vector<ElementId> kink_elements_;
   std::vector<double> breaks_;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false;
