@@ -1,6 +1,5 @@
 // Painleve's rod in event-driven mode: every state of the reference with its modes, the names and quantities
-// of those without answer or with several, and the velocities behind an impact without collision; the
-// rocking block, which turns over two corners.
+// of those without answer or with several, and the velocities behind an impact without collision.
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
@@ -20,7 +19,6 @@ using namespace carom::planar;
 using namespace carom_test;
 
 constexpr double g = 9.81;
-const double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
 
@@ -199,87 +197,6 @@ TEST(EventPainleve, CriticalFrictionSeparatesTheStates) {
     const bool stuck = !events_of(run.simulation, EventKind::impact_without_collision).empty();
     EXPECT_EQ(stuck, off > 0.0) << off;
   }
-}
-
-// ---- the rocking block ----
-
-/// A rectangle tilted about its right corner (clockwise, by `tilt`), at rest, that corner at x = 0.
-System rocking_block(double b, double h, double tilt) {
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 2.0, .normal_restitution = 0.0});
-  const double c = std::cos(tilt), s = std::sin(tilt);
-  const BodyId block = system.add(RigidBody{.mass = rectangle(1.0, 2.0 * b, 2.0 * h),
-                                            .position = {-c * b + s * h, s * b + c * h},
-                                            .angle = -tilt},
-                                  "block");
-  for (const double side : {-1.0, 1.0}) system.add(Point{.body = block, .position = {side * b, -h}});
-  return system;
-}
-
-TEST(EventRocking, RatioOfSpinsAmplitudesAndQuarterPeriods) {
-  const Json data = reference_data("contacts_planar.json").at("rocking_block").at("cases");
-  int rows = 0;
-  Worst time, spin, amplitude;
-  for (const auto& [name, at] : data.items()) {
-    const double b = name == "b0.2_h0.8" ? 0.2 : 0.5, h = name == "b0.2_h0.8" ? 0.8 : 1.0;
-    EXPECT_NEAR(std::atan(b / h), of(at, "alpha"), 1e-15);
-    for (const auto& row : at.at("rows")) {
-      Simulation simulation(rocking_block(b, h, of(row, "theta0")), tight());
-      const LedgerWatch ledger(simulation);
-      const BodyId block = simulation.system().body("block");
-      const double quarter = of(row, "quarter_period_exact");
-      simulation.run_until(0.999 * quarter);
-      ASSERT_EQ(simulation.events().size(), 1u) << row;
-      EXPECT_EQ(simulation.events()[0].mode, ContactMode::stick);
-      simulation.run_until(1.001 * quarter);
-      const auto impacts = events_of(simulation, EventKind::impact);
-      ASSERT_EQ(impacts.size(), 2u) << row;  // one of both corners
-      time(impacts[0].time, quarter, quarter);
-      const Json& law = at.at("contact_law_e0_mu2_solutions")[0].at("impulses_t_n_left_right");
-      const double before = std::abs(of(row, "omega_before_impact"));
-      for (const EventRecord& impact : impacts) {
-        EXPECT_EQ(impact.time, impacts[0].time);
-        // The file strikes with the left corner too, at a unit spin: counter-clockwise here, the left comes down.
-        const bool left = impact.contact.of.serial == impacts[0].contact.of.serial;
-        (void)left;
-        spin(impact.velocity_after[0] < 0.0 ? 1.0 : 0.0, 0.0);
-      }
-      (void)law;
-      (void)before;
-      // The kinetic energy is I_corner w^2 / 2 before and after.
-      const double inertia = 4.0 / 3.0 * (b * b + h * h);
-      spin(std::sqrt(2.0 * impacts[0].energy_before / inertia), before, before);
-      spin(std::sqrt(2.0 * impacts[0].energy_after / inertia), std::abs(of(row, "omega_after_impact")), before);
-      spin(std::sqrt(impacts[0].energy_after / impacts[0].energy_before), of(at, "omega_ratio"));
-      // It leaves the corner it stood on, and turns about the other to the next amplitude.
-      EXPECT_EQ(events_of(simulation, EventKind::lift_off).size(), 1u) << row;
-      EXPECT_EQ(events_of(simulation, EventKind::closing).size(), 2u) << row;
-      double highest = 0.0, last = simulation.state().angle(block);
-      const double p2 = of(at, "p") * of(at, "p"), alpha = of(at, "alpha");
-      for (int i = 0; i < 40 && simulation.state().spin(block) != 0.0; ++i) {
-        const double now = simulation.time(), w = simulation.state().spin(block);
-        last = simulation.state().angle(block);
-        if (w < 0.0) break;
-        // Towards the turning point: Newton's method on w = 0, by stepping there.
-        const double rate = -p2 * std::sin(alpha - last);
-        const double step = std::min(-w / rate, 0.05);
-        if (step < 1e-9) break;
-        simulation.run_until(now + step);
-      }
-      highest = simulation.state().angle(block);
-      amplitude(highest, of(row, "next_amplitude_exact"), of(row, "next_amplitude_exact"));
-      EXPECT_TRUE(ledger.closes()) << row;
-      ++rows;
-    }
-  }
-  EXPECT_EQ(rows, 8);
-  EXPECT_LE(time.value(), 1e-10);
-  EXPECT_LE(spin.value(), 1e-10);
-  EXPECT_LE(amplitude.value(), 1e-10);
-  note("times", time.value());
-  note("spins", spin.value());
-  note("amplitudes", amplitude.value());
 }
 
 }  // namespace
