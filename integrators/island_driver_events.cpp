@@ -211,6 +211,9 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
   const MotionWorkspace& work = work_->motion;
   double gain = 0.0, scale = 0.0;
   const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body);
+  // Before those of this instant are remembered.
+  const double pile_up =
+      kind == EventKind::accumulation ? accumulation_time() : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
     const Contact& contact = cluster.contacts()[c];
     EventRecord& event = tell(kind, contact, news);
@@ -234,7 +237,7 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
     event.outcome = cluster.report().outcome;
     event.residual = cluster.report().residual;
     event.solver = cluster.report().solver;
-    if (kind == EventKind::accumulation) event.accumulation_time = accumulation_time();
+    event.accumulation_time = pile_up;
     if (event.impulse[0] > 0.0) remember_impact(contact.key);
   }
   constexpr double rounding = 1e-13;  // of the sum of works
@@ -479,9 +482,8 @@ double IslandDriver::accumulation_time() const {
     const double last = time(0) - time(1), before = time(1) - time(2), earlier = time(2) - time(3);
     const double ratio = last / before;
     if (!(ratio < 1.0) || !(std::abs(ratio - before / earlier) <= settled)) continue;
-    // The impact at hand is one interval more.
-    const double now = time_ - time(0);
-    const double since = now > 0.0 ? now : last;
+    // The impact at hand ends an interval that began with its like, a pattern ago.
+    const double since = time_ - last_impacts_[n - period].time;
     return time_ + since * ratio / (1.0 - ratio);
   }
   return std::numeric_limits<double>::quiet_NaN();
