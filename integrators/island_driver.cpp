@@ -302,6 +302,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
   constexpr int most_landings = 60;
   work_->y.resize(motion_.size());
   double low = flow_->begin(), high = flow_->end(), time = std::clamp(rough.time, low, high);
+  const double foretold = time;
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // something below zero was seen
   if (rough.guard == Guard::force) {
@@ -354,7 +355,8 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     if (!(next > low && next < high) || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
   }
-  return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{high, Guard::restart, 0};
+  // Nothing there: go on from where it was foretold, for behind it others may have been.
+  return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{foretold, Guard::restart, 0};
 }
 
 void IslandDriver::accept_step(DriverNews& news) {
