@@ -340,9 +340,11 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       value = work_->margins[rough.which].margin;
       noise = std::max(start_.noises[rough.which], end_.noises[rough.which]);
     }
-    if (std::abs(value) <= noise) return {time, rough.guard, rough.which, rough.sign};
+    // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
+    const bool opens = rough.guard == Guard::gap && rate >= 0.0 && start_.gaps[rough.which].first >= 0.0;
+    if (std::abs(value) <= noise && !opens) return {time, rough.guard, rough.which, rough.sign};
     if (!by_values && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
-    if (value > 0.0) {
+    if (value > 0.0 || opens) {
       low = time;
       f_low = value;
     } else {
@@ -352,7 +354,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     }
     if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) break;
     double next = by_values ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
-    if (!(next > low && next < high) || i % 8 == 7) next = 0.5 * (low + high);
+    if (!(next > low && next < high) || opens || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
   }
   // Nothing there: go on from where it was foretold, for behind it others may have been.

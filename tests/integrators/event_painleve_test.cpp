@@ -43,12 +43,13 @@ private:
     System system;
     system.add(Gravity{{0.0, -g}});
     system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = mu, .normal_restitution = 0.0});
-    const BodyId rod = system.add(RigidBody{.mass = planar::rod(1.0, 2.0),
-                                            .position = lever,
-                                            .angle = theta,
-                                            .velocity = Vec<2>(tip_speed, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
-                                            .spin = omega},
-                                  "rod");
+    const BodyId rod =
+        system.add(RigidBody{.mass = planar::rod(1.0, 2.0),
+                             .position = lever,
+                             .angle = theta,
+                             .velocity = Vec<2>(tip_speed, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
+                             .spin = omega},
+                   "rod");
     system.add(Point{.body = rod, .position = {-1.0, 0.0}});
     return Simulation(std::move(system), tight());
   }
@@ -95,7 +96,8 @@ TEST(EventPainleve, RegularStatesSlideOrDetach) {
     const double force = at.at("force_level_solutions")[0].at("lambda_n").get<double>();
     const State& state = run.simulation.state();
     EXPECT_NEAR(state.velocity(run.body())[0] - sign, -sign * of(at, "mu") * force * short_time,
-                1e-4 * force * short_time) << at;
+                1e-4 * force * short_time)
+        << at;
     EXPECT_NEAR(state.velocity(run.body())[1], (force - g) * short_time, 1e-4 * force * short_time) << at;
     EXPECT_NEAR(run.tip_velocity()[1], 0.0, 1e-14) << at;
     EXPECT_TRUE(ledger.closes()) << at;
@@ -132,7 +134,8 @@ TEST(EventPainleve, WithoutAnswerThereIsAnImpactWithoutCollision) {
     EXPECT_NEAR(impact.velocity_after[0], 0.0, 1e-14) << at;
     EXPECT_NEAR(impact.velocity_after[1], 0.0, 1e-14) << at;
     EXPECT_EQ(impact.velocity_before[1], -1.0);
-    EXPECT_EQ(run.simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 1);
+    EXPECT_EQ(
+        run.simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 1);
     // Velocities behind it are those of the impulse; the tip sticks or goes on as forces say, without speed.
     const State& state = run.simulation.state();
     const double force = 10.0 * g;  // more than the forces there
@@ -140,7 +143,8 @@ TEST(EventPainleve, WithoutAnswerThereIsAnImpactWithoutCollision) {
     EXPECT_NEAR(state.velocity(run.body())[1], law[2].get<double>(), force * short_time) << at;
     EXPECT_TRUE(ledger.closes()) << at;
     // Lost by the impact: the account has it.
-    EXPECT_NEAR(run.simulation.energy().flow(EnergyFlow::impact_tangential), 0.5 * law[1].get<double>(), 1e-12);
+    EXPECT_NEAR(run.simulation.energy().flow(EnergyFlow::impact_tangential), 0.5 * law[1].get<double>(),
+                1e-12);
   }
 }
 
@@ -192,7 +196,8 @@ TEST(EventPainleve, CriticalFrictionSeparatesTheStates) {
   // At theta with tan = 2 the stiffness 1 + 3 cos (cos - mu sin) vanishes for mu = 4/3.
   const double theta = std::atan(2.0);
   for (const double off : {-1e-3, 1e-3}) {
-    Rod run(theta, of(reference_data("contacts_planar.json").at("painleve_rod"), "critical_mu") + off, 0.0, -1.0);
+    Rod run(theta, of(reference_data("contacts_planar.json").at("painleve_rod"), "critical_mu") + off, 0.0,
+            -1.0);
     run.simulation.run_until(1e-9);
     const bool stuck = !events_of(run.simulation, EventKind::impact_without_collision).empty();
     EXPECT_EQ(stuck, off > 0.0) << off;

@@ -28,10 +28,10 @@ System rocking_block(double b, double h, double tilt) {
   system.add(Gravity{{0.0, -g}});
   system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 2.0, .normal_restitution = 0.0});
   const double c = std::cos(tilt), s = std::sin(tilt);
-  const BodyId block = system.add(RigidBody{.mass = box(1.0, 2.0 * b, 2.0 * h),
-                                            .position = {c * b - s * h, s * b + c * h},
-                                            .angle = tilt},
-                                  "block");
+  const BodyId block = system.add(
+      RigidBody{
+          .mass = box(1.0, 2.0 * b, 2.0 * h), .position = {c * b - s * h, s * b + c * h}, .angle = tilt},
+      "block");
   system.add(Point{.body = block, .position = {-b, -h}}, "left");
   system.add(Point{.body = block, .position = {b, -h}}, "right");
   return system;
@@ -47,7 +47,8 @@ double next_amplitude(Simulation& simulation, double p, double alpha) {
   for (int i = 0; i < 100; ++i) {
     // theta'' = -p^2 sin(alpha - theta) while theta > 0 and grows; smaller the further it tilts: Newton's
     // method for the turning point never steps over it.
-    const double tilt = std::abs(simulation.state().angle(block)), w = std::abs(simulation.state().spin(block));
+    const double tilt = std::abs(simulation.state().angle(block)),
+                 w = std::abs(simulation.state().spin(block));
     const double slowing = p * p * std::sin(alpha - tilt);
     if (w < 1e-4) return tilt + 0.5 * w * w / slowing;  // but for w^4
     simulation.run_until(simulation.time() + w / slowing);
@@ -99,7 +100,8 @@ void expect_rocks(const Json& at, const Json& row, double b, double h, Errors& e
 
 TEST(EventRocking, RatioOfSpinsAmplitudesAndQuarterPeriods) {
   const Json data = reference_data("contacts_planar.json").at("rocking_block").at("cases");
-  const std::vector<std::pair<std::string, Vec<2>>> blocks{{"b0.2_h0.8", {0.2, 0.8}}, {"b0.5_h1.0", {0.5, 1.0}}};
+  const std::vector<std::pair<std::string, Vec<2>>> blocks{{"b0.2_h0.8", {0.2, 0.8}},
+                                                           {"b0.5_h1.0", {0.5, 1.0}}};
   Errors errors;
   for (const auto& [name, half] : blocks) {
     const Json& at = data.at(name);
