@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace carom {
 
@@ -69,10 +71,11 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
     evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
     add_stored_energies(*assembly_, island, trial_.view(), evaluation_, stored);
   }
-  // Islands were gone through one after the other.
-  std::stable_sort(news_.events.begin(), news_.events.end(),
-                   [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; });
+  order_events();
+  std::vector<ContactRecord> contacts = std::move(report.contacts);
+  contacts.clear();
   report = {};
+  report.contacts = std::move(contacts);
   report.time = target;
   report.step = target - state.time;
   report.energy_gain = news_.energy_gain;
@@ -86,6 +89,21 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.z.swap(trial_.z);
   state.time = target;
   if (options_.record_events) events.insert(events.end(), news_.events.begin(), news_.events.end());
+}
+
+/// Islands were gone through one after the other; their events are told in time, then by island.
+void EventDriver::order_events() {
+  const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
+  if (std::is_sorted(news_.events.begin(), news_.events.end(), earlier)) return;
+  order_.resize(news_.events.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+    const double first = news_.events[a].time, second = news_.events[b].time;
+    return first < second || (first == second && a < b);
+  });
+  ordered_.clear();
+  for (const std::size_t place : order_) ordered_.push_back(news_.events[place]);
+  news_.events.swap(ordered_);
 }
 
 void EventDriver::report_contacts(const DriverNews& news, StepReport& report) const {

@@ -38,6 +38,7 @@ public:
 private:
   void start(const State& state, const Companion& companion);
   void count(Companion& companion);
+  void order_events();
   void report_contacts(const DriverNews& news, StepReport& report) const;
 
   const Assembly* assembly_;
@@ -49,6 +50,8 @@ private:
   State trial_;
   ContactModes modes_;
   DriverNews news_;
+  std::vector<EventRecord> ordered_;
+  std::vector<std::size_t> order_;
   FlowCounts counted_;  // of the flows, told so far
   bool started_ = false;
 };

@@ -73,6 +73,35 @@ double StepPolynomial::first_fall() const {
   return fall_within(b_, 0.0, 1.0, 0);
 }
 
+/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that keeps
+/// it, until the root no longer moves.
+double StepPolynomial::lone_root(const Coefficients& b) const {
+  constexpr int most_steps = 60;
+  constexpr double still = 4.0 * std::numeric_limits<double>::epsilon();
+  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[static_cast<std::size_t>(degree_)], root = high;
+  int side = 0;
+  for (int i = 0; i < most_steps; ++i) {
+    double next = low + (high - low) * f_low / (f_low - f_high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double moved = std::abs(next - root);
+    root = next;
+    if (moved <= still || high - low <= still) break;
+    const double f = at(b, root);
+    if (f >= 0.0) {
+      low = root;
+      f_low = f;
+      if (side == 1) f_high *= 0.5;
+      side = 1;
+    } else {
+      high = root;
+      f_high = f;
+      if (side == -1) f_low *= 0.5;
+      side = -1;
+    }
+  }
+  return root;
+}
+
 double StepPolynomial::fall_within(const Coefficients& b, double from, double to, int depth) const {
   int changes = 0;
   bool positive = true, any = false;
@@ -84,27 +113,7 @@ double StepPolynomial::fall_within(const Coefficients& b, double from, double to
   }
   if (!any) return never;
   if (changes == 1) {
-    // One root, where it falls: regula falsi (Illinois) on an interval that keeps the root.
-    double low = 0.0, high = 1.0, f_low = b[0], f_high = b[static_cast<std::size_t>(degree_)];
-    int side = 0;
-    for (int i = 0; i < 100 && high - low > std::numeric_limits<double>::epsilon(); ++i) {
-      const double width = f_low - f_high;
-      double mid = width > 0.0 ? low + (high - low) * f_low / width : 0.5 * (low + high);
-      if (!(mid > low && mid < high)) mid = 0.5 * (low + high);
-      const double f = at(b, mid);
-      if (f >= 0.0) {
-        low = mid;
-        f_low = f;
-        if (side == 1) f_high *= 0.5;
-        side = 1;
-      } else {
-        high = mid;
-        f_high = f;
-        if (side == -1) f_low *= 0.5;
-        side = -1;
-      }
-    }
-    return from + (to - from) * high;
+    return from + (to - from) * lone_root(b);
   }
   if (depth == most_halvings) return never;
   Coefficients left{}, right = b;

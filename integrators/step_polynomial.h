@@ -39,6 +39,7 @@ private:
   static constexpr int most = 5;
   using Coefficients = std::array<double, most + 1>;
   [[nodiscard]] double fall_within(const Coefficients& b, double from, double to, int depth) const;
+  [[nodiscard]] double lone_root(const Coefficients& b) const;
   [[nodiscard]] double at(const Coefficients& b, double tau) const;
 
   Coefficients b_{};

@@ -1,0 +1,105 @@
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/allocation_counter.h"
+#include "tests/temporary_folder.h"
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+System bouncing_disc(double restitution) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}},
+             Surface{.friction = 0.3, .normal_restitution = restitution}, "the \"floor\"");
+  const BodyId disc_body =
+      system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 1.1}, .velocity = {1.0, 0.0}}, "disc");
+  system.add(Disc{.body = disc_body, .radius = 0.1});
+  return system;
+}
+
+TEST(EventLog, EveryImpactIsToldWithItsNumbers) {
+  Simulation simulation(bouncing_disc(0.5), EventDriven{});
+  simulation.run_until(1.0);
+  ASSERT_GE(simulation.events().size(), 2U);
+  const EventRecord& first = simulation.events().front();
+  EXPECT_EQ(first.kind, EventKind::impact);
+  EXPECT_EQ(simulation.system().name(first.obstacle), "half-plane 'the \"floor\"'");
+  EXPECT_NEAR(first.velocity_after[0], -0.5 * first.velocity_before[0], 1e-14);
+  EXPECT_NEAR(first.impulse[0], 1.5 * -first.velocity_before[0], 1e-13);  // 1 kg
+  EXPECT_EQ(first.outcome, Outcome::solved);
+  EXPECT_LE(first.residual, 1e-12);
+  EXPECT_EQ(first.solver, "single contact");
+  EXPECT_LT(first.energy_after, first.energy_before);
+  const std::int64_t impacts =
+      simulation.statistics().events[static_cast<std::size_t>(EventKind::impact)];
+  EXPECT_EQ(impacts, simulation.statistics().impacts);
+  EXPECT_GT(simulation.statistics().flow_restarts, impacts);
+  simulation.clear_events();
+  EXPECT_TRUE(simulation.events().empty());
+}
+
+TEST(EventLog, WritesALineForEveryEvent) {
+  const carom_test::TemporaryFolder folder;
+  const std::string path = folder / "events.csv";
+  Simulation simulation(bouncing_disc(0.5), EventDriven{});
+  simulation.run_until(3.0);
+  simulation.write_events(path);
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line.substr(0, 30), "time [s],kind,part,normal velo");
+  std::size_t lines = 0;
+  while (std::getline(file, line)) {
+    EXPECT_NE(line.find("\"disc #0 (feature 0) of rigid body 'disc' on half-plane 'the \"\"floor\"\"'\""),
+              std::string::npos)
+        << line;
+    ++lines;
+  }
+  EXPECT_EQ(lines, simulation.events().size());
+  EXPECT_THROW(simulation.write_events(folder / "missing/events.csv"), FileError);
+}
+
+TEST(EventLog, RecordsNothingWhereNotAskedTo) {
+  Simulation simulation(bouncing_disc(0.5), EventDriven{.record_events = false});
+  simulation.run_until(3.0);
+  EXPECT_TRUE(simulation.events().empty());
+  EXPECT_GT(simulation.statistics().impacts, 5);
+}
+
+TEST(EventDriver, ImpactsAllocateNothing) {
+  for (const FlowMethod method : {FlowMethod::explicit_runge_kutta, FlowMethod::one_step}) {
+    Simulation simulation(bouncing_disc(1.0), EventDriven{.method = method, .record_events = false});
+    simulation.run_until(20.0);
+    const std::int64_t impacts = simulation.statistics().impacts;
+    const std::int64_t before = carom_test::allocations();
+    simulation.run_until(120.0);
+    EXPECT_EQ(carom_test::allocations() - before, 0);
+    EXPECT_GT(simulation.statistics().impacts, impacts + 100);
+  }
+}
+
+TEST(EventDriver, FrictionTransitionsAllocateNothing) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.01, .normal_restitution = 0.0});
+  const BodyId block = system.add(Particle{.mass = 1.0, .position = {20.0, 0.0}});
+  system.add(SpringDamper{.from = {ground, {-50.0, 0.0}}, .to = block, .stiffness = 100.0, .free_length = 50.0});
+  Simulation simulation(system, EventDriven{.record_events = false});
+  simulation.run_until(2.0);
+  const auto slips = [&] { return simulation.statistics().events[static_cast<std::size_t>(EventKind::slip)]; };
+  const std::int64_t before = carom_test::allocations(), turns = slips();
+  simulation.run_until(20.0);
+  EXPECT_EQ(carom_test::allocations() - before, 0);
+  EXPECT_GT(slips(), turns + 50);
+}
+
+}  // namespace
