@@ -219,6 +219,14 @@ void ContactCluster::keep_modes() {
   changed_modes_ = false;
 }
 
+void ContactCluster::set_impulses(std::span<const double> impulses) {
+  std::copy(impulses.begin(), impulses.end(), impulse_.begin());
+  xi_.resize(impulse_.size());
+  problem_.velocities(impulse_, xi_);
+  for (std::size_t group = 0; group < modes_.size(); ++group)
+    modes_[group] = contact_mode(problem_, problem_.groups()[group], impulse_, xi_);
+}
+
 double ContactCluster::obstacle_work(std::size_t contact) const {
   const Contact& at = contacts_[contact];
   double work = 0.0;

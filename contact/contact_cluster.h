@@ -36,10 +36,8 @@ public:
   /// again since build() keeps to the modes of the answer before as long as they are one of them: an
   /// iteration around it could not settle if it jumped between them.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
-  /// Replaces the answer by another solution of the problem.
-  void set_impulses(std::span<const double> impulses) {
-    std::copy(impulses.begin(), impulses.end(), impulse_.begin());
-  }
+  /// Replaces the answer, and its modes, by another solution of the problem.
+  void set_impulses(std::span<const double> impulses);
   /// Sets all impulses to zero.
   void forget_impulses() { std::fill(impulse_.begin(), impulse_.end(), 0.0); }
   /// Adds M^-1 H^T P to the velocities.
