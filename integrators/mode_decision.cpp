@@ -140,21 +140,31 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
   }
 }
 
-/// Of several answers the one in the present modes; where there is none, contacts that can be open are.
+/// Of several answers the one in the present modes; where there is none, the one with most contacts open.
 bool ModeDecision::keep_present(std::span<Candidate> candidates) {
   if (solutions_.enumerate(cluster_.problem()) == Outcome::not_solved) return false;
-  std::vector<ContactMode> first(candidates.size());
-  for (std::size_t i = 0; i < candidates.size(); ++i) first[i] = candidates[i].mode;
+  std::size_t best = solutions_.size();
+  std::ptrdiff_t most = -1;
   for (std::size_t s = 0; s < solutions_.size(); ++s) {
-    read_modes(candidates, solutions_.impulse(s));
+    take(candidates, s);
     const bool same = std::all_of(candidates.begin(), candidates.end(),
                                   [](const Candidate& at) { return at.mode == at.present; });
-    if (!same) continue;
-    cluster_.set_impulses(solutions_.impulse(s));
-    return true;
+    if (same) return true;
+    const std::ptrdiff_t open =
+        std::count_if(candidates.begin(), candidates.end(),
+                      [](const Candidate& at) { return at.mode == ContactMode::open; });
+    if (open <= most) continue;
+    most = open;
+    best = s;
   }
-  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].mode = first[i];
+  if (best < solutions_.size()) take(candidates, best);
   return false;
+}
+
+/// Answers by one of the solutions.
+void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
+  cluster_.set_impulses(solutions_.impulse(solution));
+  read_modes(candidates, cluster_.impulses());
 }
 
 }  // namespace carom

@@ -62,6 +62,7 @@ private:
   bool revise(std::span<Candidate> candidates);
   void name_culprit(std::span<Candidate> candidates);
   bool keep_present(std::span<Candidate> candidates);
+  void take(std::span<Candidate> candidates, std::size_t solution);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
 
   ContactCluster cluster_;
