@@ -192,6 +192,54 @@ TEST(EventPainleve, OfSeveralAnswersOpenIsChosenWhereThereWasNoContact) {
   }
 }
 
+TEST(EventPainleve, OfSeveralAnswersThePresentModeIsKept) {
+  // Pressed on, the rod of the reference slides at little friction as it must; then the press goes and the
+  // friction comes: to slide on and to lift off are both possible.
+  for (const Json& at : states("several")) {
+    const double theta = of(at, "theta"), omega = of(at, "omega");
+    const Vec<2> lever(std::cos(theta), std::sin(theta));
+    System system;
+    const MaterialId wood = system.material("wood"), stone = system.material("stone");
+    system.add(Gravity{{0.0, -g}});
+    system.add(HalfPlane{.normal = {0.0, 1.0}, .material = stone});
+    system.between(wood, stone, {.friction = 0.1, .normal_restitution = 0.0});
+    const BodyId rod =
+        system.add(RigidBody{.mass = planar::rod(1.0, 2.0),
+                             .position = lever,
+                             .angle = theta,
+                             .velocity = Vec<2>(-1.0, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
+                             .spin = omega});
+    system.add(Point{.body = rod, .position = {-1.0, 0.0}, .material = wood});
+    const ElementId press =
+        system.add(AppliedForce{.on = rod, .force = [](double) { return Vec<2>(0.0, -100.0); }});
+    Simulation simulation(std::move(system), tight());
+    const LedgerWatch ledger(simulation);
+    simulation.run_until(short_time);
+    ASSERT_EQ(simulation.events().size(), 1u);
+    ASSERT_EQ(simulation.events()[0].mode, ContactMode::slip_negative);
+    simulation.edit([&](System& now) {
+      now.remove(press);
+      now.between(wood, stone, {.friction = of(at, "mu"), .normal_restitution = 0.0});
+    });
+    simulation.clear_events();
+    const double before = simulation.state().velocity(rod)[1];
+    simulation.run_until(2.0 * short_time);
+    ASSERT_EQ(simulation.events().size(), 1u) << at;
+    const EventRecord& event = simulation.events()[0];
+    EXPECT_EQ(event.kind, EventKind::several_accelerations) << at;
+    EXPECT_EQ(event.mode, ContactMode::slip_negative) << at;
+    // The state is a millionth of a second further than that of the reference.
+    EXPECT_NEAR(event.stiffness, of(at, "p"), 1e-4) << at;
+    EXPECT_NEAR(event.free_acceleration, of(at, "b"), 1e-3) << at;
+    // It slides on under the force of that answer, -b/p.
+    const double force = at.at("force_level_solutions")[1].at("lambda_n").get<double>();
+    EXPECT_NEAR(simulation.state().velocity(rod)[1] - before, (force - g) * short_time,
+                1e-3 * force * short_time)
+        << at;
+    EXPECT_TRUE(ledger.closes()) << at;
+  }
+}
+
 TEST(EventPainleve, CriticalFrictionSeparatesTheStates) {
   // At theta with tan = 2 the stiffness 1 + 3 cos (cos - mu sin) vanishes for mu = 4/3.
   const double theta = std::atan(2.0);
