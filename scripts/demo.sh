@@ -45,6 +45,8 @@ run_example() {
 rm -rf "$data" "$figures"
 run_example 01_bar_and_pair scripts/plot_incline.py
 run_example 02_ball_between_tables scripts/plot_tables.py
+run_example 03_ball_in_a_box scripts/plot_box.py
+run_example 04_block_on_a_moving_plane scripts/plot_shaker.py
 
 if $update_docs; then
   mkdir -p docs/figures
