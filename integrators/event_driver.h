@@ -36,6 +36,7 @@ public:
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 
 private:
+  void refuse_spatial_friction() const;
   void start(const State& state, const Companion& companion);
   void count(Companion& companion);
   void order_events();
