@@ -150,9 +150,9 @@ bool ModeDecision::keep_present(std::span<Candidate> candidates) {
     const bool same = std::all_of(candidates.begin(), candidates.end(),
                                   [](const Candidate& at) { return at.mode == at.present; });
     if (same) return true;
-    const std::ptrdiff_t open =
-        std::count_if(candidates.begin(), candidates.end(),
-                      [](const Candidate& at) { return at.mode == ContactMode::open; });
+    const std::ptrdiff_t open = std::count_if(candidates.begin(), candidates.end(), [](const Candidate& at) {
+      return at.mode == ContactMode::open;
+    });
     if (open <= most) continue;
     most = open;
     best = s;

@@ -104,6 +104,7 @@ struct Simulation::Impl {
   void step(Simulation& simulation, double limit);
   void advance(double limit);
   void write_news();
+  void write_event_news(std::size_t told);
   [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
     return std::make_unique<Model>(std::move(system), mode);
   }
@@ -128,8 +129,10 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
     state.time = limit;
     return;
   }
+  const std::size_t told = events.size();
   advance(std::min(limit, next_due()));
   write_news();
+  write_event_news(told);
 
   struct Guard {
     bool& flag;
@@ -184,6 +187,30 @@ void Simulation::Impl::write_news() {
     if (contact.outcome != Outcome::several_solutions) continue;
     log.write(LogLevel::warning, when + "contact of " + model->machines.finder().name(contact.key) +
                                      " has several solutions; the one with the smallest impulse was taken");
+  }
+}
+
+void Simulation::Impl::write_event_news(std::size_t told) {
+  for (; told < events.size(); ++told) {
+    const EventRecord& event = events[told];
+    const auto write = [&](LogLevel level, const std::string& what) {
+      if (!log.enabled(level)) return;
+      log.write(level, "t = " + to_text(event.time) + " s: contact of " +
+                           model->machines.finder().name(event.contact) + ": " + what);
+    };
+    const auto state_of = [&] {
+      return "W_nn - s mu W_nt = " + to_text(event.stiffness) +
+             " 1/kg, normal acceleration without contact " + to_text(event.free_acceleration) + " m/s^2";
+    };
+    if (event.kind == EventKind::impact_without_collision) {
+      write(LogLevel::warning,
+            "no force keeps it (" + state_of() + "); an impact without collision was made");
+    } else if (event.kind == EventKind::several_accelerations) {
+      write(LogLevel::warning, "several accelerations are possible (" + state_of() + "); it is " +
+                                   std::string(to_string(event.mode)) + " now");
+    } else if (event.kind == EventKind::accumulation) {
+      write(LogLevel::info, "closed, impacts slower than the capture speed");
+    }
   }
 }
 

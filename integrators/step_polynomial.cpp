@@ -73,8 +73,8 @@ double StepPolynomial::first_fall() const {
   return fall_within(b_, 0.0, 1.0, 0);
 }
 
-/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that keeps
-/// it, until the root no longer moves.
+/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
+/// keeps it, until the root no longer moves.
 double StepPolynomial::lone_root(const Coefficients& b) const {
   constexpr int most_steps = 60;
   constexpr double still = 4.0 * std::numeric_limits<double>::epsilon();

@@ -18,8 +18,8 @@ using namespace carom::planar;
 System bouncing_disc(double restitution) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}},
-             Surface{.friction = 0.3, .normal_restitution = restitution}, "the \"floor\"");
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = restitution},
+             "the \"floor\"");
   const BodyId disc_body =
       system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 1.1}, .velocity = {1.0, 0.0}}, "disc");
   system.add(Disc{.body = disc_body, .radius = 0.1});
@@ -39,8 +39,7 @@ TEST(EventLog, EveryImpactIsToldWithItsNumbers) {
   EXPECT_LE(first.residual, 1e-12);
   EXPECT_EQ(first.solver, "single contact");
   EXPECT_LT(first.energy_after, first.energy_before);
-  const std::int64_t impacts =
-      simulation.statistics().events[static_cast<std::size_t>(EventKind::impact)];
+  const std::int64_t impacts = simulation.statistics().events[static_cast<std::size_t>(EventKind::impact)];
   EXPECT_EQ(impacts, simulation.statistics().impacts);
   EXPECT_GT(simulation.statistics().flow_restarts, impacts);
   simulation.clear_events();
@@ -92,10 +91,13 @@ TEST(EventDriver, FrictionTransitionsAllocateNothing) {
   system.add(Gravity{{0.0, -9.81}});
   system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.01, .normal_restitution = 0.0});
   const BodyId block = system.add(Particle{.mass = 1.0, .position = {20.0, 0.0}});
-  system.add(SpringDamper{.from = {ground, {-50.0, 0.0}}, .to = block, .stiffness = 100.0, .free_length = 50.0});
+  system.add(
+      SpringDamper{.from = {ground, {-50.0, 0.0}}, .to = block, .stiffness = 100.0, .free_length = 50.0});
   Simulation simulation(system, EventDriven{.record_events = false});
   simulation.run_until(2.0);
-  const auto slips = [&] { return simulation.statistics().events[static_cast<std::size_t>(EventKind::slip)]; };
+  const auto slips = [&] {
+    return simulation.statistics().events[static_cast<std::size_t>(EventKind::slip)];
+  };
   const std::int64_t before = carom_test::allocations(), turns = slips();
   simulation.run_until(20.0);
   EXPECT_EQ(carom_test::allocations() - before, 0);
