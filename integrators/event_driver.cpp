@@ -33,26 +33,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options)
       work_(assembly),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
-  refuse_spatial_friction();
   for (Index island = 0; island < assembly.islands().size(); ++island) {
     islands_.push_back(std::make_unique<IslandDriver>(assembly, finder_, options_, island, work_));
-  }
-}
-
-/// In space sliding has a direction that turns: its modes are not there.
-void EventDriver::refuse_spatial_friction() const {
-  if (assembly_->layout()->dimension() == 2) return;
-  const State state = assembly_->initial_state();
-  Evaluation evaluation = make_evaluation(*assembly_);
-  Contact contact;
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    evaluate_positions(*assembly_, island, state.view(), evaluation);
-    for (const ContactPair& pair : finder_.pairs(island)) {
-      finder_.contact(pair, state.view(), evaluation, contact);
-      if (contact.law.sticking_friction() == 0.0) continue;
-      throw ModelError("event-driven mode: friction of " + finder_.name(contact.key) + " is " +
-                       to_text(contact.law.sticking_friction()) + "; allowed: 0 in space");
-    }
   }
 }
 

@@ -21,7 +21,7 @@ namespace carom {
 /// memory only: from any state the same motion follows within the tolerance.
 class CAROM_API EventDriver {
 public:
-  /// Throws ModelError for impossible options, a contact without a law, friction in space.
+  /// Throws ModelError for impossible options, a contact without a law, contact in space.
   EventDriver(const Assembly& assembly, const EventDriven& options);
 
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
@@ -36,7 +36,6 @@ public:
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 
 private:
-  void refuse_spatial_friction() const;
   void start(const State& state, const Companion& companion);
   void count(Companion& companion);
   void order_events();
