@@ -1,5 +1,5 @@
 // Event-driven friction against closed forms: bodies on inclines, sliding that turns into rolling, sliders
-// that stop and turn round, the Coulomb oscillator, the ladder, static against sliding friction.
+// that stop and turn round, the Coulomb oscillator, static against sliding friction.
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
@@ -228,56 +228,6 @@ TEST(EventFriction, CoulombOscillatorTurnsWhereItShould) {
     simulation.run_until(turn * of(data, "half_period"));
     EXPECT_NEAR(simulation.state().position(block)[0],
                 data.at("turning_points")[static_cast<std::size_t>(turn)].get<double>(), 1e-10);
-  }
-}
-
-/// A ladder with its foot on the floor, leaning on a smooth wall.
-Simulation ladder(double mu, double theta) {
-  constexpr double length = 2.0;
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = mu, .normal_restitution = 0.0}, "floor");
-  system.add(HalfPlane{.normal = {1.0, 0.0}}, Surface{.friction = 0.0, .normal_restitution = 0.0}, "wall");
-  const Vec<2> half(0.5 * length * std::cos(theta), 0.5 * length * std::sin(theta));
-  const BodyId body =
-      system.add(RigidBody{.mass = rod(1.0, length), .position = half, .angle = -theta}, "ladder");
-  system.add(Segment{.body = body, .from = {-0.5 * length, 0.0}, .to = {0.5 * length, 0.0}});
-  return Simulation(std::move(system), tight());
-}
-
-TEST(EventFriction, LadderStandsAboveTheLeastFriction) {
-  const Json data = reference_data("contacts_planar.json").at("ladder");
-  const double theta = of(data, "theta"), least = of(data, "mu_min");
-  for (const double mu : {least * (1.0 + 1e-9), least + 0.1, 2.0}) {
-    Simulation simulation = ladder(mu, theta);
-    const LedgerWatch ledger(simulation);
-    const BodyId body = simulation.system().body("ladder");
-    simulation.run_until(5.0);
-    ASSERT_EQ(simulation.events().size(), 2u) << mu;
-    for (const EventRecord& event : simulation.events()) EXPECT_EQ(event.kind, EventKind::closing) << mu;
-    EXPECT_NEAR(simulation.state().angle(body), -theta, 1e-13) << mu;
-    EXPECT_NEAR(simulation.state().spin(body), 0.0, 1e-13) << mu;
-    EXPECT_TRUE(ledger.closes());
-  }
-}
-
-TEST(EventFriction, LadderSlipsBelowTheLeastFriction) {
-  const Json data = reference_data("contacts_planar.json").at("ladder");
-  const double theta = of(data, "theta"), least = of(data, "mu_min");
-  for (const double mu : {least * (1.0 - 1e-6), 0.2, 0.0}) {
-    Simulation simulation = ladder(mu, theta);
-    const LedgerWatch ledger(simulation);
-    const BodyId body = simulation.system().body("ladder");
-    constexpr double time = 1e-3;
-    simulation.run_until(time);
-    ASSERT_EQ(simulation.events().size(), 2u) << mu;
-    for (const EventRecord& event : simulation.events()) EXPECT_EQ(kind_of(event.mode), "slip") << mu;
-    // m = 1, l = 2, I = 1/3: N_floor = g - c alpha, N_wall = s alpha + mu N_floor, and
-    // I alpha = (c - mu s) N_floor - s N_wall. Over a millisecond alpha grows by less than g t^2.
-    const double c = std::cos(theta), s = std::sin(theta);
-    const double alpha = g * (c - 2.0 * mu * s) / (4.0 / 3.0 - 2.0 * mu * s * c);
-    EXPECT_NEAR(simulation.state().spin(body) / time, alpha, 2e-5 * alpha) << mu;
-    EXPECT_TRUE(ledger.closes());
   }
 }
 

@@ -250,4 +250,93 @@ TEST(EventImpacts, WaltonCurvesFromContactsThatStartClosed) {
   note("speeds", speed.value());
 }
 
+/// A body of which one point touches the floor at the start and approaches: one impact at once.
+Simulation struck_point(const MassProperties<2>& mass, const Vec<2>& point, const Surface& surface,
+                        const Vec<2>& velocity, const EventDriven& options) {
+  System system;
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
+  const BodyId body =
+      system.add(RigidBody{.mass = mass, .position = {0.0, -point[1]}, .velocity = velocity}, "body");
+  system.add(Point{.body = body, .position = point});
+  return Simulation(std::move(system), options);
+}
+
+TEST(EventImpacts, RandomContacts) {
+  const Json data = reference_data("open_variants.json").at("single_contact");
+  ASSERT_EQ(data.size(), 40u);
+  Worst worst;
+  int impacts = 0;
+  for (const auto& at : data) {
+    const auto point = at.at("contact_from_centre").get<std::vector<double>>();
+    const auto before = at.at("v_minus").get<std::vector<double>>();
+    Simulation simulation = struck_point({.mass = of(at, "m"), .inertia = of(at, "I")}, {point[0], point[1]},
+                                         {.friction = of(at, "mu"),
+                                          .normal_restitution = of(at, "e_n"),
+                                          .tangential_restitution = of(at, "e_t")},
+                                         {before[0], before[1]}, tight());
+    const LedgerWatch ledger(simulation);
+    simulation.run_until(1e-6);
+    EXPECT_TRUE(ledger.closes()) << at;
+    if (before[1] > 0.0) {
+      EXPECT_TRUE(simulation.events().empty()) << at;
+      continue;
+    }
+    ++impacts;
+    ASSERT_GE(simulation.events().size(), 1u) << at;
+    const EventRecord& impact = simulation.events()[0];
+    EXPECT_EQ(impact.kind, EventKind::impact) << at;
+    // [mode, P_t, P_n, tangential, normal velocity after], one of them where there are several.
+    bool found = false;
+    for (const Json& solution : at.at("solutions")) {
+      const double size = 1.0 + solution[2].get<double>();
+      const double error = std::max({std::abs(impact.impulse[1] - solution[1].get<double>()),
+                                     std::abs(impact.impulse[0] - solution[2].get<double>()),
+                                     std::abs(impact.velocity_after[1] - solution[3].get<double>()),
+                                     std::abs(impact.velocity_after[0] - solution[4].get<double>())});
+      if (error > 1e-9 * size) continue;
+      found = true;
+      worst(error, 0.0, size);
+    }
+    EXPECT_TRUE(found) << at;
+  }
+  EXPECT_GT(impacts, 30);
+  EXPECT_LE(worst.value(), 1e-12);
+  note("impulses and velocities", worst.value());
+}
+
+TEST(EventImpacts, ImpactsThatGainEnergyAreToldAndCanBeRefused) {
+  const Json data = reference_data("impacts_planar.json").at("energy_inconsistency").at("values");
+  int gains = 0;
+  for (const auto& value : data) {
+    const Surface surface{
+        .friction = 1.0, .normal_restitution = of(value, "e_n"), .tangential_restitution = of(value, "e_t")};
+    EventDriven options = tight();
+    Simulation simulation =
+        struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0}, surface, {1.0, -2.0}, options);
+    const LedgerWatch ledger(simulation);
+    simulation.run_until(1e-6);
+    const EventRecord& impact = simulation.events().at(0);
+    EXPECT_NEAR(impact.impulse[0], of(value, "Pn"), 1e-12) << value;
+    EXPECT_NEAR(impact.impulse[1], of(value, "Pt"), 1e-12) << value;
+    const double change = of(value, "energy_change");
+    EXPECT_NEAR(impact.energy_after - impact.energy_before, change, 1e-12) << value;
+    EXPECT_TRUE(ledger.closes()) << value;
+
+    options.refuse_energy_gain = true;
+    Simulation strict =
+        struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0}, surface, {1.0, -2.0}, options);
+    if (change > 1e-12) {
+      ++gains;
+      EXPECT_NEAR(simulation.statistics().energy_gained, change, 1e-12) << value;
+      EXPECT_THROW(strict.run_until(1e-6), SolverError) << value;
+      EXPECT_EQ(strict.time(), 0.0);
+      EXPECT_EQ(strict.state().velocity(strict.system().body("body"))[1], -2.0);
+    } else {
+      EXPECT_EQ(simulation.statistics().energy_gains, 0) << value;
+      EXPECT_NO_THROW(strict.run_until(1e-6)) << value;
+    }
+  }
+  EXPECT_GT(gains, 0);
+}
+
 }  // namespace

@@ -88,6 +88,48 @@ TEST(EventOscillator, UnstablePeriodicOrbitIsKeptForAWhile) {
   EXPECT_TRUE(ledger.closes());
 }
 
+TEST(EventOscillator, GrazingIsFoundFromOneSideOnly) {
+  // On the steady response  x = F/(1 - w^2) cos(w t)  a stop at s is met if F > F_grazing = s |1 - w^2|.
+  const Json data = reference_data("contacts_planar.json").at("impact_oscillator").at("grazing_values");
+  ASSERT_EQ(data.size(), 3u);
+  for (const auto& at : data) {
+    const double w = of(at, "w"), wall = of(at, "wall");
+    for (const double off : {-1e-6, -1e-9, 1e-9, 1e-6, 1e-3}) {
+      const double size = of(at, "F_grazing") * (1.0 + off), amplitude = size / (1.0 - w * w);
+      // From half a period before the top.
+      const double shift = amplitude > 0.0 ? pi : 0.0;
+      System system;
+      system.add(HalfPlane{.point = {wall, 0.0}, .normal = {-1.0, 0.0}},
+                 Surface{.friction = 0.0, .normal_restitution = 0.8});
+      const BodyId mass = system.add(Particle{.mass = 1.0, .position = {-std::abs(amplitude), 0.0}});
+      system.add(SpringDamper{.from = {ground, {0.0, 0.0}}, .to = mass, .stiffness = 1.0});
+      system.add(AppliedForce{
+          .on = mass, .force = [=](double t) { return Vec<2>(size * std::cos(w * t + shift), 0.0); }});
+      Simulation simulation(std::move(system), tight());
+      const LedgerWatch ledger(simulation);
+      simulation.run_until(1.2 * pi / w);
+      if (off < 0.0) {
+        EXPECT_TRUE(simulation.events().empty()) << at << off;
+      } else {
+        ASSERT_GE(simulation.events().size(), 1u) << at << off;
+        const EventRecord& impact = simulation.events()[0];
+        // |x| cos(pi - w t) = s; the speed there is w sqrt(|x|^2 - s^2), of the order of sqrt(2 a d).
+        const double overlap = std::abs(amplitude) - wall;
+        const double speed = w * std::sqrt(overlap * (std::abs(amplitude) + wall));
+        EXPECT_NEAR(impact.time, (pi - std::acos(wall / std::abs(amplitude))) / w, 1e-11 / speed)
+            << at << off;
+        // Slower than the capture speed it takes no rebound; but the force draws it off the stop.
+        const bool slow = speed < tight().capture_speed;
+        EXPECT_EQ(impact.kind, slow ? EventKind::accumulation : EventKind::impact) << at << off;
+        EXPECT_TRUE(events_of(simulation, EventKind::closing).empty()) << at << off;
+        // An error of the place of 1e-11 is one of the overlap.
+        EXPECT_NEAR(-impact.velocity_before[0], speed, speed * 1e-11 / overlap) << at << off;
+      }
+      EXPECT_TRUE(ledger.closes()) << at << off;
+    }
+  }
+}
+
 /// A table y = A sin(w t + phase), a ball above it.
 System vibrating_table(double size, double w, double phase, double e, double y, double speed) {
   System system;
