@@ -31,6 +31,13 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
       y_(motion_.size()),
       seen_(motion_.size()) {
   closed_at_.assign(motion_.pairs().size(), 0);
+  if (assembly.layout()->dimension() == 3 && !motion_.pairs().empty()) {
+    // Sliding in two directions has modes that are not written yet; taken as planar it would stick at once.
+    const BodyId body = assembly.layout()->id(motion_.pairs().front().body);
+    throw ModelError(
+        "event-driven mode: " + assembly.system().name(body) +
+        " may touch an obstacle in space; allowed: contact in the plane (time stepping does both)");
+  }
 }
 
 void IslandDriver::start(const State& state, const ContactModes& present) {

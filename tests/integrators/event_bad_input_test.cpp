@@ -84,6 +84,30 @@ TEST(EventBadInput, AContactWithoutALaw) {
   EXPECT_MODEL_ERROR(Simulation(system, EventDriven{}), "ball", "floor", "law", "allowed");
 }
 
+TEST(EventBadInput, ContactInSpace) {
+  for (const double friction : {0.0, 0.3}) {
+    System system;
+    system.add(spatial::Gravity{{0.0, 0.0, -9.81}});
+    system.add(spatial::HalfSpace{.normal = {0.0, 0.0, 1.0}},
+               Surface{.friction = friction, .normal_restitution = 0.5});
+    system.add(spatial::Particle{.mass = 1.0, .position = {0.0, 0.0, 1.0}}, "stone");
+    EXPECT_MODEL_ERROR(Simulation(system, EventDriven{}), "event-driven", "particle 'stone'", "space",
+                       "allowed");
+    Simulation simulation(system, TimeStepping{});
+    simulation.run_until(0.1);
+    const auto before = bits_of(simulation);
+    EXPECT_MODEL_ERROR(simulation.switch_to(EventDriven{}), "particle 'stone'", "space");
+    EXPECT_EQ(bits_of(simulation), before);
+  }
+  // What touches nothing flies.
+  System flight;
+  flight.add(spatial::Gravity{{0.0, 0.0, -9.81}});
+  const BodyId id = flight.add(spatial::Particle{.mass = 1.0, .velocity = {1.0, 2.0, 0.0}});
+  Simulation simulation(flight, EventDriven{});
+  simulation.run_until(2.0);
+  EXPECT_NEAR((simulation.state().position(id) - Vec<3>(2.0, 4.0, -2.0 * 9.81)).norm(), 0.0, 1e-12);
+}
+
 TEST(EventBadInput, AStartWithinAnObstacle) {
   // Within gap_tolerance it touches; deeper it is refused.
   EXPECT_NO_THROW(
