@@ -1,13 +1,19 @@
 #!/usr/bin/env bash
-# Runs all benchmarks and writes their figures into the tables of docs/performance.md. Takes about five minutes;
-# the machine should have nothing else to do.
+# Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about seven
+# minutes; the machine should have nothing else to do.
+#   scripts/benchmark.sh               all
+#   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-if (($# > 0)); then
-  echo "usage: $0" >&2
-  exit 2
-fi
+programs=(net impact tables chain event)
+for name in "$@"; do
+  if [[ " ${programs[*]} " != *" $name "* ]]; then
+    echo "usage: $0 [${programs[*]}]" >&2
+    exit 2
+  fi
+done
+if (($# > 0)); then programs=("$@"); fi
 
 results=build/release/benchmarks/results
 scripts/setup.sh
@@ -20,7 +26,7 @@ mkdir -p "$results"
 
 # The least of many short repetitions, those of all cases mixed: what else the machine does then hits both
 # sides of a ratio, and the least of each is the one it did not hit.
-for program in net impact tables chain; do
+for program in "${programs[@]}"; do
   echo "== ${program}_benchmark"
   "build/release/benchmarks/${program}_benchmark" \
     --benchmark_min_time=0.02 --benchmark_repetitions=15 --benchmark_enable_random_interleaving=true \

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/performance.md from what the benchmarks measured (JSON of Google Benchmark).
+"""Writes the tables of docs/performance.md from what the benchmarks measured (JSON of Google Benchmark). Tables
+of benchmarks that were not run stay as they are.
 
 usage: performance_tables.py <folder of results> <page> <compiler>
 """
@@ -11,7 +12,7 @@ import sys
 from pathlib import Path
 
 SIZES = [10, 30, 100, 300, 1000]
-TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem")
+TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -29,7 +30,10 @@ NET_ROWS = [
 
 def load(folder, program):
     """Context and, for each case, the least of every time and the most of every count over its repetitions."""
-    data = json.loads((folder / f"{program}.json").read_text())
+    file = folder / f"{program}.json"
+    if not file.exists():
+        return None, None
+    data = json.loads(file.read_text())
     cases = {}
     for run in data["benchmarks"]:
         if run["run_type"] != "iteration" or run.get("error_occurred"):
@@ -156,7 +160,60 @@ def aims_table(net, impact, tables):
     return table(["figure", "aim", "measured"], rows)
 
 
-def machine(context, compiler):
+FLOWS = (("explicit_runge_kutta", "`explicit_runge_kutta`"), ("one_step", "`one_step`"), ("adams", "`adams`"),
+         ("bdf", "`bdf`"))
+
+
+def bounce_table(event):
+    hand = event["bounce_by_hand"]
+    rows = [["loop by hand, Runge-Kutta 4 in steps of 0.1 s", figure(1e6 * hand["per_event"]), "1.00",
+             f"{hand['steps']:.3g}", f"{hand['evaluations']:.3g}", ""]]
+    for key, title in FLOWS:
+        case = event[f"bounce/{key}"]
+        rows.append([f"library, {title}", figure(1e6 * case["per_event"]),
+                     f"{case['per_event'] / hand['per_event']:.1f}", f"{case['steps']:.3g}",
+                     f"{case['evaluations']:.3g}", f"{case['apart']:.1e}"])
+    return table(["one impact with its flight", "µs", "ratio", "steps", "evaluations", "apart after 100 [m]"], rows)
+
+
+def balls_table(event):
+    counts = [1, 10, 100, 1000]
+    events = ["events in 3 s"] + [f"{event[f'balls_at_rest/{FLOWS[0][0]}/{count}']['events']:.0f}" for count in counts]
+    rows = [events]
+    for key, title in FLOWS[:2]:
+        rows.append([f"µs per event, {title}"] + [figure(1e6 * event[f"balls_at_rest/{key}/{count}"]["per_event"])
+                                                  for count in counts])
+    return table([""] + [f"{count} ball{'s' if count > 1 else ''}" for count in counts], rows)
+
+
+def lasting_table(event):
+    scenes = (("brick", "brick at rest"), ("shaken_brick", "brick on a shaking plane"), ("rolling_disc", "rolling disc"))
+    rows = []
+    for key, title in (("lasting", f"event-driven, {FLOWS[0][1]}"), ("lasting_one_step", f"event-driven, {FLOWS[1][1]}"),
+                       ("lasting_stepped", "time stepping, h = 1e-3 s")):
+        cells = [title]
+        for scene, _ in scenes:
+            case = event[f"{key}/{scene}"]
+            cell = figure(1e6 * case["per_second"])
+            if key != "lasting_stepped":
+                cell += f" ({case['steps']:.3g}, {case['evaluations']:.4g})"
+            cells.append(cell)
+        rows.append(cells)
+    return table(["µs per simulated second (steps, evaluations)"] + [title for _, title in scenes], rows)
+
+
+def friction_table(event):
+    rows = []
+    for key, title in FLOWS:
+        cells = [title]
+        for scene in ("slide", "belt"):
+            case = event[f"{scene}/{key}"]
+            cells += [figure(1e6 * case["per_event"]), f"{case['steps']:.3g}", f"{case['evaluations']:.4g}"]
+        rows.append(cells)
+    return table(["", "slider: µs per event", "steps", "evaluations", "belt: µs per event", "steps", "evaluations"], rows)
+
+
+def machine(context, compiler, began):
     cpu = "unknown processor"
     if Path("/proc/cpuinfo").exists():
         found = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text())
@@ -164,7 +221,8 @@ def machine(context, compiler):
     cpu = cpu.replace("(R)", "").replace("(TM)", "")
     load = context.get("load_avg", [0.0])[0]
     return (f"{cpu}, {os.cpu_count()} cores; {compiler}, Release. Measured {context['date'][:10]}; "
-            f"load of the machine when the net began: {load:.1f}.")
+            f"load of the machine when {began} began: {load:.1f}."
+            + (" The machine was busy: a run on an idle one is due." if load > 0.5 else ""))
 
 
 def main():
@@ -175,15 +233,21 @@ def main():
     _, impact = load(folder, "impact")
     _, tables = load(folder, "tables")
     _, chain = load(folder, "chain")
-    parts = {
-        "machine": machine(context, compiler),
-        "aims": aims_table(net, impact, tables),
-        "net": net_table(net),
-        "second": second_table(net),
-        "impact": impact_table(impact),
-        "tables": tables_table(tables),
-        "chain": chain_table(chain),
-    }
+    event_context, event = load(folder, "event")
+    parts = {}
+    if net:
+        parts |= {"machine": machine(context, compiler, "the net"), "net": net_table(net), "second": second_table(net)}
+    if net and impact and tables:
+        parts["aims"] = aims_table(net, impact, tables)
+    if impact:
+        parts["impact"] = impact_table(impact)
+    if tables:
+        parts["tables"] = tables_table(tables)
+    if chain:
+        parts["chain"] = chain_table(chain)
+    if event:
+        parts |= {"event_machine": machine(event_context, compiler, "the events"), "bounce": bounce_table(event),
+                  "balls": balls_table(event), "lasting": lasting_table(event), "friction": friction_table(event)}
     text = page.read_text()
     for name, part in parts.items():
         text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
