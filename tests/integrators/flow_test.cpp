@@ -100,7 +100,9 @@ std::string message_of(Flow& flow, double time) {
 
 class FlowOf : public testing::TestWithParam<FlowMethod> {
 protected:
-  [[nodiscard]] bool one_step() const { return GetParam() == FlowMethod::explicit_runge_kutta; }
+  [[nodiscard]] bool one_step() const {
+    return GetParam() == FlowMethod::explicit_runge_kutta || GetParam() == FlowMethod::one_step;
+  }
   [[nodiscard]] std::unique_ptr<Flow> make(Problem& problem, double tolerance) const {
     return make_flow(GetParam(), problem, tolerance);
   }
@@ -114,13 +116,15 @@ std::string name_of(const testing::TestParamInfo<FlowMethod>& method) {
       return "Adams";
     case FlowMethod::bdf:
       return "Bdf";
+    case FlowMethod::one_step:
+      return "OneStep";
   }
   return {};
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, FlowOf,
-                         testing::Values(FlowMethod::explicit_runge_kutta, FlowMethod::adams,
-                                         FlowMethod::bdf),
+                         testing::Values(FlowMethod::explicit_runge_kutta, FlowMethod::adams, FlowMethod::bdf,
+                                         FlowMethod::one_step),
                          name_of);
 
 TEST_P(FlowOf, ErrorFollowsTheTolerance) {
