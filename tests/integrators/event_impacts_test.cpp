@@ -139,9 +139,9 @@ TEST(EventImpacts, JohanssonTables) {
   int runs = 0;
   const Json data = reference_data("impacts_planar.json").at("johansson_tables").at("runs");
   for (const auto& [name, run] : data.items()) {
-    const auto surface = [&](double friction) {
-      return Surface{
-          .friction = friction, .normal_restitution = 0.91, .tangential_restitution = named(name, "et")};
+    const double e_t = named(name, "et");
+    const auto surface = [e_t](double friction) {
+      return Surface{.friction = friction, .normal_restitution = 0.91, .tangential_restitution = e_t};
     };
     System system;
     system.add(Gravity{{0.0, -g}});
