@@ -12,6 +12,8 @@
 
 #include <carom/contact/contact_finder.h>
 #include <carom/contact/contact_mode.h>
+#include <carom/contact/lcp.h>
+#include <carom/contact/lemke.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 
@@ -78,6 +80,7 @@ private:
   void lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing);
   bool solve();
   void spread(std::size_t first, std::size_t last);
+  bool share_out(std::size_t from, std::size_t to);
 
   std::vector<ClosedContact> contacts_;
   std::vector<Row> rows_;         // of the group at hand
@@ -97,6 +100,8 @@ private:
     double at = 0.0, slope = 0.0;  // a margin along a null vector
   };
   std::vector<Line> lines_;
+  Lemke lemke_;  // shares out forces of more than one freedom
+  Lcp lcp_;
 };
 
 }  // namespace carom
