@@ -50,6 +50,8 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   fresh_ = true;
   step_ = 0.0;
   last_impacts_.clear();
+  breaking_.clear();
+  lifting_.clear();
   counted_ = 0;
   window_start_ = time_;
 
@@ -391,8 +393,12 @@ void IslandDriver::go_to_event(DriverNews& news) {
   step_ = flow_->next_step();
   motion_.evaluate(time_, y_.data(), true);
   count_event();
-  breaking_.clear();
-  lifting_.clear();
+  // Events of several bodies at one instant are decided one after the other: what gave way goes on doing so.
+  if (time_ != gave_way_at_) {
+    breaking_.clear();
+    lifting_.clear();
+    gave_way_at_ = time_;
+  }
   const auto& closed = motion_.closed().list();
   if (next_.guard == Guard::force) {
     motion_.closed().margins(work_->margins);

@@ -171,6 +171,7 @@ private:
   std::vector<Break> breaking_;
   std::vector<double> kinks_;
   std::vector<ContactPair> lifting_;
+  double gave_way_at_ = 0.0;           // time of both [s]
   ContactPair stopped_;                // has just stopped slipping
   std::vector<ClosedContact> before_;  // closed before the event
   ClosedContacts capture_;

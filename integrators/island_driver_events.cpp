@@ -80,13 +80,13 @@ void IslandDriver::begin_phase(DriverNews& news) {
   if (struck) {
     // What stopped moves again, and loads may depend on velocities.
     stopped_ = {};
+    breaking_.clear();
+    lifting_.clear();
     motion_.evaluate(time_, y_.data(), false);
     locate_contacts();
   }
   decide_modes(news);
   tell_changes(news);
-  breaking_.clear();
-  lifting_.clear();
   stopped_ = {};
   fresh_ = false;
 
