@@ -101,6 +101,7 @@ private:
   [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
   [[nodiscard]] Found find_event();
+  [[nodiscard]] Found foretell();
   // A gap at a time, with what bounds its sixth derivative.
   struct GapLook {
     double time;
@@ -165,6 +166,7 @@ private:
   std::array<Sample, samples> between_;  // at equal distances over the step
   double step_ = 0.0;                    // to try first in the next phase
   std::vector<char> closed_at_;          // by pair
+  std::vector<char> passed_over_;        // by pair: false alarms within the step
   double velocity_scale_ = 0.0;          // of the island at the start of the phase [m/s]
   double force_scale_ = 0.0;             // [N]
   double gap_noise_ = 0.0;               // rounding of gaps [m]

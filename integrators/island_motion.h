@@ -94,6 +94,8 @@ public:
   [[nodiscard]] std::size_t kink_count() const { return kink_elements_.size(); }
   /// Times at which laws of the island's elements and of obstacles jump, ascending [s].
   [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
+  /// True if nothing but uniform fields acts: places are polynomials of time but for turning.
+  [[nodiscard]] bool flies_freely() const { return only_fields_ && closed_.list().empty(); }
   /// True if the loads or obstacles depend on time.
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
 
@@ -109,7 +111,7 @@ private:
   std::vector<LoadDerivative> derivatives_;
   std::vector<ElementId> kink_elements_;
   std::vector<double> breaks_;
-  bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false;
+  bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false, only_fields_ = true;
 };
 
 }  // namespace carom

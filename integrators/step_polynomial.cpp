@@ -58,7 +58,11 @@ double StepPolynomial::at(const Coefficients& b, double tau) const {
   return work[0];
 }
 
-double StepPolynomial::lower_bound() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
+double StepPolynomial::least() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
+
+double StepPolynomial::most() const {
+  return *std::max_element(b_.begin(), b_.begin() + degree_ + 1);
+}
 
 double StepPolynomial::value(double tau) const { return at(b_, tau); }
 

@@ -26,8 +26,9 @@ public:
   /// Degree 4, through five values at equal distances.
   [[nodiscard]] static StepPolynomial through(std::span<const double, 5> values);
 
-  /// A number that it does not fall below: the least of its coefficients.
-  [[nodiscard]] double lower_bound() const;
+  /// Numbers that it stays between: the least and the largest of its coefficients.
+  [[nodiscard]] double least() const;
+  [[nodiscard]] double most() const;
   /// Its value.
   [[nodiscard]] double value(double tau) const;
   /// The polynomial plus a constant.
@@ -36,8 +37,8 @@ public:
   [[nodiscard]] double first_fall() const;
 
 private:
-  static constexpr int most = 5;
-  using Coefficients = std::array<double, most + 1>;
+  static constexpr int most_degree = 5;
+  using Coefficients = std::array<double, most_degree + 1>;
   [[nodiscard]] double fall_within(const Coefficients& b, double from, double to, int depth) const;
   [[nodiscard]] double lone_root(const Coefficients& b) const;
   [[nodiscard]] double at(const Coefficients& b, double tau) const;
