@@ -53,10 +53,12 @@ private:
     double distance;
   };
 
-  [[nodiscard]] double gap(const Touching& at, const carom::Vec<2>& centre, double angle) const {
+  [[nodiscard]] double gap(const Touching& at, const carom::Vec<2>& centre, double angle,
+                           std::size_t walls = std::numeric_limits<std::size_t>::max()) const {
     const double c = std::cos(angle), s = std::sin(angle);
     double least = std::numeric_limits<double>::infinity();
-    for (const Wall& wall : walls_) {
+    for (std::size_t i = 0; i < std::min(walls, walls_.size()); ++i) {
+      const Wall& wall = walls_[i];
       const double height = wall.normal.dot(centre) + wall.distance - at.radius;
       if (at.points.empty()) least = std::min(least, height);
       for (const carom::Vec<2>& p : at.points) {
@@ -123,22 +125,14 @@ private:
       // Lies, stands or slides on the floor.
       const Wall& floor = walls_[0];
       if (random_.below(2) == 0) angle = std::atan2(-floor.normal[0], floor.normal[1]);
-      for (int i = 0; i < 3; ++i) {
-        // Of the floor alone: another wall may be nearer.
-        Touching of_floor = at;
-        std::vector<Wall> all{floor};
-        all.swap(walls_);
-        const double height = gap(of_floor, position, angle);
-        all.swap(walls_);
-        position -= height * floor.normal;
-      }
+      // Of the floor alone: another wall may be nearer. Twice, to take the rounding out.
+      for (int i = 0; i < 2; ++i) position -= gap(at, position, angle, 1) * floor.normal;
       const Vec<2> along(floor.normal[1], -floor.normal[0]);
       velocity = random_.below(2) == 0 ? Vec<2>(Vec<2>::Zero()) : Vec<2>(velocity.dot(along) * along);
       spin = 0.0;
     }
     if (gap(at, position, angle) < -1e-12) {  // another wall is in the way
       position = Vec<2>::Zero();
-      for (const Touching& other : touching_) static_cast<void>(other);
     }
     if (kind == 0) {
       at.body = system_.add(Particle{.mass = mass, .position = position, .velocity = velocity});
