@@ -35,8 +35,8 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     books_dissipative_ = books_dissipative_ || elements.books_dissipative();
     books_external_ = books_external_ || elements.books_external();
     depends_on_time_ = depends_on_time_ || elements.depends_on_time();
-    only_fields_ = only_fields_ && elements.is_field() && !elements.books_dissipative() &&
-                   !elements.depends_on_time();
+    only_fields_ =
+        only_fields_ && elements.is_field() && !elements.books_dissipative() && !elements.depends_on_time();
     const Range acting = assembly.elements(island, kind);
     for (Index element = acting.begin; element < acting.end; ++element) {
       elements.breaks(element, breaks_);

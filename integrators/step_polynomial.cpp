@@ -60,9 +60,7 @@ double StepPolynomial::at(const Coefficients& b, double tau) const {
 
 double StepPolynomial::least() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
 
-double StepPolynomial::most() const {
-  return *std::max_element(b_.begin(), b_.begin() + degree_ + 1);
-}
+double StepPolynomial::most() const { return *std::max_element(b_.begin(), b_.begin() + degree_ + 1); }
 
 double StepPolynomial::value(double tau) const { return at(b_, tau); }
 
