@@ -1,7 +1,7 @@
 // Problem: dy/dt = f(t, y) for a handful of unknowns, where restarts are many and the cost is overhead: the
 // pair of orders 5 and 4 by Dormand and Prince (1980), the last stage being the first of the next step.
 
-#include <carom/core/errors.h>
+#include <carom/integrators/flow_checks.h>
 #include <carom/integrators/one_step_flow.h>
 
 #include <algorithm>
@@ -36,6 +36,7 @@ constexpr double safety = 0.9, most_growth = 10.0, most_shrinking = 0.2;
 
 OneStepFlow::OneStepFlow(FlowProblem& problem, double relative_tolerance)
     : problem_(&problem), relative_tolerance_(relative_tolerance) {
+  check_flow_problem(problem, relative_tolerance);
   const std::size_t n = problem.size();
   for (std::vector<double>* array : {&start_, &end_, &trial_}) array->assign(n, 0.0);
   slopes_.assign(n * stages, 0.0);
@@ -48,7 +49,10 @@ void OneStepFlow::rates(double time, const double* y, double* out) {
 }
 
 void OneStepFlow::start(double time, std::span<const double> y, double first_step) {
+  check_flow_size(y.size(), end_.size(), "start");
+  check_flow_start(time, first_step);
   ++counts_.restarts;
+  started_ = true;
   begin_ = time_ = time;
   std::copy(y.begin(), y.end(), end_.begin());
   std::copy(y.begin(), y.end(), start_.begin());
@@ -57,7 +61,10 @@ void OneStepFlow::start(double time, std::span<const double> y, double first_ste
 }
 
 void OneStepFlow::correct(std::span<const double> y) {
+  check_flow_size(y.size(), end_.size(), "correct");
   std::copy(y.begin(), y.end(), end_.begin());
+  std::copy(y.begin(), y.end(), start_.begin());
+  begin_ = time_;
   known_ = false;
 }
 
@@ -104,42 +111,58 @@ double OneStepFlow::first_guess() const {
 }
 
 void OneStepFlow::advance(double longest) {
+  check_flow_advance(started_, longest);
   const std::size_t n = end_.size();
+  started_ = false;  // unless the step succeeds
+  begin_ = time_;
   if (known_) {
     std::copy_n(slopes_.end() - static_cast<std::ptrdiff_t>(n), n, slopes_.begin());
   } else {
     rates(time_, end_.data(), slopes_.data());
   }
+  const bool defined = std::all_of(slopes_.begin(), slopes_.begin() + static_cast<std::ptrdiff_t>(n),
+                                   [](double rate) { return std::isfinite(rate); });
   double length = std::min(next_step_ > 0.0 ? next_step_ : first_guess(), longest);
-  bool rejected = false;
+  if (!defined) fail_flow_not_finite(time_, time_, length);
+  if (!(time_ + longest > time_)) {
+    fail_flow("the length allowed for the step is below the rounding of time", time_, longest);
+  }
+  const double rounding = 8.0 * std::numeric_limits<double>::epsilon() * std::abs(time_);
+  bool rejected = false, undefined = false;
   for (;;) {
-    if (!(length > 16.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(time_)))) {
-      throw SolverError("steps become too short for the tolerance, or rates are not finite", {});
+    if (!(time_ + length > time_) || (length <= rounding && length < 0.5 * longest)) {
+      if (undefined) fail_flow_not_finite(time_ + length, time_, length);
+      fail_flow_too_short(time_, length);
     }
     make_step(time_, length, end_, slopes_, trial_);
     rates(time_ + length, trial_.data(), slopes_.data() + (stages - 1) * n);
     const double worst = error(length);
     const double wanted = worst > 0.0 ? safety * std::pow(worst, -0.2) : most_growth;
     if (worst <= 1.0) {
+      // Who asks for a step to some time shall be there.
+      const double last = begin_ + longest;
       start_.swap(end_);
       end_.swap(trial_);
-      begin_ = time_;
-      time_ += length;
+      time_ = length == longest ? last : time_ + length;
       next_step_ = length * std::clamp(wanted, most_shrinking, rejected ? 1.0 : most_growth);
-      known_ = true;
+      known_ = started_ = true;
       ++counts_.steps;
       return;
     }
     rejected = true;
-    length *= std::isfinite(worst) ? std::clamp(wanted, most_shrinking, 1.0) : most_shrinking;
+    undefined = !std::isfinite(worst);
+    length *= undefined ? most_shrinking : std::clamp(wanted, most_shrinking, 1.0);
   }
 }
 
 void OneStepFlow::sample(double time, std::span<double> y) { land(time, y); }
 
 void OneStepFlow::land(double time, std::span<double> y) {
-  if (time >= time_) {
-    std::copy(end_.begin(), end_.end(), y.begin());
+  check_flow_size(y.size(), end_.size(), "land");
+  check_flow_time(*this, time, "land");
+  if (time == time_ || time == begin_) {
+    const std::vector<double>& known = time == time_ ? end_ : start_;
+    std::copy(known.begin(), known.end(), y.begin());
     return;
   }
   const std::size_t n = end_.size();

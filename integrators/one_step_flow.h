@@ -39,7 +39,8 @@ private:
   double begin_ = 0.0, time_ = 0.0, next_step_ = 0.0;
   std::vector<double> start_, end_, trial_;  // y at begin_, at time_
   std::vector<double> slopes_, landing_;     // stages of the last step, one after the other
-  bool known_ = false;                       // the last stage is the rate at time_
+  bool started_ = false;
+  bool known_ = false;  // the last stage is the rate at time_
   FlowCounts counts_;
 };
 

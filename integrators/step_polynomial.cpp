@@ -79,7 +79,7 @@ double StepPolynomial::first_fall() const {
 /// keeps it, until the root no longer moves.
 double StepPolynomial::lone_root(const Coefficients& b) const {
   constexpr int most_steps = 60;
-  constexpr double still = 4.0 * std::numeric_limits<double>::epsilon();
+  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
   double low = 0.0, high = 1.0, f_low = b[0], f_high = b[static_cast<std::size_t>(degree_)], root = high;
   int side = 0;
   for (int i = 0; i < most_steps; ++i) {

@@ -1,7 +1,7 @@
 // Problem: steps of an integrator as a sequence that somebody watches: where each began and ended, what was
 // there, and in plain words why there is no next one.
 
-#include <carom/core/part_check.h>
+#include <carom/integrators/flow_checks.h>
 #include <carom/integrators/one_step_flow.h>
 #include <carom/integrators/sundials_flow.h>
 
@@ -12,16 +12,6 @@
 
 namespace carom {
 
-namespace {
-
-void demand_size(std::size_t given, std::size_t size, const char* call) {
-  if (given == size) return;
-  throw ModelError(std::string("flow: ") + call + "() is given " + std::to_string(given) +
-                   " numbers; allowed: " + std::to_string(size));
-}
-
-}  // namespace
-
 SundialsFlow::SundialsFlow(FlowProblem& problem, double relative_tolerance)
     : link_(problem, relative_tolerance), begin_state_(link_.size()), end_state_(link_.size()) {
   begin_vector_ = link_.vector(begin_state_.data());
@@ -30,11 +20,8 @@ SundialsFlow::SundialsFlow(FlowProblem& problem, double relative_tolerance)
 }
 
 void SundialsFlow::start(double time, std::span<const double> y, double first_step) {
-  demand_size(y.size(), link_.size(), "start");
-  if (!std::isfinite(time)) throw ModelError("flow: start() at t = " + to_text(time) + "; allowed: finite");
-  if (!(std::isfinite(first_step) && first_step >= 0.0)) {
-    throw ModelError("flow: the first step is " + to_text(first_step) + "; allowed: finite and >= 0 s");
-  }
+  check_flow_size(y.size(), link_.size(), "start");
+  check_flow_start(time, first_step);
   begin_ = end_ = time;
   next_ = first_step;
   std::copy(y.begin(), y.end(), end_state_.begin());
@@ -46,15 +33,12 @@ void SundialsFlow::start(double time, std::span<const double> y, double first_st
 }
 
 void SundialsFlow::advance(double longest) {
-  if (!started_) throw ModelError("flow: advance() before start(), or after an error without one");
-  if (!(longest > 0.0)) {
-    throw ModelError("flow: a step of " + to_text(longest) + " s at most; allowed: > 0");
-  }
+  check_flow_advance(started_, longest);
   begin_ = end_;
   std::copy(end_state_.begin(), end_state_.end(), begin_state_.begin());
   const double wanted = next_ > 0.0 ? std::min(next_, longest) : longest;
   if (!(begin_ + longest > begin_)) {
-    SundialsLink::fail("the length allowed for the step is below the rounding of time", begin_, longest);
+    fail_flow("the length allowed for the step is below the rounding of time", begin_, longest);
   }
 
   link_.clear();
@@ -76,8 +60,7 @@ void SundialsFlow::advance(double longest) {
     std::copy(begin_state_.begin(), begin_state_.end(), end_state_.begin());
     const double hole = link_.not_finite_at() - begin_;
     if (hole >= 0.0 && hole <= 1e3 * rounding) link_.fail_not_finite(begin_, length);
-    SundialsLink::fail("steps have shrunk to the rounding of time; the motion has no smooth continuation",
-                       begin_, length);
+    fail_flow_too_short(begin_, length);
   }
   end_ = reached;
   started_ = stepped_ = true;
@@ -85,10 +68,8 @@ void SundialsFlow::advance(double longest) {
 }
 
 void SundialsFlow::demand_step(double time, std::size_t size, const char* call) const {
-  demand_size(size, link_.size(), call);
-  if (time >= begin_ && time <= end_) return;
-  throw ModelError(std::string("flow: ") + call + "() at t = " + to_text(time) +
-                   " s; allowed: within the last step, " + to_text(begin_) + " to " + to_text(end_) + " s");
+  check_flow_size(size, link_.size(), call);
+  check_flow_time(*this, time, call);
 }
 
 void SundialsFlow::sample(double time, std::span<double> y) {
@@ -112,7 +93,7 @@ void SundialsFlow::land(double time, std::span<double> y) {
 }
 
 void SundialsFlow::correct(std::span<const double> y) {
-  demand_size(y.size(), link_.size(), "correct");
+  check_flow_size(y.size(), link_.size(), "correct");
   if (stepped_) shift(y);
   std::copy(y.begin(), y.end(), end_state_.begin());
   std::copy(y.begin(), y.end(), begin_state_.begin());

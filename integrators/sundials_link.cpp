@@ -1,5 +1,6 @@
 // Problem: let a library written in C evaluate our rates, in vectors of ours, and learn what went wrong.
 
+#include <carom/integrators/flow_checks.h>
 #include <carom/integrators/sundials_link.h>
 
 #include <carom/core/part_check.h>
@@ -99,22 +100,7 @@ std::string reason(int flag) {
 
 SundialsLink::SundialsLink(FlowProblem& problem, double relative_tolerance)
     : problem_(&problem), size_(problem.size()), relative_tolerance_(relative_tolerance) {
-  const auto refuse = [](const char* what, const std::string& value, const char* allowed) {
-    throw ModelError(std::string("flow: ") + what + " is " + value + "; allowed: " + allowed);
-  };
-  if (!(std::isfinite(relative_tolerance) && relative_tolerance > 0.0)) {
-    refuse("the relative tolerance", to_text(relative_tolerance), "finite and > 0");
-  }
-  if (size_ == 0) refuse("the number of unknowns", "0", "at least 1");
-  const auto tolerances = problem.absolute_tolerances();
-  if (tolerances.size() != size_) {
-    refuse("the number of absolute tolerances", std::to_string(tolerances.size()), "one for each unknown");
-  }
-  for (const double tolerance : tolerances) {
-    if (!(std::isfinite(tolerance) && tolerance > 0.0)) {
-      refuse("an absolute tolerance", to_text(tolerance), "finite and > 0");
-    }
-  }
+  check_flow_problem(problem, relative_tolerance);
   demand(SUNContext_Create(no_communicator(), &context_) == 0, "SUNContext_Create");
 #if SUNDIALS_VERSION_MAJOR >= 7
   SUNContext_ClearErrHandlers(context_);
@@ -216,25 +202,16 @@ void SundialsLink::fail(int flag, double time, double step) const {
   if (not_finite_) fail_not_finite(time, step);
   std::string why = reason(flag);
   if (why.empty()) why = "SUNDIALS gives up (" + std::to_string(flag) + "): " + message_.data();
-  fail(why, time, step);
+  fail_flow(why, time, step);
 }
 
 void SundialsLink::fail_not_finite(double time, double step) const {
-  fail("the rates are not finite at t = " + to_text(not_finite_at_) + " s, however short the step", time,
-       step);
-}
-
-void SundialsLink::fail(const std::string& why, double time, double step) {
-  SolverFailure failure;
-  failure.time = time;
-  failure.step = step;
-  throw SolverError("smooth motion at t = " + to_text(time) + " s, step " + to_text(step) + " s: " + why,
-                    std::move(failure));
+  fail_flow_not_finite(not_finite_at_, time, step);
 }
 
 void SundialsLink::demand(bool success, const char* what) const {
   if (success) return;
-  fail(std::string(what) + " fails: " + message_.data(), 0.0, 0.0);
+  fail_flow(std::string(what) + " fails: " + message_.data(), 0.0, 0.0);
 }
 
 }  // namespace carom

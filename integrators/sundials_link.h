@@ -78,8 +78,6 @@ public:
   [[noreturn]] void fail(int flag, double time, double step) const;
   /// Throws the SolverError that rates are not finite where they last were not.
   [[noreturn]] void fail_not_finite(double time, double step) const;
-  /// Throws a SolverError in these words.
-  [[noreturn]] static void fail(const std::string& why, double time, double step);
   /// For calls that fail for want of memory or by a mistake of ours only.
   void demand(bool success, const char* what) const;
 
