@@ -135,7 +135,7 @@ void EventDriver::count(Companion& companion) {
   ++statistics.steps;
   for (std::size_t kind = 0; kind < event_kind_count; ++kind) statistics.events[kind] += news_.counts[kind];
   for (const EventRecord& event : news_.events) {
-    if (event.kind == EventKind::impact) ++statistics.impacts;
+    if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++statistics.impacts;
     if (event.outcome == Outcome::several_solutions) ++statistics.several_solutions;
     if (event.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
     statistics.worst_residual = std::max(statistics.worst_residual, event.residual);

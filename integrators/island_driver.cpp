@@ -43,6 +43,7 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
 void IslandDriver::start(const State& state, const ContactModes& present) {
   if (!flow_) flow_ = make_flow(options_.method, motion_, options_.relative_tolerance);
   time_ = looked_at_ = state.time;
+  landed_at_ = never;
   motion_.gather(state, y_);
   seen_ = y_;
   delivered_ = {};
@@ -131,6 +132,7 @@ void IslandDriver::take_step() {
   }
   if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
   sample_step();
+  landed_at_ = never;
   next_ = find_event();
   const bool at_break = until_break < never && flow_->end() >= *due - 2.0 * epsilon * std::abs(*due);
   if (next_.guard == Guard::nothing && at_break) next_ = {*due, Guard::law, 0};
@@ -370,7 +372,11 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     }
     // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
     const bool opens = rough.guard == Guard::gap && rate >= 0.0 && start_.gaps[rough.which].first >= 0.0;
-    if (std::abs(value) <= noise && !opens) return {time, rough.guard, rough.which, rough.sign};
+    if (std::abs(value) <= noise && !opens) {
+      landed_at_ = time;
+      landed_.assign(work_->y.begin(), work_->y.end());
+      return {time, rough.guard, rough.which, rough.sign};
+    }
     if (!by_values && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
     if (value > 0.0 || opens) {
       low = time;
@@ -407,7 +413,11 @@ bool IslandDriver::settle(DriverNews& news) {
 
 void IslandDriver::go_to_event(DriverNews& news) {
   time_ = next_.time;
-  flow_->land(std::min(time_, flow_->end()), y_);
+  if (landed_at_ == time_) {
+    y_ = landed_;
+  } else {
+    flow_->land(std::min(time_, flow_->end()), y_);
+  }
   pending_ = in_phase_ = false;
   step_ = flow_->next_step();
   motion_.evaluate(time_, y_.data(), true);

@@ -165,6 +165,8 @@ private:
   };
   std::array<Sample, samples> between_;  // at equal distances over the step
   double step_ = 0.0;                    // to try first in the next phase
+  double landed_at_ = 0.0;               // where the event was found,
+  std::vector<double> landed_;           // and y there
   std::vector<char> closed_at_;          // by pair
   std::vector<char> passed_over_;        // by pair: false alarms within the step
   double velocity_scale_ = 0.0;          // of the island at the start of the phase [m/s]

@@ -87,6 +87,12 @@ struct Simulation::Impl {
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();
   }
+  /// Times nearer to each other than this are one [s].
+  [[nodiscard]] double closeness() const {
+    if (const auto* options = std::get_if<TimeStepping>(&mode)) return snap * options->step;
+    // Islands can go to any time; only what rounding makes of k intervals is not to be told apart.
+    return 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(state.time));
+  }
   /// Distance of the times of a grid on which step() stops [s].
   [[nodiscard]] double grid() const {
     const auto* options = std::get_if<TimeStepping>(&mode);
@@ -124,7 +130,7 @@ struct Simulation::Impl {
 
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
 void Simulation::Impl::step(Simulation& simulation, double limit) {
-  const double close = snap * grid();
+  const double close = closeness();
   if (limit - state.time <= close) {
     state.time = limit;
     return;
@@ -164,14 +170,14 @@ void Simulation::Impl::advance(double limit) {
       machines.driver->advance(state, companion, end, report, events);
     }
   };
-  const double full = grid();
+  const double full = grid(), close = closeness();
   const double grid_end = companion.grid_start + static_cast<double>(companion.grid_steps + 1) * full;
-  if (limit < grid_end - snap * full) {
+  if (limit < grid_end - close) {
     // Cut short: the grid starts anew from there.
     advance_to(limit - state.time, limit);
     restart_grid();
   } else {
-    const bool snapped = limit <= grid_end + snap * full;
+    const bool snapped = limit <= grid_end + close;
     advance_to(full, snapped ? limit : grid_end);
     ++companion.grid_steps;
   }
@@ -337,7 +343,8 @@ void Simulation::clear_events() { impl_->events.clear(); }
 void Simulation::write_events(const std::string& path) const {
   std::ostringstream text;
   carom::write_events(text, impl_->events, [this](const EventRecord& event) {
-    return event.element.valid() ? system().name(event.element) : name(event.contact);
+    if (event.element.valid()) return system().name(event.element);
+    return event.body.valid() ? name(event.contact) : std::string();
   });
   write_file(path, text.str(), "events");
 }

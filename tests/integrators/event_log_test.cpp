@@ -74,6 +74,20 @@ TEST(EventLog, RecordsNothingWhereNotAskedTo) {
   EXPECT_GT(simulation.statistics().impacts, 5);
 }
 
+// Whoever looks often, and has a long interval besides, still gets every moment.
+TEST(EventDriver, ALongIntervalSkipsNothing) {
+  System system;
+  system.add(Gravity{{0.0, -10.0}});
+  const BodyId body = system.add(Particle{.mass = 1.0});
+  Simulation simulation(system, EventDriven{.interval = 1e9});
+  int fired = 0;
+  simulation.every(0.1, [&fired](Simulation&) { ++fired; });
+  for (int i = 1; i <= 50; ++i) simulation.run_until(0.1 * i);
+  EXPECT_EQ(fired, 50);
+  EXPECT_NEAR(simulation.state().position(body)[1], -125.0, 1e-11);
+  EXPECT_EQ(simulation.time(), 5.0);
+}
+
 TEST(EventDriver, ImpactsAllocateNothing) {
   for (const FlowMethod method : {FlowMethod::explicit_runge_kutta, FlowMethod::one_step}) {
     Simulation simulation(bouncing_disc(1.0), EventDriven{.method = method, .record_events = false});
