@@ -20,17 +20,6 @@ constexpr double gap_rounding = 256.0 * epsilon;
 // 1e-12. So are those well below the tolerance, which would start phases that end at once.
 constexpr double speed_rounding = 1e-12;
 
-// Impacts of one instant: each takes energy out or hands it on, so that more than this do not happen but by
-// e = 1 in a corner.
-constexpr int most_impacts_at_once = 10000;
-
-/// Line of the account for the work of an impact along a row of a contact.
-EnergyFlow line_of(EventKind kind, int row) {
-  if (kind == EventKind::accumulation) return EnergyFlow::accumulation;
-  if (kind == EventKind::impact_without_collision) return EnergyFlow::impact_without_collision;
-  return row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential;
-}
-
 }  // namespace
 
 void IslandDriver::set_scales() {
@@ -101,156 +90,6 @@ void IslandDriver::begin_phase(DriverNews& news) {
   const bool one_step =
       options_.method == FlowMethod::explicit_runge_kutta || options_.method == FlowMethod::one_step;
   flow_->start(time_, y_, one_step ? step_ : 0.0);
-}
-
-/// Impacts at this instant, body by body, until nothing that touches approaches. True if there was one.
-bool IslandDriver::resolve_impacts(DriverNews& news) {
-  const auto& pairs = motion_.pairs();
-  bool struck = false;
-  for (int round = 0; round < most_impacts_at_once; ++round) {
-    bool any = false;
-    for (std::size_t first = 0; first < pairs.size();) {
-      std::size_t last = first;
-      double fastest = 0.0;
-      for (; last < pairs.size() && pairs[last].body == pairs[first].body; ++last) {
-        if (!touches(last)) continue;
-        fastest = std::max(fastest, -work_->contacts[last].velocity(0, work_->motion.trial.v.data()));
-      }
-      if (fastest > speed_noise()) {
-        resolve_body(first, last, fastest, news);
-        any = struck = true;
-      }
-      first = last;
-    }
-    if (!any) return struck;
-  }
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (touches(i)) names.push_back(finder_->name(work_->contacts[i].key));
-  }
-  fail("impacts at one instant do not come to an end", std::move(names));
-}
-
-void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fastest, DriverNews& news) {
-  double* const velocity = work_->motion.trial.v.data();
-  std::vector<Contact>& touching = work_->touching;
-  touching.clear();
-  for (std::size_t i = first; i < last; ++i) {
-    if (!touches(i)) continue;
-    Contact& contact = touching.emplace_back(work_->contacts[i]);
-    contact.friction = contact.law.friction_at(contact.sliding_speed(velocity));
-  }
-  const bool captured = fastest <= options_.capture_speed;
-  if (captured) take_captured(first, last);
-  const double energy_before = motion_.kinetic_energy(touching.front().body);
-  ContactCluster& cluster = work_->cluster;
-  cluster.build(*assembly_, touching, velocity);
-  cluster.set_free_velocity(velocity);
-  const bool solved = cluster.solve(work_->chain).usable();
-  // Slower than the capture speed all that touches closes anyway.
-  if (!solved && captured) cluster.forget_impulses();
-  if (!solved && !captured) {
-    std::vector<std::string> names;
-    for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
-    fail("the contact problem of an impact is not solved (" +
-             std::string(to_string(cluster.report().outcome)) + ")",
-         std::move(names), &cluster);
-  }
-  cluster.apply(velocity);
-  const Range v = assembly_->islands()[motion_.island()].v;
-  std::copy(velocity + v.begin, velocity + v.end,
-            y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
-  book_impact(captured ? EventKind::accumulation : EventKind::impact, energy_before, news);
-  if (captured) close_captured(news);
-}
-
-/// Adds contacts that are about to close too, and takes the restitution out of all.
-void IslandDriver::take_captured(std::size_t first, std::size_t last) {
-  const MotionWorkspace& work = work_->motion;
-  const double limit = options_.capture_speed * options_.capture_speed;
-  for (std::size_t i = first; i < last; ++i) {
-    if (touches(i)) continue;
-    const Contact& contact = work_->contacts[i];
-    const double speed = contact.velocity(0, work.trial.v.data());
-    const double fall = contact.acceleration(0, work.acceleration.data());
-    if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) work_->touching.push_back(contact);
-  }
-  for (Contact& contact : work_->touching) {
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-  }
-}
-
-/// Takes what is left of the normal velocities and gaps of captured contacts.
-void IslandDriver::close_captured(DriverNews& news) {
-  MotionWorkspace& work = work_->motion;
-  std::vector<ClosedContact>& list = capture_.list();
-  list.clear();
-  const double* const velocity = work.trial.v.data();
-  // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
-  // lifts it by, it falls again.
-  double fall = 0.0;
-  for (const Contact& contact : work_->touching) {
-    fall = std::max(fall, std::abs(contact.acceleration(0, work.acceleration.data())));
-  }
-  const double rounding = std::sqrt(2.0 * 4.0 * gap_noise_ * fall);
-  for (const Contact& contact : work_->touching) {
-    if (contact.velocity(0, velocity) > options_.capture_speed) continue;
-    ClosedContact& closed = list.emplace_back();
-    const bool stops = contact.sliding_speed(velocity) <= rounding;
-    closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
-    closed.at = contact;
-  }
-  motion_.closed().list().swap(list);
-  bool changed = false;
-  news.flows[EnergyFlow::accumulation] += motion_.project(y_, changed, news.shift);
-  motion_.closed().list().swap(list);
-  if (!changed) return;
-  motion_.evaluate(time_, y_.data(), false);
-  locate_contacts();
-}
-
-void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews& news) {
-  const ContactCluster& cluster = work_->cluster;
-  const MotionWorkspace& work = work_->motion;
-  double gain = 0.0, scale = 0.0;
-  const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body);
-  // Before those of this instant are remembered.
-  const double pile_up =
-      kind == EventKind::accumulation ? accumulation_time() : std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-    const Contact& contact = cluster.contacts()[c];
-    EventRecord& event = tell(kind, contact, news);
-    for (int row = 0; row < contact.rows; ++row) {
-      const auto at = static_cast<std::size_t>(row);
-      const auto place = static_cast<std::size_t>(cluster.first_row(c) + row);
-      const double before = cluster.before()[place], after = contact.velocity(row, work.trial.v.data());
-      const double impulse = cluster.impulses()[place];
-      event.velocity_before[at] = before;
-      event.velocity_after[at] = after;
-      event.impulse[at] = impulse;
-      const double gained = 0.5 * impulse * (before + after);
-      gain += gained;
-      scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
-      news.flows[line_of(kind, row)] -= gained;
-      news.flows[EnergyFlow::external] += impulse * contact.obstacle_velocity[at];
-    }
-    event.energy_before = energy_before;
-    event.energy_after = energy_after;
-    event.mode = cluster.modes()[c];
-    event.outcome = cluster.report().outcome;
-    event.residual = cluster.report().residual;
-    event.solver = cluster.report().solver;
-    event.accumulation_time = pile_up;
-    if (event.impulse[0] > 0.0) remember_impact(contact.key);
-  }
-  constexpr double rounding = 1e-13;  // of the sum of works
-  if (!(gain > rounding * scale)) return;
-  news.energy_gain += gain;
-  if (!options_.refuse_energy_gain) return;
-  std::vector<std::string> names;
-  for (const Contact& contact : cluster.contacts()) names.push_back(finder_->name(contact.key));
-  fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
-       &cluster);
 }
 
 void IslandDriver::decide_modes(DriverNews& news) {
@@ -343,65 +182,6 @@ void IslandDriver::tell_choice(EventKind kind, DriverNews& news) {
   }
 }
 
-/// The limit of an impact at vanishing speed: of its answers with impulses the one that takes most energy.
-void IslandDriver::impact_without_collision(DriverNews& news) {
-  std::vector<Candidate>& candidates = work_->candidates;
-  double* const velocity = work_->motion.trial.v.data();
-  std::vector<Contact>& touching = work_->touching;
-  touching.clear();
-  std::vector<std::string> names;
-  for (const Candidate& candidate : candidates) {
-    touching.push_back(candidate.at);
-    names.push_back(finder_->name(candidate.at.key));
-  }
-  ContactCluster& cluster = work_->cluster;
-  cluster.build(*assembly_, touching, velocity);
-  cluster.set_free_velocity(velocity);
-  if (!cluster.solve(work_->chain).usable() ||
-      solutions_.enumerate(cluster.problem()) == Outcome::not_solved) {
-    fail("no forces keep the contact and the impact without collision is not solved", std::move(names),
-         &cluster);
-  }
-  std::vector<double> restitution;
-  for (const Contact& contact : touching) {
-    restitution.push_back(contact.law.normal_restitution);
-    restitution.push_back(contact.law.tangential_restitution);
-  }
-  std::size_t best = solutions_.size();
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < solutions_.size(); ++s) {
-    const auto impulse = solutions_.impulse(s);
-    double size = 0.0, loss = 0.0;
-    for (std::size_t row = 0; row < impulse.size(); ++row) {
-      const double after = solutions_.velocity(s)[row] - restitution[row] * cluster.before()[row];
-      size = std::max(size, std::abs(impulse[row]));
-      loss -= 0.5 * impulse[row] * (cluster.before()[row] + after);
-    }
-    if (size == 0.0 || !(loss > most)) continue;
-    most = loss;
-    best = s;
-  }
-  if (best == solutions_.size()) {
-    fail("no forces keep the contact, and no impact without collision does", std::move(names), &cluster);
-  }
-  cluster.set_impulses(solutions_.impulse(best));
-  const double energy_before = motion_.kinetic_energy(touching.front().body);
-  cluster.apply(velocity);
-  const Range v = assembly_->islands()[motion_.island()].v;
-  std::copy(velocity + v.begin, velocity + v.end,
-            y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
-  const std::size_t told = news.events.size();
-  book_impact(EventKind::impact_without_collision, energy_before, news);
-  for (std::size_t i = told; i < news.events.size(); ++i) {
-    news.events[i].stiffness = candidates[i - told].stiffness;
-    news.events[i].free_acceleration = candidates[i - told].free_acceleration;
-  }
-  stopped_ = {};
-  motion_.evaluate(time_, y_.data(), false);
-  locate_contacts();
-  resolve_impacts(news);
-}
-
 /// Tells which contacts changed their mode.
 void IslandDriver::tell_changes(DriverNews& news) {
   const auto& now = motion_.closed().list();
@@ -461,35 +241,6 @@ void IslandDriver::count_event() {
   }
   counted_ = 0;
   window_start_ = time_;
-}
-
-void IslandDriver::remember_impact(const ContactKey& contact) {
-  if (!last_impacts_.empty() && last_impacts_.back().time == time_ && last_impacts_.back().contact == contact)
-    return;
-  if (last_impacts_.size() == remembered) last_impacts_.erase(last_impacts_.begin());
-  last_impacts_.push_back({time_, contact});
-}
-
-/// Where the pattern of contacts repeats (by one to four impacts) and its intervals shrink in a settled ratio
-/// r, the sum of all that would follow the last interval D is D r/(1 - r).
-double IslandDriver::accumulation_time() const {
-  constexpr double settled = 1e-3;
-  const std::size_t n = last_impacts_.size();
-  for (std::size_t period = 1; period <= 4 && 3 * period + 1 <= n; ++period) {
-    bool repeats = true;
-    for (std::size_t i = 1; i <= 2 * period; ++i) {
-      repeats = repeats && last_impacts_[n - i].contact == last_impacts_[n - i - period].contact;
-    }
-    if (!repeats) continue;
-    const auto time = [&](std::size_t back) { return last_impacts_[n - 1 - back * period].time; };
-    const double last = time(0) - time(1), before = time(1) - time(2), earlier = time(2) - time(3);
-    const double ratio = last / before;
-    if (!(ratio < 1.0) || !(std::abs(ratio - before / earlier) <= settled)) continue;
-    // The impact at hand ends an interval that began with its like, a pattern ago.
-    const double since = time_ - last_impacts_[n - period].time;
-    return time_ + since * ratio / (1.0 - ratio);
-  }
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 void IslandDriver::fail(const std::string& what, std::vector<std::string> parts,
