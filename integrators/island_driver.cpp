@@ -115,6 +115,18 @@ double IslandDriver::longest_step() const {
   return motion_.depends_on_time() ? options_.longest_step : longest_flight;
 }
 
+/// Contacts whose forces outgrow all others where the flow stands: W_nn - s mu W_nt goes to zero there.
+std::vector<std::string> IslandDriver::jammed_contacts() {
+  constexpr double without_bound = 1e3;
+  std::vector<std::string> names;
+  motion_.evaluate(flow_->end(), flow_->state().data(), true);
+  for (const ClosedContact& contact : motion_.closed().list()) {
+    if (std::abs(contact.normal) > without_bound * force_scale_)
+      names.push_back(finder_->name(contact.at.key));
+  }
+  return names;
+}
+
 void IslandDriver::take_step() {
   const std::vector<double>& breaks = motion_.breaks();
   const auto due = std::upper_bound(breaks.begin(), breaks.end(), time_);
@@ -122,7 +134,10 @@ void IslandDriver::take_step() {
   try {
     flow_->advance(std::min(longest_step(), until_break));
   } catch (const SolverError& error) {
-    fail(error.what(), {});
+    std::vector<std::string> jammed = jammed_contacts();
+    const std::string what = error.what();
+    if (jammed.empty()) fail(what, {});
+    fail(what + "; forces of contact grow without bound, a jam (Painleve)", std::move(jammed));
   }
   if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
   sample_step();

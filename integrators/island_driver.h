@@ -97,6 +97,7 @@ private:
 
   // Smooth phases.
   void take_step();
+  [[nodiscard]] std::vector<std::string> jammed_contacts();
   void sample_step();
   [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
