@@ -57,6 +57,7 @@ std::vector<double> spread_steps(double largest, double smallest, int count) {
   if (count < 2) refuse("the number of steps", std::to_string(count), "at least 2");
   constexpr double golden = 0.6180339887498949;
   std::vector<double> steps;
+  steps.reserve(static_cast<std::size_t>(count));
   const double spacing = std::log(smallest / largest) / count;
   for (int i = 0; i < count; ++i) {
     steps.push_back(largest * std::exp(spacing * (i + std::fmod(golden * i, 1.0))));

@@ -152,6 +152,7 @@ bool IslandDriver::decide_body(std::size_t first, std::size_t last, DriverNews& 
   }
   if (decision == Decision::failed) {
     std::vector<std::string> names;
+    names.reserve(candidates.size());
     for (const Candidate& candidate : candidates) names.push_back(finder_->name(candidate.at.key));
     fail("the contact problem of the accelerations is not solved", std::move(names),
          &work_->decision.cluster());

@@ -72,6 +72,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   if (!solved && captured) cluster.forget_impulses();
   if (!solved && !captured) {
     std::vector<std::string> names;
+    names.reserve(touching.size());
     for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
     fail("the contact problem of an impact is not solved (" +
              std::string(to_string(cluster.report().outcome)) + ")",
@@ -169,6 +170,7 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
   news.energy_gain += gain;
   if (!options_.refuse_energy_gain) return;
   std::vector<std::string> names;
+  names.reserve(cluster.contacts().size());
   for (const Contact& contact : cluster.contacts()) names.push_back(finder_->name(contact.key));
   fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
        &cluster);
@@ -194,6 +196,7 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
          &cluster);
   }
   std::vector<double> restitution;
+  restitution.reserve(2 * touching.size());
   for (const Contact& contact : touching) {
     restitution.push_back(contact.law.normal_restitution);
     restitution.push_back(contact.law.tangential_restitution);
