@@ -24,9 +24,12 @@ void ClosedContacts::locate(const ContactFinder& finder, const StateView& state,
   for (ClosedContact& contact : contacts_) {
     finder.contact(contact.pair, state, evaluation, places, contact.at);
     const Surface& law = contact.at.law;
-    contact.friction = contact.slippery   ? 0.0
-                       : contact.sticks() ? law.sticking_friction()
-                                          : law.sliding_friction(contact.at.sliding_speed(state.v));
+    // A step may look beyond the end of sliding. The curve goes on smoothly there, so that a step that passes
+    // over its end is seen to be too long.
+    contact.friction = contact.slippery ? 0.0
+                       : contact.sticks()
+                           ? law.sticking_friction()
+                           : law.sliding_friction(contact.slip_sign() * contact.at.velocity(1, state.v));
   }
 }
 

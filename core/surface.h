@@ -33,7 +33,8 @@ struct Surface {
     }
     return speed > 0.0 ? friction : static_friction;
   }
-  /// Coefficient of a contact that slides at a speed >= 0 [m/s], at 0 the limit of slow sliding.
+  /// Coefficient of a contact that slides at a speed >= 0 [m/s], at 0 the limit of slow sliding; below 0 the
+  /// curve goes on as it is.
   [[nodiscard]] double sliding_friction(double speed) const {
     return stribeck_speed > 0.0 ? friction_at(speed) : friction;
   }

@@ -173,6 +173,10 @@ TEST(EventScenes, FalseAlarmsHideNothing) { expect_sound_scenes({1732}); }
 // Forces on two bodies come to their limits at one instant; each event took back what the other had decided.
 TEST(EventScenes, TwoBodiesGiveWayAtOnce) { expect_sound_scenes({65}); }
 
+// Friction that falls off within a millisecond of the end of sliding: a step that passed over that end did
+// not see it.
+TEST(EventScenes, StribecksCurveIsSeenToTheEndOfSliding) { expect_sound_scenes({847}); }
+
 // Multistep methods at order 1: gaps and their rates contradict each other by the tolerance.
 TEST(EventScenes, LowOrderLetsNoGapFallThatOpens) {
   for (const FlowMethod method : {FlowMethod::adams, FlowMethod::bdf}) {
