@@ -18,8 +18,9 @@ namespace carom {
 
 namespace generic {
 
+// With the mark already here: HalfSpace<2> below names the class before its definition.
 template <int D>
-class HalfSpaceKind;
+class CAROM_API HalfSpaceKind;
 
 /// Everything behind a plane is solid.
 template <int D>
