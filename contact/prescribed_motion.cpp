@@ -1,5 +1,5 @@
 #include <carom/contact/prescribed_motion.h>
-#include <carom/core/time_difference.h>
+#include <carom/core/time_course.h>
 
 #include <cmath>
 #include <string>
@@ -25,29 +25,6 @@ NonFiniteMotion find_non_finite(const ObstacleMotion& motion) {
 }
 
 namespace planar {
-
-namespace {
-
-/// Value, rate and second rate of a quantity at a time.
-template <class Value>
-struct Course {
-  Value value, rate, second;
-};
-
-template <class Value>
-Course<Value> course(const std::function<Value(double)>& value, const std::function<Value(double)>& rate,
-                     const std::function<Value(double)>& second, double time,
-                     const std::vector<double>& breaks) {
-  const auto derivative = [&](int order, const std::function<Value(double)>& of) {
-    return TimeDifference(time, order, breaks)(of);
-  };
-  return {value(time), rate ? rate(time) : derivative(1, value),
-          second ? second(time)
-          : rate ? derivative(1, rate)
-                 : derivative(2, value)};
-}
-
-}  // namespace
 
 ObstacleMotion PrescribedMotion::at(double time, const Vec<2>& point) const {
   ObstacleMotion motion;

@@ -35,6 +35,7 @@ Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
   const std::vector<Index> island_of_body = order_bodies();
   cut_islands();
+  order_joints(island_of_body);
   order_elements(island_of_body);
   place_internals();
   unfinished_layout_.reset();
@@ -48,6 +49,15 @@ std::vector<Index> Assembly::order_bodies() {
     for (Index element = 0; element < entry.serials.size(); ++element) {
       ends.clear();
       entry.kind->ends(element, ends);
+      std::erase(ends, ground);
+      for (std::size_t i = 1; i < ends.size(); ++i) unions.join(ends[0].serial, ends[i].serial);
+    }
+  }
+
+  for (const auto& entry : system_.joint_kinds().entries()) {
+    for (Index joint = 0; joint < entry.serials.size(); ++joint) {
+      ends.clear();
+      entry.kind->ends(joint, ends);
       std::erase(ends, ground);
       for (std::size_t i = 1; i < ends.size(); ++i) unions.join(ends[0].serial, ends[i].serial);
     }
@@ -157,6 +167,68 @@ Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) const {
     part = of_end;
   }
   return part;
+}
+
+void Assembly::order_joints(const std::vector<Index>& island_of_body) {
+  joints_ = std::make_shared<JointTable>();
+  const auto& entries = system_.joint_kinds().entries();
+  const auto kinds = static_cast<Index>(entries.size());
+  joint_slots_.assign(islands_.size() * kinds, {});
+  joint_serials_.resize(kinds);
+  if (system_.joints().empty() && kinds == 0) return;
+  const auto bodies = static_cast<Index>(layout_->bodies().size());
+  Unions unions(bodies);
+  bound_.assign(bodies, 0);
+  joints_->places.assign(system_.joint_kinds().next_serial(), {});
+  unfinished_layout_->place_joints(joints_);
+  std::vector<BodyId> ends;
+  for (Index k = 0; k < kinds; ++k) {
+    const JointKind& kind = *entries[k].kind;
+    struct Key {
+      Index island, slot;
+      auto operator<=>(const Key&) const = default;
+    };
+    std::vector<Key> keys;
+    keys.reserve(kind.size());
+    for (Index slot = 0; slot < kind.size(); ++slot) {
+      ends.clear();
+      kind.ends(slot, ends);
+      std::erase(ends, ground);
+      keys.push_back({island_of_body[ends[0].serial], slot});
+      const Index first = layout_->index(ends[0]);
+      for (const BodyId end : ends) {
+        unions.join(first, layout_->index(end));
+        bound_[layout_->index(end)] = 1;
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<Index> order;
+    order.reserve(keys.size());
+    for (const Key& key : keys) {
+      const auto place = static_cast<Index>(order.size());
+      Range& range = joint_slots_[key.island * kinds + k];
+      if (range.empty()) range.begin = range.end = place;
+      ++range.end;
+      order.push_back(key.slot);
+      const Index serial = entries[k].serials[key.slot];
+      joint_serials_[k].push_back(serial);
+      joints_->places[serial] = {k, place};
+    }
+    joints_->kinds.push_back(kind.arranged(order, *layout_));
+  }
+  groups_.resize(bodies);
+  for (Index body = 0; body < bodies; ++body) groups_[body] = unions.find(body);
+}
+
+bool Assembly::has_joints(Index island) const {
+  for (Index kind = 0; kind < joints_->kinds.size(); ++kind) {
+    if (!joints(island, kind).empty()) return true;
+  }
+  return false;
+}
+
+JointId Assembly::joint_id(Index kind, Index slot) const {
+  return {joint_serials_[kind][slot], system_.token()};
 }
 
 void Assembly::order_elements(const std::vector<Index>& island_of_body) {

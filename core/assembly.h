@@ -16,7 +16,7 @@
 
 namespace carom {
 
-/// Bodies joined by couplings. Ground, obstacles and fields join nothing.
+/// Bodies joined by couplings or joints. Ground, obstacles and fields join nothing.
 struct Island {
   Range bodies;  ///< in the order of assembly
   Range q;       ///< coordinates
@@ -82,6 +82,21 @@ public:
     return {described[order.empty() ? slot : order[slot]], system_.token()};
   }
 
+  /// Kinds of joints, arranged.
+  [[nodiscard]] const std::vector<std::unique_ptr<JointKind>>& joint_kinds() const { return joints_->kinds; }
+  /// Joints of a kind that bind an island.
+  [[nodiscard]] Range joints(Index island, Index kind) const {
+    return joint_slots_[island * joints_->kinds.size() + kind];
+  }
+  /// True if an island has joints.
+  [[nodiscard]] bool has_joints(Index island) const;
+  /// Identity of an arranged joint.
+  [[nodiscard]] JointId joint_id(Index kind, Index slot) const;
+  /// Bodies that joints bind together, by one of them: the first. Of a body without joints itself.
+  [[nodiscard]] Index group(Index body) const { return groups_.empty() ? body : groups_[body]; }
+  /// True if a joint binds the body.
+  [[nodiscard]] bool is_bound(Index body) const { return !groups_.empty() && bound_[body] != 0; }
+
   /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of an island, kind by kind.
   template <class F>
   void for_bodies(Index island, F&& f) const {
@@ -113,6 +128,7 @@ private:
   // Returns the island of each body, by serial number.
   std::vector<Index> order_bodies();
   void order_elements(const std::vector<Index>& island_of_body);
+  void order_joints(const std::vector<Index>& island_of_body);
   void place_internals();
   void cut_islands();
   [[nodiscard]] Index part_of(Index island, const std::vector<BodyId>& ends) const;
@@ -126,6 +142,11 @@ private:
   std::vector<Range> body_slots_;
   std::vector<std::unique_ptr<ForceKind>> force_kinds_;
   std::vector<Range> element_slots_, block_elements_, bridges_;
+  std::shared_ptr<JointTable> joints_;
+  std::vector<Range> joint_slots_;
+  std::vector<std::vector<Index>> joint_serials_;  // by kind
+  std::vector<Index> groups_;                      // by body; empty without joints
+  std::vector<char> bound_;                        // likewise
   std::vector<std::vector<Index>> element_order_;  // by kind: described slots, empty if the order is the same
 };
 

@@ -72,6 +72,8 @@ public:
   [[nodiscard]] virtual bool works_in_parts() const { return !is_field(); }
   /// Appends the bodies an element acts on (ground included, nothing for a field).
   virtual void ends(Index element, std::vector<BodyId>& out) const = 0;
+  /// The joint on whose coordinate an element acts (a motor), or an invalid identity.
+  [[nodiscard]] virtual JointId on_joint(Index /*element*/) const { return {}; }
   /// True if elements may book external loads.
   [[nodiscard]] virtual bool books_external() const { return true; }
   /// True if elements may book dissipative loads.

@@ -29,6 +29,7 @@ struct Id {
 using BodyId = Id<struct BodyTag>;          ///< a body
 using ElementId = Id<struct ElementTag>;    ///< a coupling or load
 using ShapeId = Id<struct ShapeTag>;        ///< a shape fixed to a body
+using JointId = Id<struct JointTag>;        ///< a joint
 using ObstacleId = Id<struct ObstacleTag>;  ///< an obstacle
 using MaterialId = Id<struct MaterialTag>;  ///< a material
 

@@ -8,9 +8,13 @@
 
 #include <cstddef>
 #include <iterator>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace carom {
+
+class JointTable;
 
 /// Place of one body in every array, in the order of assembly.
 struct BodySlot {
@@ -109,6 +113,9 @@ public:
   /// Tells the places of internal variables, before the layout is given to anyone.
   void place_internals(std::vector<InternalSlot> internals);
 
+  /// Tells the joints, likewise.
+  void place_joints(std::shared_ptr<const JointTable> joints) { joints_ = std::move(joints); }
+
   [[nodiscard]] int dimension() const { return dimension_; }            ///< 2 or 3
   [[nodiscard]] Index q_size() const { return q_size_; }                ///< number of coordinates
   [[nodiscard]] Index v_size() const { return v_size_; }                ///< number of velocities
@@ -128,6 +135,10 @@ public:
   [[nodiscard]] bool contains(ElementId id) const;
   /// Slot of an element's internal variables. Throws ModelError for an element that has none here.
   [[nodiscard]] const InternalSlot& internal(ElementId id) const;
+  /// Joints by identity; null where there are none.
+  [[nodiscard]] const JointTable* joints() const { return joints_.get(); }
+  /// Token of the system.
+  [[nodiscard]] Index token() const { return token_; }
   /// True if the body is part of the model.
   [[nodiscard]] bool contains(BodyId id) const {
     return id.token == token_ && bodies_.find(id.serial) != none;
@@ -139,6 +150,7 @@ private:
   Index q_size_ = 0, v_size_ = 0, rotation_size_ = 0, z_size_ = 0;
   BodySlots bodies_;
   std::vector<InternalSlot> internals_;
+  std::shared_ptr<const JointTable> joints_;
 };
 
 }  // namespace carom

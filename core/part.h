@@ -6,6 +6,7 @@
 #include <carom/core/body_kind.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/ids.h>
+#include <carom/core/joint_kind.h>
 #include <carom/core/obstacle_kind.h>
 #include <carom/core/part_check.h>
 #include <carom/core/shape_kind.h>
@@ -19,6 +20,7 @@ namespace carom {
 enum class Role : std::uint8_t {
   body,      ///< a node
   force,     ///< an edge that pushes, or a load
+  joint,     ///< an edge that binds
   shape,     ///< geometry fixed to a body
   obstacle,  ///< geometry fixed to the ground, or moved as prescribed
 };
@@ -35,6 +37,11 @@ template <>
 struct RoleTraits<Role::force> {
   using Interface = ForceKind;
   using Identity = ElementId;
+};
+template <>
+struct RoleTraits<Role::joint> {
+  using Interface = JointKind;
+  using Identity = JointId;
 };
 template <>
 struct RoleTraits<Role::shape> {

@@ -1,6 +1,8 @@
 #include <carom/core/state.h>
 
 #include <carom/core/errors.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/space.h>
 
 #include <string>
 #include <utility>
@@ -44,6 +46,46 @@ ConstVectorMap State::internal(ElementId element) const {
 VectorMap State::internal(ElementId element) {
   const InternalSlot& slot = internal_slot(layout_, element);
   return {z.data() + slot.first, static_cast<Eigen::Index>(slot.size)};
+}
+
+namespace {
+
+/// The coordinate of a joint as a row, at a state.
+JointRow coordinate_row(const State& state, JointId joint) {
+  const Layout* const layout = state.layout().get();
+  const JointTable* const table = layout != nullptr ? layout->joints() : nullptr;
+  const JointTable::Place place =
+      table != nullptr && joint.token == layout->token() ? table->place(joint.serial) : JointTable::Place{};
+  const auto refuse = [&](const char* why) {
+    throw ModelError("coordinate of joint #" + std::to_string(joint.serial) + ": " + why +
+                     "; allowed: a joint of this model that has a coordinate");
+  };
+  if (place.slot == none) refuse("it is not of this model");
+  const JointKind& kind = *table->kinds[place.kind];
+  if (!kind.has_coordinate()) refuse("it has none");
+  std::vector<double> rotation(layout->rotation_size());
+  if (layout->dimension() == 2) {
+    JointRow pattern;
+    kind.coordinate_pattern(place.slot, pattern);
+    for (const BodySlot& slot : layout->bodies()) {
+      for (int b = 0; b < pattern.bodies; ++b) {
+        if (slot.rotation == none || slot.v != pattern.blocks[static_cast<std::size_t>(b)].v) continue;
+        Space<2>::rotation(state.q.data() + slot.q + 2, rotation.data() + slot.rotation);
+      }
+    }
+  }
+  JointRow row;
+  kind.coordinate({state.view(), rotation.data()}, place.slot, row);
+  return row;
+}
+
+}  // namespace
+
+double State::coordinate(JointId joint) const { return coordinate_row(*this, joint).gap; }
+
+double State::rate(JointId joint) const {
+  const JointRow row = coordinate_row(*this, joint);
+  return row.times(v.data()) + row.rate;
 }
 
 Index State::angle_index(BodyId body) const {

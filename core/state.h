@@ -52,6 +52,12 @@ public:
   [[nodiscard]] double spin(BodyId body) const { return v[spin_index(body)]; }
   [[nodiscard]] double& spin(BodyId body) { return v[spin_index(body)]; }
 
+  /// Coordinate of a joint [rad, m], `to` relative to `from`: the joint says which. Throws ModelError for a
+  /// joint that is not of this model or has none.
+  [[nodiscard]] double coordinate(JointId joint) const;
+  /// Its rate [rad/s, m/s]. Throws as coordinate().
+  [[nodiscard]] double rate(JointId joint) const;
+
   /// Internal variables of an element, in the order and units that it documents. Throws ModelError for an
   /// element that has none.
   [[nodiscard]] ConstVectorMap internal(ElementId element) const;

@@ -60,6 +60,7 @@ std::string System::name(BodyId id) const {
   return id == ground ? "ground" : name_in(Role::body, bodies_, id);
 }
 std::string System::name(ElementId id) const { return name_in(Role::force, forces_, id); }
+std::string System::name(JointId id) const { return name_in(Role::joint, joints_, id); }
 std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_, id); }
 std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, obstacles_, id); }
 
@@ -82,6 +83,7 @@ BodyId System::body(std::string_view name) const { return {by_name(Role::body, n
 ElementId System::element(std::string_view name) const {
   return {by_name(Role::force, name, "element"), token_};
 }
+JointId System::joint(std::string_view name) const { return {by_name(Role::joint, name, "joint"), token_}; }
 ShapeId System::shape(std::string_view name) const { return {by_name(Role::shape, name, "shape"), token_}; }
 ObstacleId System::obstacle(std::string_view name) const {
   return {by_name(Role::obstacle, name, "obstacle"), token_};
@@ -117,6 +119,15 @@ void System::remove(BodyId id) {
                        " acts on it; allowed: a body without couplings");
     }
   }
+  for (const auto& entry : joints_.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      ends.clear();
+      entry.kind->ends(slot, ends);
+      if (std::find(ends.begin(), ends.end(), id) == ends.end()) continue;
+      throw ModelError(name(id) + ": cannot be removed, " + name(JointId{entry.serials[slot], token_}) +
+                       " binds it; allowed: a body without joints");
+    }
+  }
   for (const auto& entry : shapes_.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (entry.kind->body(slot) != id) continue;
@@ -127,6 +138,24 @@ void System::remove(BodyId id) {
   remove_from(Role::body, bodies_, id, "body");
 }
 void System::remove(ElementId id) { remove_from(Role::force, forces_, id, "element"); }
+void System::remove(JointId id) {
+  const auto refuse = [&](const std::string& by) {
+    throw ModelError(name(id) + ": cannot be removed, " + by +
+                     " acts on its coordinate; allowed: a joint without drivers, motors and stops");
+  };
+  for (const auto& entry : forces_.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (id.valid() && entry.kind->on_joint(slot) == id)
+        refuse(name(ElementId{entry.serials[slot], token_}));
+    }
+  }
+  for (const auto& entry : joints_.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (id.valid() && entry.kind->on_joint(slot) == id) refuse(name(JointId{entry.serials[slot], token_}));
+    }
+  }
+  remove_from(Role::joint, joints_, id, "joint");
+}
 void System::remove(ShapeId id) { remove_from(Role::shape, shapes_, id, "shape"); }
 void System::remove(ObstacleId id) {
   remove_from(Role::obstacle, obstacles_, id, "obstacle");
@@ -180,6 +209,7 @@ std::uint64_t System::fingerprint() const {
   };
   add_kinds(bodies_);
   add_kinds(forces_);
+  add_kinds(joints_);
   add_kinds(shapes_);
   add_kinds(obstacles_);
   const auto add_surface = [&print](const Surface& surface) {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The model: a graph of bodies (nodes), couplings and loads (edges), shapes and obstacles.
+/// The model: a graph of bodies (nodes), couplings, loads and joints (edges), shapes and obstacles.
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
@@ -25,7 +25,7 @@ class CAROM_API System {
 public:
   System();
 
-  /// Adds a part: a body, coupling, load, shape or obstacle, the library's or a user's own.
+  /// Adds a part: a body, coupling, load, joint, shape or obstacle, the library's or a user's own.
   /// \param name optional, unique among the parts of its role
   /// \return its identity
   /// Throws ModelError (naming the part, the value and what is allowed) if the part cannot be.
@@ -53,9 +53,11 @@ public:
     return id;
   }
 
-  /// Removes a part. A body must have lost its couplings and shapes first, otherwise ModelError names one.
+  /// Removes a part. A body must have lost its couplings, joints and shapes first, a joint what acts
+  /// on its coordinate, otherwise ModelError names one.
   void remove(BodyId id);
   void remove(ElementId id);
+  void remove(JointId id);
   void remove(ShapeId id);
   void remove(ObstacleId id);
 
@@ -71,12 +73,14 @@ public:
   /// The part of that name. Throws ModelError if there is none.
   [[nodiscard]] BodyId body(std::string_view name) const;
   [[nodiscard]] ElementId element(std::string_view name) const;
+  [[nodiscard]] JointId joint(std::string_view name) const;
   [[nodiscard]] ShapeId shape(std::string_view name) const;
   [[nodiscard]] ObstacleId obstacle(std::string_view name) const;
 
   /// Text by which messages call a part: "particle 'lower'" or "particle #3"; "ground".
   [[nodiscard]] std::string name(BodyId id) const;
   [[nodiscard]] std::string name(ElementId id) const;
+  [[nodiscard]] std::string name(JointId id) const;
   [[nodiscard]] std::string name(ShapeId id) const;
   [[nodiscard]] std::string name(ObstacleId id) const;
   /// The name a body was given, empty if none.
@@ -87,6 +91,7 @@ public:
   [[nodiscard]] bool contains(ElementId id) const {
     return id.token == token_ && forces_.contains(id.serial);
   }
+  [[nodiscard]] bool contains(JointId id) const { return id.token == token_ && joints_.contains(id.serial); }
   [[nodiscard]] bool contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
   [[nodiscard]] bool contains(ObstacleId id) const {
     return id.token == token_ && obstacles_.contains(id.serial);
@@ -100,6 +105,7 @@ public:
   /// Parts, in the order in which they came.
   [[nodiscard]] std::vector<BodyId> bodies() const { return identities<BodyId>(bodies_); }
   [[nodiscard]] std::vector<ElementId> elements() const { return identities<ElementId>(forces_); }
+  [[nodiscard]] std::vector<JointId> joints() const { return identities<JointId>(joints_); }
   [[nodiscard]] std::vector<ShapeId> shapes() const { return identities<ShapeId>(shapes_); }
   [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(obstacles_); }
 
@@ -114,6 +120,7 @@ public:
   /// Parts by kind, for assembly.
   [[nodiscard]] const Registry<BodyKind>& body_kinds() const { return bodies_; }
   [[nodiscard]] const Registry<ForceKind>& force_kinds() const { return forces_; }
+  [[nodiscard]] const Registry<JointKind>& joint_kinds() const { return joints_; }
   [[nodiscard]] const Registry<ShapeKind>& shape_kinds() const { return shapes_; }
   [[nodiscard]] const Registry<ObstacleKind>& obstacle_kinds() const { return obstacles_; }
 
@@ -124,6 +131,8 @@ private:
       return bodies_;
     } else if constexpr (R == Role::force) {
       return forces_;
+    } else if constexpr (R == Role::joint) {
+      return joints_;
     } else if constexpr (R == Role::shape) {
       return shapes_;
     } else {
@@ -153,6 +162,7 @@ private:
   int dimension_ = 0;
   Registry<BodyKind> bodies_;
   Registry<ForceKind> forces_;
+  Registry<JointKind> joints_;
   Registry<ShapeKind> shapes_;
   Registry<ObstacleKind> obstacles_;
   std::map<Role, Names> names_;

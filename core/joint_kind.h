@@ -1,0 +1,133 @@
+#pragma once
+
+/// \file
+/// What a kind of joint tells the rest of the library: bilateral rows g(q, t) = 0 with their first
+/// derivatives and what their second ones have beside accelerations. Joints of one kind are stored together.
+
+#include <carom/core/export.h>
+#include <carom/core/fingerprint.h>
+#include <carom/core/ids.h>
+#include <carom/core/state.h>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// Where joints are evaluated: a state, and the rotations of its bodies (Evaluation::rotation).
+struct JointView {
+  StateView state;                   ///< positions, velocities, time
+  const double* rotation = nullptr;  ///< by BodySlot::rotation, up to date
+};
+
+/// A bilateral row g at one configuration:  dg/dt = G v + rate,  d2g/dt2 = G a + drift.
+struct JointRow {
+  static constexpr int max_bodies = 3;   ///< bodies that a row joins
+  static constexpr int max_columns = 3;  ///< velocities of one of them
+  /// The part of G for one body.
+  struct Block {
+    Index v = none;   ///< first velocity of the body
+    int columns = 0;  ///< velocities of the body
+    std::array<double, static_cast<std::size_t>(max_columns)> jacobian{};
+  };
+
+  std::array<Block, static_cast<std::size_t>(max_bodies)> blocks{};
+  int bodies = 0;      ///< blocks in use
+  double gap = 0.0;    ///< g [m, rad]
+  double rate = 0.0;   ///< dg/dt where nothing moves: of a row that depends on time
+  double drift = 0.0;  ///< d2g/dt2 where nothing accelerates
+
+  /// G times numbers. \param numbers an array over all velocities
+  [[nodiscard]] double times(const double* numbers) const {
+    double sum = 0.0;
+    for (int b = 0; b < bodies; ++b) {
+      const Block& block = blocks[static_cast<std::size_t>(b)];
+      for (int c = 0; c < block.columns; ++c) {
+        sum += block.jacobian[static_cast<std::size_t>(c)] * numbers[block.v + static_cast<Index>(c)];
+      }
+    }
+    return sum;
+  }
+  /// Adds G^T times a number. \param out an array over all velocities
+  void add_transposed(double factor, double* out) const {
+    for (int b = 0; b < bodies; ++b) {
+      const Block& block = blocks[static_cast<std::size_t>(b)];
+      for (int c = 0; c < block.columns; ++c) {
+        out[block.v + static_cast<Index>(c)] += factor * block.jacobian[static_cast<std::size_t>(c)];
+      }
+    }
+  }
+};
+
+/// What a joint does to its body `to`; to `from` it does the opposite, at the same place.
+struct JointReaction {
+  std::array<double, 3> force{};  ///< on `to`, at its end, in the fixed frame [N], or impulse [N s]
+  double moment = 0.0;            ///< on `to`, about its end, counter-clockwise [N m], or its impulse [N m s]
+};
+
+/// All joints of one kind.
+class CAROM_API JointKind {
+public:
+  virtual ~JointKind() = default;
+
+  /// A copy.
+  [[nodiscard]] virtual std::unique_ptr<JointKind> clone() const = 0;
+  /// A copy with the joints named by `order`, in that order, and their ends looked up in `layout`, which
+  /// outlives it.
+  [[nodiscard]] virtual std::unique_ptr<JointKind> arranged(std::span<const Index> order,
+                                                            const Layout& layout) const = 0;
+  /// Removes a joint; later ones move up.
+  virtual void remove(Index slot) = 0;
+
+  [[nodiscard]] virtual std::string_view label() const = 0;  ///< name used in messages, e.g. "revolute joint"
+  [[nodiscard]] virtual int dimension() const = 0;           ///< 2 or 3
+  [[nodiscard]] virtual Index size() const = 0;              ///< number of joints
+  /// Rows of each joint; they count as constraints.
+  [[nodiscard]] virtual Index rows() const = 0;
+  /// Appends the bodies a joint binds (ground included).
+  virtual void ends(Index joint, std::vector<BodyId>& out) const = 0;
+  /// The joint on whose coordinate this one acts (a driver), or an invalid identity.
+  [[nodiscard]] virtual JointId on_joint(Index /*joint*/) const { return {}; }
+
+  /// Writes which velocities the rows of a joint have blocks for. Values are not looked at.
+  virtual void pattern(Index joint, JointRow* out) const = 0;
+  /// Writes the rows of a joint.
+  virtual void evaluate(const JointView& at, Index joint, JointRow* out) const = 0;
+  /// True if rows depend on time.
+  [[nodiscard]] virtual bool depends_on_time() const { return false; }
+  /// Appends the times at which a joint's law of time has a kink or a jump [s].
+  virtual void breaks(Index /*joint*/, std::vector<double>& /*out*/) const {}
+
+  /// True if joints of this kind have a coordinate: what drivers, motors and stops act on.
+  [[nodiscard]] virtual bool has_coordinate() const { return false; }
+  /// Writes the coordinate of a joint (gap: its value) as a row.
+  virtual void coordinate(const JointView& /*at*/, Index /*joint*/, JointRow& /*out*/) const {}
+  /// Writes which velocities the coordinate's row has blocks for.
+  virtual void coordinate_pattern(Index /*joint*/, JointRow& /*out*/) const {}
+  /// What the multipliers of a joint's rows do to its body `to`.
+  [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
+                                               const double* multipliers) const = 0;
+  /// Adds all that distinguishes this kind's joints (functions cannot).
+  virtual void fingerprint(Fingerprint& print) const = 0;
+};
+
+/// The joints of an assembly by identity.
+class CAROM_API JointTable {
+public:
+  /// Place of a joint.
+  struct Place {
+    Index kind = none;
+    Index slot = none;
+  };
+
+  std::vector<std::unique_ptr<JointKind>> kinds;  ///< arranged
+  std::vector<Place> places;                      ///< by serial number; slot `none` where there is none
+
+  /// Place of a joint; slot `none` if there is none.
+  [[nodiscard]] Place place(Index serial) const { return serial < places.size() ? places[serial] : Place{}; }
+};
+
+}  // namespace carom

@@ -1,0 +1,34 @@
+#pragma once
+
+/// \file
+/// A prescribed quantity at a time, with the rates that its user gave or did not give.
+
+#include <carom/core/time_difference.h>
+
+#include <functional>
+#include <vector>
+
+namespace carom {
+
+/// Value, rate and second rate of a quantity at a time.
+template <class Value>
+struct Course {
+  Value value, rate, second;
+};
+
+/// What functions of time say; rates that are not given follow from those that are, by TimeDifference.
+/// \param breaks times that no difference may reach across [s]
+template <class Value>
+Course<Value> course(const std::function<Value(double)>& value, const std::function<Value(double)>& rate,
+                     const std::function<Value(double)>& second, double time,
+                     const std::vector<double>& breaks) {
+  const auto derivative = [&](int order, const std::function<Value(double)>& of) {
+    return TimeDifference(time, order, breaks)(of);
+  };
+  return {value(time), rate ? rate(time) : derivative(1, value),
+          second ? second(time)
+          : rate ? derivative(1, rate)
+                 : derivative(2, value)};
+}
+
+}  // namespace carom

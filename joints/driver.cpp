@@ -1,0 +1,161 @@
+#include <carom/core/layout.h>
+#include <carom/core/system.h>
+#include <carom/joints/driver.h>
+
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// The coordinate of a joint of an assembly.
+JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at) {
+  const JointTable& table = *layout.joints();
+  const JointTable::Place place = table.place(joint.serial);
+  JointRow row;
+  table.kinds[place.kind]->coordinate(at, place.slot, row);
+  return row;
+}
+
+std::vector<BodyId> ends_of(const System& system, JointId joint) {
+  std::vector<BodyId> ends;
+  const auto place = system.joint_kinds().place(joint.serial);
+  system.joint_kinds().entries()[place.entry].kind->ends(place.slot, ends);
+  return ends;
+}
+
+}  // namespace
+
+void check_coordinate(const PartCheck& check, JointId joint) {
+  const System& system = check.system();
+  if (!joint.valid()) check.refuse("joint", "not given", "a joint of this system");
+  if (!system.contains(joint)) check.refuse("joint", system.name(joint), "a joint of this system");
+  if (!system.joint_kinds().kind_of(joint.serial).has_coordinate()) {
+    check.refuse("joint", system.name(joint),
+                 "a joint with a coordinate (revolute, prismatic, point on line)");
+  }
+}
+
+void DriverKind::add(const Driver& part, const PartCheck& check) {
+  check_coordinate(check, part.joint);
+  if (!part.position) check.refuse("position", "not given", "a function of time");
+  if (part.acceleration && !part.velocity) {
+    check.refuse("velocity", "not given", "a function of time where there is an acceleration");
+  }
+  check.breaks(part.breaks, "breaks");
+  const System& system = check.system();
+  for (const JointId other : system.joints()) {
+    const auto place = system.joint_kinds().place(other.serial);
+    if (system.joint_kinds().entries()[place.entry].kind->on_joint(place.slot) != part.joint) continue;
+    check.refuse("joint", system.name(part.joint) + ", which " + system.name(other) + " drives",
+                 "a joint without a driver");
+  }
+  const Course<double> start = course(part.position, part.velocity, part.acceleration, 0.0, part.breaks);
+  check.finite(start.value, "position at time 0", "");
+  check.finite(start.rate, "velocity at time 0", "");
+  check.finite(start.second, "acceleration at time 0", "");
+  parts_.push_back({part, ends_of(system, part.joint), check.part()});
+}
+
+std::unique_ptr<JointKind> DriverKind::clone() const { return std::make_unique<DriverKind>(*this); }
+
+std::unique_ptr<JointKind> DriverKind::arranged(std::span<const Index> order, const Layout& layout) const {
+  auto copy = std::make_unique<DriverKind>();
+  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+  copy->layout_ = &layout;
+  return copy;
+}
+
+void DriverKind::ends(Index joint, std::vector<BodyId>& out) const {
+  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+}
+
+void DriverKind::pattern(Index joint, JointRow* out) const {
+  const JointTable& table = *layout_->joints();
+  const JointTable::Place place = table.place(parts_[joint].driver.joint.serial);
+  table.kinds[place.kind]->coordinate_pattern(place.slot, *out);
+}
+
+void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const {
+  const Driver& driver = parts_[joint].driver;
+  *out = coordinate_row(*layout_, driver.joint, at);
+  const Course<double> now =
+      course(driver.position, driver.velocity, driver.acceleration, at.state.time, driver.breaks);
+  if (!(std::isfinite(now.value) && std::isfinite(now.rate) && std::isfinite(now.second))) {
+    SolverFailure failure;
+    failure.time = at.state.time;
+    failure.parts.push_back(parts_[joint].name);
+    const char* const what = !std::isfinite(now.value)  ? "position"
+                             : !std::isfinite(now.rate) ? "velocity"
+                                                        : "acceleration";
+    throw SolverError(parts_[joint].name + ": " + what + " at t = " + to_text(at.state.time) +
+                          " s is not finite; allowed: a finite number",
+                      std::move(failure));
+  }
+  out->gap -= now.value;
+  out->rate -= now.rate;
+  out->drift -= now.second;
+}
+
+void DriverKind::breaks(Index joint, std::vector<double>& out) const {
+  const std::vector<double>& breaks = parts_[joint].driver.breaks;
+  out.insert(out.end(), breaks.begin(), breaks.end());
+}
+
+JointReaction DriverKind::reaction(const JointView&, Index, const double* multipliers) const {
+  JointReaction reaction;
+  reaction.moment = multipliers[0];
+  return reaction;
+}
+
+void DriverKind::fingerprint(Fingerprint& print) const {
+  for (const Part& part : parts_) {
+    print.add(std::uint64_t{part.driver.joint.serial});
+    if (!part.driver.breaks.empty()) print.add(part.driver.breaks);
+  }
+}
+
+void MotorKind::add(const Motor& part, const PartCheck& check) {
+  check_coordinate(check, part.joint);
+  if (!part.torque) check.refuse("torque", "not given", "a function of time, coordinate and rate");
+  check.breaks(part.breaks, "breaks");
+  parts_.push_back({part, ends_of(check.system(), part.joint)});
+}
+
+std::unique_ptr<ForceKind> MotorKind::clone() const { return std::make_unique<MotorKind>(*this); }
+
+std::unique_ptr<ForceKind> MotorKind::arranged(std::span<const Index> order, const Layout& layout) const {
+  auto copy = std::make_unique<MotorKind>();
+  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+  copy->layout_ = &layout;
+  return copy;
+}
+
+void MotorKind::ends(Index element, std::vector<BodyId>& out) const {
+  out.insert(out.end(), parts_[element].ends.begin(), parts_[element].ends.end());
+}
+
+void MotorKind::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
+  const JointView view{at.state, at.evaluation.rotation.data()};
+  for (Index i = elements.begin; i < elements.end; ++i) {
+    const Motor& motor = parts_[i].motor;
+    const JointRow row = coordinate_row(*layout_, motor.joint, view);
+    const double push = motor.torque(at.state.time, row.gap, row.times(at.state.v) + row.rate);
+    row.add_transposed(push, loads.external);
+  }
+}
+
+void MotorKind::breaks(Index element, std::vector<double>& out) const {
+  const std::vector<double>& breaks = parts_[element].motor.breaks;
+  out.insert(out.end(), breaks.begin(), breaks.end());
+}
+
+void MotorKind::fingerprint(Fingerprint& print) const {
+  for (const Part& part : parts_) {
+    print.add(std::uint64_t{part.motor.joint.serial});
+    if (!part.motor.breaks.empty()) print.add(part.motor.breaks);
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,129 @@
+#pragma once
+
+/// \file
+/// What acts on the coordinate of a joint: drivers prescribe it, motors push along it.
+
+#include <carom/core/force_kind.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/part.h>
+#include <carom/core/time_course.h>
+#include <carom/joints/actuator.h>
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+class DriverKind;
+class MotorKind;
+
+/// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
+CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
+
+/// Prescribes the coordinate of a joint as a function of time. Its work is external work. Rates that are not
+/// given are found by differences (core/time_difference.h); they must then be smooth between breaks.
+struct Driver {
+  static constexpr Role role = Role::joint;
+  using Kind = DriverKind;
+
+  JointId joint{};                                    ///< whose coordinate (required)
+  std::function<double(double time)> position{};      ///< the coordinate [rad, m] (required)
+  std::function<double(double time)> velocity{};      ///< its rate
+  std::function<double(double time)> acceleration{};  ///< and that of the rate
+  std::vector<double> breaks{};                       ///< when a function jumps or has a kink, ascending [s]
+};
+
+/// All drivers of a system.
+class CAROM_API DriverKind final : public JointKind {
+public:
+  static constexpr int part_dimension() { return 0; }
+  static constexpr std::string_view part_label() { return "driver"; }
+
+  /// Checks and stores a driver. Throws ModelError.
+  void add(const Driver& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<JointKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
+                                                    const Layout& layout) const override;
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return 0; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] Index rows() const override { return 1; }
+  void ends(Index joint, std::vector<BodyId>& out) const override;
+  [[nodiscard]] JointId on_joint(Index joint) const override { return parts_[joint].driver.joint; }
+  void pattern(Index joint, JointRow* out) const override;
+  void evaluate(const JointView& at, Index joint, JointRow* out) const override;
+  [[nodiscard]] bool depends_on_time() const override { return true; }
+  void breaks(Index joint, std::vector<double>& out) const override;
+  /// The force of a driver is told by its moment: it acts along the coordinate.
+  [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
+                                       const double* multipliers) const override;
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  struct Part {
+    Driver driver;
+    std::vector<BodyId> ends;
+    std::string name;
+  };
+  std::vector<Part> parts_;
+  const Layout* layout_ = nullptr;  // of an arranged kind
+};
+
+/// Pushes along the coordinate of a joint by a law of time, coordinate and rate: the torque on `to` of a
+/// revolute joint, the force on `to` along the axis of a prismatic one. Its work is external work.
+struct Motor {
+  static constexpr Role role = Role::force;
+  using Kind = MotorKind;
+
+  JointId joint{};               ///< along whose coordinate (required)
+  ActuatorLaw torque{};          ///< [N m, N] (required)
+  std::vector<double> breaks{};  ///< when the law jumps or has a kink in time, ascending [s]
+};
+
+/// All motors of a system.
+class CAROM_API MotorKind final : public ForceKind {
+public:
+  static constexpr int part_dimension() { return 0; }
+  static constexpr std::string_view part_label() { return "motor"; }
+
+  /// Checks and stores a motor. Throws ModelError.
+  void add(const Motor& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
+                                                    const Layout& layout) const override;
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return 0; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  void ends(Index element, std::vector<BodyId>& out) const override;
+  [[nodiscard]] JointId on_joint(Index element) const override { return parts_[element].motor.joint; }
+  [[nodiscard]] bool books_dissipative() const override { return false; }
+  void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
+  [[nodiscard]] double potential(const EvaluationContext&, Range) const override { return 0.0; }
+  void breaks(Index element, std::vector<double>& out) const override;
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  struct Part {
+    Motor motor;
+    std::vector<BodyId> ends;
+  };
+  std::vector<Part> parts_;
+  const Layout* layout_ = nullptr;  // of an arranged kind
+};
+
+namespace planar {
+using carom::Driver;
+using carom::Motor;
+}  // namespace planar
+namespace spatial {
+using carom::Driver;
+using carom::Motor;
+}  // namespace spatial
+
+}  // namespace carom

@@ -1,0 +1,92 @@
+#include <carom/joints/prismatic.h>
+#include <carom/joints/revolute.h>
+
+#include <array>
+#include <cmath>
+
+namespace carom::planar {
+
+namespace {
+
+Binding line_binding(const End<2>& from, const End<2>& to, const Vec<2>& axis) {
+  Binding binding;
+  binding.form = Binding::Form::axis_of_from;
+  binding.from = from;
+  binding.to = to;
+  binding.axis = axis;
+  return binding;
+}
+
+/// The vector between the ends as described, in the frame of `from` [m].
+Vec<2> described_distance(const System& system, const End<2>& from, const End<2>& to) {
+  const DescribedPlace a = described_place(system, from.body), b = described_place(system, to.body);
+  const Vec<2> between = b.point(to.point) - a.point(from.point);
+  const std::array<double, 2> back{std::cos(a.angle), -std::sin(a.angle)};
+  return Space<2>::rotate(back.data(), between);
+}
+
+/// The distance along an axis, less `zero` or, if that is not given, what it is as described.
+Binding along(const PartCheck& check, const End<2>& from, const End<2>& to, const Vec<2>& axis, double zero) {
+  Binding binding = line_binding(from, to, axis);
+  binding.offset = std::isnan(zero) ? described_distance(check.system(), from, to).dot(axis) : zero;
+  return binding;
+}
+
+Vec<2> across(const Vec<2>& axis) { return {-axis[1], axis[0]}; }
+
+void check_zero(const PartCheck& check, double zero) {
+  if (std::isinf(zero)) check.finite(zero, "zero_distance", "m");
+}
+
+}  // namespace
+
+std::vector<Binding> Prismatic::bindings(const PartCheck& check) const {
+  check_joint_ends(check, from, to);
+  check_turning_end(check, from.body, "from");
+  check_turning_end(check, to.body, "to");
+  const Vec<2> unit = checked_axis(check, axis, "axis");
+  if (std::isinf(angle)) check.finite(angle, "angle", "rad");
+  check_zero(check, zero_distance);
+  double turn = angle;
+  if (std::isnan(angle)) {
+    turn = described_place(check.system(), to.body).angle - described_place(check.system(), from.body).angle;
+  }
+  return {line_binding(from, to, across(unit)), angle_binding(from.body, to.body, turn)};
+}
+
+Binding Prismatic::coordinate(const PartCheck& check) const {
+  return along(check, from, to, checked_axis(check, axis, "axis"), zero_distance);
+}
+
+std::vector<Binding> PointOnLine::bindings(const PartCheck& check) const {
+  check_joint_ends(check, from, to);
+  check_zero(check, zero_distance);
+  return {line_binding(from, to, across(checked_axis(check, axis, "axis")))};
+}
+
+Binding PointOnLine::coordinate(const PartCheck& check) const {
+  return along(check, from, to, checked_axis(check, axis, "axis"), zero_distance);
+}
+
+std::vector<Binding> Rolling::bindings(const PartCheck& check) const {
+  check_joint_ends(check, from, to);
+  check.oriented_body(to.body, "to");
+  const Vec<2> unit = checked_axis(check, normal, "normal");
+  check.positive(radius, "radius", "m");
+  Binding apart = line_binding(from, to, unit);
+  apart.offset = radius;
+  // The place where the disc touches stands still on the line: turned clockwise it goes along the tangent.
+  Binding roll = coordinate(check);
+  roll.turn_to = radius;
+  roll.turn_from = -radius;
+  const System& system = check.system();
+  roll.offset += radius * (described_place(system, to.body).angle - described_place(system, from.body).angle);
+  return {apart, roll};
+}
+
+Binding Rolling::coordinate(const PartCheck& check) const {
+  const Vec<2> unit = checked_axis(check, normal, "normal");
+  return along(check, from, to, Vec<2>(unit[1], -unit[0]), std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace carom::planar

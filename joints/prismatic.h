@@ -1,0 +1,79 @@
+#pragma once
+
+/// \file
+/// Joints that keep a point on a line: slide, pin in slot, rolling without slip.
+
+#include <carom/joints/joint.h>
+
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace carom::planar {
+
+/// A slide: `to` moves along a line fixed to `from` and does not turn against it. Its coordinate is how far
+/// the end of `to` stands along the axis from the end of `from`, less what it is as described, unless
+/// `zero_distance` says what counts as zero.
+struct CAROM_API Prismatic {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "prismatic joint";
+  static constexpr Index row_count = 2;
+
+  End<2> from{};  ///< a rigid body or ground: a point of the line (required)
+  End<2> to{};    ///< a rigid body or ground: the point that slides (required)
+  Vec<2> axis =
+      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,
+                                                                   ///< any length > 0 (required)
+  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` [rad]; as
+                                                            ///< described unless given
+  double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
+
+  /// What it binds. Throws ModelError for ends, an axis or an angle that cannot be.
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// The distance along the axis.
+  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+};
+
+/// A pin in a slot: the end of `to` stays on a line fixed to `from`; both may turn. Its coordinate is that of
+/// Prismatic.
+struct CAROM_API PointOnLine {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "point-on-line joint";
+  static constexpr Index row_count = 1;
+
+  End<2> from{};  ///< a body or ground: a point of the line (required)
+  End<2> to{};    ///< a body or ground: the pin (required)
+  Vec<2> axis =
+      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());   ///< of the line, in the frame of `from`,
+                                                                    ///< any length > 0 (required)
+  double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
+
+  /// What it binds. Throws ModelError for ends or an axis that cannot be.
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// The distance along the axis.
+  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+};
+
+/// Rolling without slip: a disc of `to` with its centre at the end of `to` rolls on a line fixed to `from`
+/// through the end of `from`, on the side that the normal points to. Bilateral: it neither lifts nor slips.
+/// Its coordinate is how far the centre stands along the line, the normal turned clockwise, less what it is
+/// as described. Reactions: the force at the line, told at the centre with its moment.
+struct CAROM_API Rolling {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "rolling joint";
+  static constexpr Index row_count = 2;
+
+  End<2> from{};  ///< a body or ground: a point of the line (required)
+  End<2> to{};    ///< a rigid body: the centre of the disc (required)
+  Vec<2> normal =
+      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,
+                                                                   ///< any length > 0 (required)
+  double radius = std::numeric_limits<double>::quiet_NaN();        ///< of the disc [m] (required)
+
+  /// What it binds. Throws ModelError for ends, a normal or a radius that cannot be.
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// The distance along the line.
+  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+};
+
+}  // namespace carom::planar

@@ -1,0 +1,53 @@
+#pragma once
+
+/// \file
+/// Joints that keep a point of one body on a point of another: pin and weld.
+
+#include <carom/joints/joint.h>
+
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace carom::planar {
+
+/// The conditions that two ends coincide, along the axes of the fixed frame: their multipliers are the force
+/// on `to` [N].
+[[nodiscard]] CAROM_API std::vector<Binding> point_bindings(const End<2>& from, const End<2>& to);
+/// The angle of `to` relative to `from` less `offset`.
+[[nodiscard]] CAROM_API Binding angle_binding(BodyId from, BodyId to, double offset);
+
+/// A pin: the two ends coincide. Its coordinate is the angle of `to` relative to `from`, turns counted, zero
+/// as described unless `zero_angle` says which angle counts as zero.
+struct CAROM_API Revolute {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "revolute joint";
+  static constexpr Index row_count = 2;
+
+  End<2> from{};  ///< a body or ground (required)
+  End<2> to{};    ///< a body or ground (required)
+  double zero_angle =
+      std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` at coordinate 0 [rad]
+
+  /// What it binds. Throws ModelError for ends that cannot be.
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its angle; 0 for particles, which have none.
+  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+};
+
+/// A weld: the two ends coincide and the bodies keep the angle between them, as described unless `angle` is
+/// given.
+struct CAROM_API Weld {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "weld";
+  static constexpr Index row_count = 3;
+
+  End<2> from{};                                            ///< a rigid body or ground (required)
+  End<2> to{};                                              ///< a rigid body or ground (required)
+  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` [rad]
+
+  /// What it binds. Throws ModelError for ends that cannot be.
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+};
+
+}  // namespace carom::planar
