@@ -12,12 +12,15 @@ namespace carom {
 
 namespace {
 
-constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
-
 // A pivot below this part of the largest one is rounding: the constraint follows from the others.
 constexpr double dependent = 1e-11;
 
 }  // namespace
+
+void ClosedContacts::bind(const Assembly& assembly, IslandJoints& joints) {
+  assembly_ = &assembly;
+  joints_ = joints.empty() ? nullptr : &joints;
+}
 
 void ClosedContacts::locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation,
                             const ObstaclePlaces& places) {
@@ -37,40 +40,56 @@ template <class F>
 void ClosedContacts::for_groups(F&& f) {
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
-    while (last < contacts_.size() && contacts_[last].at.body == contacts_[first].at.body) ++last;
+    while (last < contacts_.size() && group(contacts_[last]) == group(contacts_[first])) ++last;
     f(first, last);
     first = last;
   }
 }
 
-/// Rows of one body, what impulses along their columns do to it, and the products of the two.
+/// Rows of one group, what impulses along their columns do to it, and the products of the two.
 void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing) {
   const BodySlot body = assembly.layout()->bodies()[contacts_[first].at.body];
   const BodyKind& kind = *assembly.body_kinds()[body.kind];
+  const bool bound = joints_ != nullptr && assembly.is_bound(contacts_[first].at.body);
+  span_ = bound ? joints_->velocities() : Range{body.v, body.v + body.v_size};
   rows_.clear();
   for (std::size_t i = first; i < last; ++i) {
     rows_.push_back({i, false});
     if (contacts_[i].sticks()) rows_.push_back({i, true});
   }
-  const std::size_t count = rows_.size();
+  const std::size_t count = rows_.size(), stride = span_.size();
   response_.resize(count * stride);
   matrix_.resize(count * count);
+  if (bound) full_.resize(assembly.layout()->v_size());
   for (std::size_t j = 0; j < count; ++j) {
     const ClosedContact& contact = contacts_[rows_[j].contact];
-    std::array<double, stride> column{};
+    std::array<double, static_cast<std::size_t>(Contact::max_columns)> column{};
     const double* const row = contact.at.row(rows_[j].tangent ? 1 : 0);
     const double ratio = rows_[j].tangent || !rubbing ? 0.0 : -contact.slip_sign() * contact.friction;
-    for (Index k = 0; k < body.v_size; ++k) {
-      column[k] = row[k];
-      if (ratio != 0.0) column[k] += ratio * contact.at.row(1)[k];
+    for (int k = 0; k < contact.at.columns; ++k) {
+      column[static_cast<std::size_t>(k)] = row[k];
+      if (ratio != 0.0) column[static_cast<std::size_t>(k)] += ratio * contact.at.row(1)[k];
     }
-    kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response_.data() + j * stride);
+    double* const response = response_.data() + j * stride;
+    if (!bound) {
+      kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response);
+      continue;
+    }
+    std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
+    for (int k = 0; k < contact.at.columns; ++k) {
+      full_[contact.at.v + static_cast<Index>(k)] = column[static_cast<std::size_t>(k)];
+    }
+    joints_->respond(full_.data());
+    std::copy(full_.begin() + span_.begin, full_.begin() + span_.end, response);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const double* const row = contacts_[rows_[i].contact].at.row(rows_[i].tangent ? 1 : 0);
+    const Contact& at = contacts_[rows_[i].contact].at;
+    const double* const row = at.row(rows_[i].tangent ? 1 : 0);
+    const std::size_t place = at.v - span_.begin;
     for (std::size_t j = 0; j < count; ++j) {
+      const double* const response = response_.data() + j * stride + place;
       double sum = 0.0;
-      for (Index k = 0; k < body.v_size; ++k) sum += row[k] * response_[j * stride + k];
+      for (int k = 0; k < at.columns; ++k) sum += row[k] * response[k];
       matrix_[i * count + j] = sum;
     }
   }
@@ -146,9 +165,9 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
         contact.normal = unknown_[i];
         if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
       }
-      const double* const response = response_.data() + i * stride;
-      for (int k = 0; k < contact.at.columns; ++k) {
-        acceleration[contact.at.v + static_cast<Index>(k)] += response[k] * unknown_[i];
+      const double* const response = response_.data() + i * span_.size();
+      for (Index k = 0; k < span_.size(); ++k) {
+        acceleration[span_.begin + k] += response[k] * unknown_[i];
       }
     }
     if (rank_ < n) spread(first, last);
@@ -305,22 +324,20 @@ bool ClosedContacts::corrections(const Assembly& assembly, const double* velocit
   for_groups([&](std::size_t first, std::size_t last) {
     for (const bool position : {true, false}) {
       lay_out(assembly, first, last, false);
+      double* const out = position ? of_position : of_velocity;
       unknown_.resize(rows_.size());
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Contact& at = contacts_[rows_[i].contact].at;
+        const int row = rows_[i].tangent ? 1 : 0;
         // What sticks has no place of its own: its tangent is kept on velocity level.
-        unknown_[i] =
-            position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(rows_[i].tangent ? 1 : 0, velocity);
+        unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(row, velocity);
+        if (!(position && rows_[i].tangent)) unknown_[i] -= at.times(row, out);
         any = any || unknown_[i] != 0.0;
       }
       if (!solve()) continue;
-      double* const out = position ? of_position : of_velocity;
       for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Contact& at = contacts_[rows_[i].contact].at;
-        for (int k = 0; k < at.columns; ++k) {
-          out[at.v + static_cast<Index>(k)] +=
-              response_[i * stride + static_cast<std::size_t>(k)] * unknown_[i];
-        }
+        const double* const response = response_.data() + i * span_.size();
+        for (Index k = 0; k < span_.size(); ++k) out[span_.begin + k] += response[k] * unknown_[i];
       }
     }
   });

@@ -8,7 +8,8 @@
 ///
 ///     G a + drift = 0,   a = a_free + M^-1 D lambda.
 ///
-/// Contacts of different bodies do not know of each other.
+/// Contacts of different bodies do not know of each other, unless joints bind the bodies together: a contact
+/// then moves all that is bound, and M^-1 stands for what joints leave of it (core/island_joints.h).
 
 #include <carom/contact/contact_finder.h>
 #include <carom/contact/contact_mode.h>
@@ -16,6 +17,7 @@
 #include <carom/contact/lemke.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/island_joints.h>
 
 #include <span>
 #include <vector>
@@ -40,7 +42,8 @@ struct ClosedContact {
   }
 };
 
-/// How far the forces of the contacts of one body are from where their modes end.
+/// How far the forces of the contacts of one body, or of bodies that joints bind, are from where their modes
+/// end.
 struct ForceMargin {
   std::size_t first = 0, last = 0;  ///< contacts
   double margin = 0.0;              ///< the least normal force or distance from the edge of a cone [N]
@@ -49,6 +52,9 @@ struct ForceMargin {
 /// The closed contacts of one island, in the order of its pairs. Keeps memory only, but the contacts.
 class CAROM_API ClosedContacts {
 public:
+  /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
+  void bind(const Assembly& assembly, IslandJoints& joints);
+
   /// The contacts.
   [[nodiscard]] std::vector<ClosedContact>& list() { return contacts_; }
   [[nodiscard]] const std::vector<ClosedContact>& list() const { return contacts_; }
@@ -65,8 +71,8 @@ public:
   void margins(std::vector<ForceMargin>& out);
 
   /// Takes the gaps out of the positions, and what moves the constraints out of the velocities, by the
-  /// smallest changes in the sense of the masses; both are written as changes of all velocity coordinates.
-  /// False where there are none.
+  /// smallest changes in the sense of the masses; both are added to changes of all velocity coordinates that
+  /// are under way. False where there are none.
   bool corrections(const Assembly& assembly, const double* velocity, double* of_position,
                    double* of_velocity);
 
@@ -82,11 +88,19 @@ private:
   void spread(std::size_t first, std::size_t last);
   bool share_out(std::size_t from, std::size_t to);
 
+  [[nodiscard]] Index group(const ClosedContact& contact) const {
+    return joints_ == nullptr ? contact.at.body : assembly_->group(contact.at.body);
+  }
+
   std::vector<ClosedContact> contacts_;
-  std::vector<Row> rows_;         // of the group at hand
-  std::vector<double> response_;  // M^-1 D, by row, Contact::max_columns numbers each
-  std::vector<double> matrix_;    // G M^-1 D, then its factors
-  std::vector<double> unknown_;   // right side, then lambda
+  const Assembly* assembly_ = nullptr;
+  IslandJoints* joints_ = nullptr;  // null where there are none
+  Range span_;                      // velocities that the group at hand moves
+  std::vector<double> full_;        // numbers over all velocities, of bound bodies
+  std::vector<Row> rows_;           // of the group at hand
+  std::vector<double> response_;    // M^-1 D, by row, over span_
+  std::vector<double> matrix_;      // G M^-1 D, then its factors
+  std::vector<double> unknown_;     // right side, then lambda
   std::vector<double> work_;
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;

@@ -91,6 +91,10 @@ IslandJoints::IslandJoints(const Assembly& assembly, Index island)
   }
 }
 
+void IslandJoints::hold_still(Range velocities) {
+  for (Index i = velocities.begin; i < velocities.end; ++i) inverse_mass_[i - v_.begin] = 0.0;
+}
+
 void IslandJoints::evaluate(const JointView& at, std::vector<JointRow>& out) const {
   out.resize(rows_.size());
   for_joints(*assembly_, island_, [&](Index kind, Index joint, Index row) {
@@ -137,8 +141,9 @@ void IslandJoints::add_response(const double* multipliers, double* x) const {
   }
 }
 
-void IslandJoints::apply_inverse_mass(double* x) const {
+void IslandJoints::respond(double* x) {
   for (Index i = v_.begin; i < v_.end; ++i) x[i] *= inverse_mass_[i - v_.begin];
+  hold(JointLevel::change, x);
 }
 
 void IslandJoints::hold(JointLevel level, double* x, double* multipliers) {

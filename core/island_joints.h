@@ -43,6 +43,8 @@ public:
 
   /// Writes the rows at a configuration. Sized as rows().
   void evaluate(const JointView& at, std::vector<JointRow>& out) const;
+  /// Takes the body with these velocities as too heavy to move.
+  void hold_still(Range velocities);
   /// Brings rows() to a configuration and factorises.
   void locate(const JointView& at);
   /// Rows at the configuration last located.
@@ -51,12 +53,14 @@ public:
   /// Makes x obey the constraints. \param x an array over all velocities \param multipliers out: l, sized as
   /// rows(); may be null
   void hold(JointLevel level, double* x, double* multipliers = nullptr);
-  /// r becomes -(G M^-1 G^T)^-1 r.
+  /// r becomes -(G M^-1 G^T)^-1 r, zero in rows that follow from others.
   void solve(double* r);
   /// x += M^-1 G^T l.
   void add_response(const double* multipliers, double* x) const;
-  /// x becomes M^-1 x over the island.
-  void apply_inverse_mass(double* x) const;
+  /// Impulses or forces x of the bodies become what they do, with the joints' answer: M^-1 x, held.
+  void respond(double* x);
+  /// Velocities of the island.
+  [[nodiscard]] Range velocities() const { return v_; }
 
   /// G x + c of a row.
   [[nodiscard]] static double residual(JointLevel level, const JointRow& row, const double* x) {
@@ -80,6 +84,7 @@ public:
   [[nodiscard]] std::span<const Index> first_rows() const { return first_row_; }
   /// The factors of G M^-1 G^T.
   [[nodiscard]] const SparseFactors& factors() const { return factors_; }
+  [[nodiscard]] SparseFactors& factors() { return factors_; }
 
 private:
   // A product of two blocks that belongs to an entry of the matrix.

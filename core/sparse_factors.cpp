@@ -4,17 +4,9 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace carom {
-
-namespace {
-
-// A pivot below this part of its diagonal calls for corrections.
-constexpr double weak = 1e-8;
-constexpr int corrections = 2;
-
-}  // namespace
 
 void SparseFactors::analyse(Index size, std::span<const std::pair<Index, Index>> entries) {
   size_ = size;
@@ -102,19 +94,18 @@ void SparseFactors::analyse(Index size, std::span<const std::pair<Index, Index>>
     }
   }
   pivot_.assign(size, 1.0);
+  relative_pivot_.assign(size, 1.0);
   work_.assign(size, 0.0);
-  right_.assign(size, 0.0);
   answer_.assign(size, 0.0);
 }
 
 void SparseFactors::factor() {
-  least_pivot_ = 1.0;
   double* const y = work_.data();
   for (Index i = 0; i < size_; ++i) {
     const Index last = row_begin_[i + 1] - 1;
     for (Index p = row_begin_[i]; p < last; ++p) y[column_[p]] = values_[p];
     const double diagonal = values_[last];
-    double pivot = diagonal * (1.0 + shift);
+    double pivot = diagonal;
     for (Index p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p) {
       const Index j = pattern_column_[p], place = pattern_place_[p];
       const double value = y[j];
@@ -124,15 +115,13 @@ void SparseFactors::factor() {
       pivot -= factor * value;
       lower_[place] = factor;
     }
-    // Rounding may take away all that the shift gave.
-    if (!(pivot > 0.1 * shift * diagonal)) pivot = shift * diagonal;
-    if (!(pivot > 0.0)) pivot = 1.0;  // a row of zeros
-    least_pivot_ = std::min(least_pivot_, pivot / (diagonal > 0.0 ? diagonal : 1.0));
-    pivot_[i] = pivot;
+    relative_pivot_[order_[i]] = diagonal > 0.0 ? pivot / diagonal : 0.0;
+    // With an infinite pivot nothing comes from the row and nothing goes to it.
+    pivot_[i] = pivot > dependent_pivot * diagonal ? pivot : std::numeric_limits<double>::infinity();
   }
 }
 
-void SparseFactors::solve_once(double* x) const {
+void SparseFactors::substitute(double* x) const {
   for (Index j = 0; j < size_; ++j) {
     const double value = x[j];
     for (Index p = column_begin_[j]; p < column_begin_[j + 1]; ++p) x[lower_row_[p]] -= lower_[p] * value;
@@ -146,25 +135,23 @@ void SparseFactors::solve_once(double* x) const {
 
 void SparseFactors::solve(double* x) {
   for (Index i = 0; i < size_; ++i) answer_[i] = x[order_[i]];
-  const bool correct = least_pivot_ < weak;
-  if (correct) std::copy(answer_.begin(), answer_.end(), right_.begin());
-  solve_once(answer_.data());
-  for (int round = 0; correct && round < corrections; ++round) {
-    double* const left = work_.data();
-    std::copy(right_.begin(), right_.end(), left);
-    for (Index i = 0; i < size_; ++i) {
-      const Index last = row_begin_[i + 1] - 1;
-      for (Index p = row_begin_[i]; p < last; ++p) {
-        left[i] -= values_[p] * answer_[column_[p]];
-        left[column_[p]] -= values_[p] * answer_[i];
-      }
-      left[i] -= values_[last] * answer_[i];
-    }
-    solve_once(left);
-    for (Index i = 0; i < size_; ++i) answer_[i] += left[i];
-  }
-  if (correct) std::fill(work_.begin(), work_.end(), 0.0);
+  substitute(answer_.data());
   for (Index i = 0; i < size_; ++i) x[order_[i]] = answer_[i];
+}
+
+void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
+  Index at = 0;
+  while (order_[at] != row) ++at;
+  std::fill(answer_.begin(), answer_.end(), 0.0);
+  for (Index i = 0; i < size_; ++i) {
+    for (Index p = row_begin_[i]; p < row_begin_[i + 1]; ++p) {
+      if (i == at) answer_[column_[p]] = values_[p];
+      if (column_[p] == at) answer_[i] = values_[p];
+    }
+  }
+  substitute(answer_.data());
+  out.assign(size_, 0.0);
+  for (Index i = 0; i < size_; ++i) out[order_[i]] = i == at ? 1.0 : -answer_[i];
 }
 
 }  // namespace carom

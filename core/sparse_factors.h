@@ -14,14 +14,15 @@
 
 namespace carom {
 
-/// Factors of a symmetric positive semidefinite matrix A. Where rows depend on each other a pivot vanishes;
-/// the matrix is therefore factorised with its diagonal larger by the part `shift`, and solve() takes the
-/// difference out by repeated correction: for a right side in the range of A the answer is a solution.
+/// A row with a pivot below this part of its diagonal follows from others. For the matrix of a mechanism the
+/// pivot falls with the square of the distance from a singular position [rad]: within some 3e-5 of one the
+/// row is let go. Nearer rounding would be magnified too much, farther away the row is missed.
+inline constexpr double dependent_pivot = 1e-9;
+
+/// Factors of a symmetric positive semidefinite matrix A. A row that follows from those eliminated before it
+/// is left out: for a right side in the range of A the answer is a solution, with zero there.
 class CAROM_API SparseFactors {
 public:
-  /// The part by which the diagonal is raised.
-  static constexpr double shift = 1e-13;
-
   /// \param size rows
   /// \param entries places (row, column) of the lower triangle that are not zero, in any order, each once;
   /// the diagonal must be among them
@@ -34,16 +35,18 @@ public:
   void factor();
   /// x becomes a solution of A x = x.
   void solve(double* x);
+  /// The combination of rows that vanishes, for one that was left out: 1 there.
+  void dependence(std::size_t row, std::vector<double>& out);
+  /// Pivot of a row of the matrix against its diagonal, of the last factorisation; small where the row
+  /// follows from others.
+  [[nodiscard]] double pivot(std::size_t row) const { return relative_pivot_[row]; }
 
   [[nodiscard]] Index size() const { return size_; }  ///< rows
   /// Numbers in the factor below its diagonal.
   [[nodiscard]] std::size_t fill() const { return lower_.size(); }
-  /// Least pivot against the diagonal it came from, of the last factorisation: near `shift` where rows depend
-  /// on each other.
-  [[nodiscard]] double least_pivot() const { return least_pivot_; }
 
 private:
-  void solve_once(double* x) const;
+  void substitute(double* x) const;
 
   Index size_ = 0;
   std::vector<Index> order_;   // row of the matrix by place in the factor
@@ -55,9 +58,8 @@ private:
   std::vector<Index> pattern_begin_, pattern_column_, pattern_place_;
   std::vector<Index> column_begin_, lower_row_;
   std::vector<double> lower_, pivot_;
-  std::vector<double> work_;
-  std::vector<double> right_, answer_;
-  double least_pivot_ = 1.0;
+  std::vector<double> relative_pivot_;  // by row of the matrix
+  std::vector<double> work_, answer_;
 };
 
 }  // namespace carom

@@ -136,6 +136,7 @@ void System::remove(BodyId id) {
     }
   }
   remove_from(Role::body, bodies_, id, "body");
+  kept_.erase(id.serial);
 }
 void System::remove(ElementId id) { remove_from(Role::force, forces_, id, "element"); }
 void System::remove(JointId id) {
@@ -160,6 +161,15 @@ void System::remove(ShapeId id) { remove_from(Role::shape, shapes_, id, "shape")
 void System::remove(ObstacleId id) {
   remove_from(Role::obstacle, obstacles_, id, "obstacle");
   surfaces_.erase(id.serial);
+}
+
+void System::keep_place(BodyId body, bool keep) {
+  PartCheck("place to keep", *this).body(body, "body", false);
+  if (keep) {
+    kept_.insert(body.serial);
+  } else {
+    kept_.erase(body.serial);
+  }
 }
 
 MaterialId System::material(std::string_view name) {

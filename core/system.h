@@ -12,6 +12,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,6 +61,12 @@ public:
   void remove(JointId id);
   void remove(ShapeId id);
   void remove(ObstacleId id);
+
+  /// Says whether a body stays where it is described while joints are closed at the start of a run, and keeps
+  /// its velocity; others then give way. Throws ModelError for a body that is not of this system.
+  void keep_place(BodyId body, bool keep = true);
+  /// True if it does.
+  [[nodiscard]] bool keeps_place(BodyId body) const { return kept_.contains(body.serial); }
 
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);
@@ -170,6 +177,7 @@ private:
   std::vector<std::string> materials_;
   std::map<std::pair<Index, Index>, Surface> laws_;
   std::map<Index, Surface> surfaces_;
+  std::set<Index> kept_;  // bodies that stay where they are
 };
 
 }  // namespace carom

@@ -41,6 +41,7 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   motion_.gather(state, y_);
   seen_ = y_;
   delivered_ = {};
+  shown_projection_ = 0.0;
   pending_ = resting_ = in_phase_ = false;
   fresh_ = true;
   step_ = 0.0;
@@ -71,7 +72,10 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
 }
 
 void IslandDriver::advance(double target, DriverNews& news) {
-  const auto look = [&](std::span<const double> y) {
+  // What is shown stands on the joints; that is taken back where the run goes on.
+  const auto look = [&](std::span<const double> y, double projected) {
+    news.flows[EnergyFlow::projection] += projected - shown_projection_;
+    shown_projection_ = projected;
     for (Index line = 0; line < work_lines; ++line) {
       const double value = y[motion_.work_place(static_cast<WorkLine>(line))];
       constexpr std::array flows{EnergyFlow::dashpot, EnergyFlow::sliding, EnergyFlow::external};
@@ -85,14 +89,20 @@ void IslandDriver::advance(double target, DriverNews& news) {
     if (resting_) time_ = target;
     if (time_ == target) {
       seen_ = y_;
-      look(seen_);
+      look(seen_, 0.0);
       return;
     }
     if (!pending_) take_step();
     const double until = next_.guard == Guard::nothing ? flow_->end() : next_.time;
     if (target < until) {
       flow_->land(target, seen_);
-      look(seen_);
+      double projected = 0.0;
+      if (!motion_.joints().empty()) {
+        bool changed = false;
+        motion_.evaluate(target, seen_.data(), true);
+        projected = motion_.project(seen_, changed, news.shift);
+      }
+      look(seen_, projected);
       return;
     }
     if (next_.guard == Guard::nothing) {
@@ -107,6 +117,15 @@ void IslandDriver::write(State& state, ContactModes& modes) const {
   motion_.scatter(seen_, state);
   for (const ClosedContact& contact : motion_.closed().list())
     modes.emplace_back(contact.at.key, contact.mode);
+}
+
+JointReaction IslandDriver::reaction(const JointKind& kind, Index slot, JointId joint) {
+  motion_.evaluate(looked_at_, seen_.data(), true);
+  const std::span<const double> multipliers = motion_.joint_multipliers();
+  std::size_t row = 0;
+  while (motion_.joints().joint(row) != joint) ++row;
+  const MotionWorkspace& work = work_->motion;
+  return kind.reaction({work.trial.view(), work.evaluation.rotation.data()}, slot, multipliers.data() + row);
 }
 
 double IslandDriver::longest_step() const {
@@ -153,7 +172,7 @@ void IslandDriver::accept_step(DriverNews& news) {
   y_.assign(flow_->state().begin(), flow_->state().end());
   pending_ = false;
   std::swap(start_, end_);
-  if (motion_.closed().list().empty()) return;
+  if (motion_.closed().list().empty() && motion_.joints().empty()) return;
   motion_.evaluate(time_, y_.data(), true);
   if (settle(news)) flow_->correct(y_);
 }

@@ -65,6 +65,8 @@ public:
   void advance(double target, DriverNews& news);
   /// Writes the island's part of the state at the time last advanced to, and the modes of closed contacts.
   void write(State& state, ContactModes& modes) const;
+  /// Reaction of a joint of the island at the time last advanced to.
+  [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
   /// Counts of the flow.
   [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
@@ -155,6 +157,7 @@ private:
   double looked_at_ = 0.0;                      // time last advanced to
   std::vector<double> seen_;                    // y then
   std::array<double, work_lines> delivered_{};  // works told so far
+  double shown_projection_ = 0.0;               // of what was last looked at [J]
   bool fresh_ = true;                           // start_gap_ counts as touching
   bool pending_ = false;                        // the flow's last step is ahead of time_
   bool in_phase_ = false;                       // modes are decided and the flow has started

@@ -99,7 +99,7 @@ void IslandDriver::decide_modes(DriverNews& news) {
   list.clear();
   for (std::size_t first = 0; first < pairs.size();) {
     std::size_t last = first + 1;
-    while (last < pairs.size() && pairs[last].body == pairs[first].body) ++last;
+    while (last < pairs.size() && motion_.group(pairs[last].body) == motion_.group(pairs[first].body)) ++last;
     int rounds = 0;
     while (!decide_body(first, last, news)) {
       if (++rounds < most_rounds) continue;
@@ -144,8 +144,8 @@ bool IslandDriver::decide_body(std::size_t first, std::size_t last, DriverNews& 
   collect_candidates(first, last);
   std::vector<Candidate>& candidates = work_->candidates;
   if (candidates.empty()) return true;
-  const Decision decision =
-      work_->decision.decide(*assembly_, candidates, work_->motion.acceleration.data(), work_->chain);
+  const Decision decision = work_->decision.decide(*assembly_, motion_, candidates,
+                                                   work_->motion.acceleration.data(), work_->chain);
   if (decision == Decision::impossible) {
     impact_without_collision(news);
     return false;

@@ -24,7 +24,7 @@ EnergyFlow line_of(EventKind kind, int row) {
 
 }  // namespace
 
-/// Impacts at this instant, body by body, until nothing that touches approaches. True if there was one.
+/// Impacts at this instant, group by group, until nothing that touches approaches. True if there was one.
 bool IslandDriver::resolve_impacts(DriverNews& news) {
   const auto& pairs = motion_.pairs();
   bool struck = false;
@@ -33,7 +33,8 @@ bool IslandDriver::resolve_impacts(DriverNews& news) {
     for (std::size_t first = 0; first < pairs.size();) {
       std::size_t last = first;
       double fastest = 0.0;
-      for (; last < pairs.size() && pairs[last].body == pairs[first].body; ++last) {
+      const Index group = motion_.group(pairs[first].body);
+      for (; last < pairs.size() && motion_.group(pairs[last].body) == group; ++last) {
         if (!touches(last)) continue;
         fastest = std::max(fastest, -work_->contacts[last].velocity(0, work_->motion.trial.v.data()));
       }
@@ -66,6 +67,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   const double energy_before = motion_.kinetic_energy(touching.front().body);
   ContactCluster& cluster = work_->cluster;
   cluster.build(*assembly_, touching, velocity);
+  motion_.couple(cluster);
   cluster.set_free_velocity(velocity);
   const bool solved = cluster.solve(work_->chain).usable();
   // Slower than the capture speed all that touches closes anyway.
@@ -78,7 +80,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
              std::string(to_string(cluster.report().outcome)) + ")",
          std::move(names), &cluster);
   }
-  cluster.apply(velocity);
+  motion_.apply(cluster, velocity);
   const Range v = assembly_->islands()[motion_.island()].v;
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
@@ -189,6 +191,7 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   }
   ContactCluster& cluster = work_->cluster;
   cluster.build(*assembly_, touching, velocity);
+  motion_.couple(cluster);
   cluster.set_free_velocity(velocity);
   if (!cluster.solve(work_->chain).usable() ||
       solutions_.enumerate(cluster.problem()) == Outcome::not_solved) {
@@ -220,7 +223,7 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   }
   cluster.set_impulses(solutions_.impulse(best));
   const double energy_before = motion_.kinetic_energy(touching.front().body);
-  cluster.apply(velocity);
+  motion_.apply(cluster, velocity);
   const Range v = assembly_->islands()[motion_.island()].v;
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));

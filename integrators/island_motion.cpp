@@ -28,7 +28,22 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       z_size_(assembly.islands()[island].z.size()),
       size_(q_size_ + v_size_ + z_size_ + work_lines),
       tolerances_(size_, options.absolute_tolerance),
-      pairs_(finder.pairs(island)) {
+      pairs_(finder.pairs(island)),
+      joints_(assembly, island) {
+  if (!joints_.empty()) {
+    closed_.bind(assembly, joints_);
+    // What answers together stands together.
+    std::stable_sort(pairs_.begin(), pairs_.end(), [&](const ContactPair& a, const ContactPair& b) {
+      return group(a.body) < group(b.body);
+    });
+    depends_on_time_ = joints_.depends_on_time();
+    for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+      const Range joints = assembly.joints(island, kind);
+      for (Index joint = joints.begin; joint < joints.end; ++joint) {
+        assembly.joint_kinds()[kind]->breaks(joint, breaks_);
+      }
+    }
+  }
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     if (assembly.elements(island, kind).empty()) continue;
     const ForceKind& elements = *assembly.force_kinds()[kind];
@@ -110,6 +125,10 @@ bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
   assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
     kind.apply_inverse_mass(slots, work.momentum.data() + at, work.acceleration.data() + at);
   });
+  if (!joints_.empty()) {
+    joints_.locate({state, work.evaluation.rotation.data()});
+    joints_.hold(JointLevel::acceleration, work.acceleration.data());
+  }
   if (!with_reactions || closed_.list().empty()) return true;
   closed_.locate(*finder_, state, work.evaluation, work.places);
   return closed_.add_reactions(assembly, work.acceleration.data());
@@ -147,6 +166,11 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
     external += contact.normal * contact.at.obstacle_velocity[0] +
                 contact.tangential * contact.at.obstacle_velocity[1];
   }
+  if (joints_.depends_on_time()) {
+    // Reactions do the work of what is prescribed: G v = -rate.
+    const std::span<const double> multipliers = joint_multipliers();
+    for (std::size_t i = 0; i < multipliers.size(); ++i) external -= multipliers[i] * joints_.rows()[i].rate;
+  }
   rates[work_place(WorkLine::dashpot)] = dashpot;
   rates[work_place(WorkLine::sliding)] = sliding;
   rates[work_place(WorkLine::external)] = external;
@@ -177,15 +201,54 @@ void IslandMotion::jacobian(double time, const double* y, double* jacobian) {
     assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       kind.apply_inverse_mass(slots, loads + (v - all.v.begin), change.data() + v);
     });
+    joints_.hold(JointLevel::change, change.data());
     if (!closed_.list().empty()) closed_.add_reactions(assembly, change.data(), true);
     std::copy_n(change.begin() + all.v.begin, v_size_, loads);
     if (column >= q_size_) jacobian[column * size_ + (column - q_size_)] = 1.0;
   }
 }
 
+std::span<const double> IslandMotion::joint_multipliers() {
+  MotionWorkspace& work = *work_;
+  std::vector<double>& answer = work.of_velocity;
+  const Range v = assembly_->islands()[island_].v;
+  std::copy(work.momentum.begin() + v.begin, work.momentum.begin() + v.end, answer.begin() + v.begin);
+  for (const ClosedContact& contact : closed_.list()) {
+    for (int k = 0; k < contact.at.columns; ++k) {
+      answer[contact.at.v + static_cast<Index>(k)] +=
+          contact.normal * contact.at.row(0)[k] + contact.tangential * contact.at.row(1)[k];
+    }
+  }
+  assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
+    kind.apply_inverse_mass(slots, answer.data() + at, answer.data() + at);
+  });
+  work.multipliers.resize(joints_.size());
+  joints_.hold(JointLevel::acceleration, answer.data(), work.multipliers.data());
+  return work.multipliers;
+}
+
+void IslandMotion::couple(ContactCluster& cluster) {
+  if (joints_.empty()) return;
+  const Range v = assembly_->islands()[island_].v;
+  std::vector<double>& answer = work_->of_velocity;
+  cluster.couple(v, [&](double* x) {
+    std::copy(x, x + v.size(), answer.begin() + v.begin);
+    joints_.respond(answer.data());
+    std::copy(answer.begin() + v.begin, answer.begin() + v.end, x);
+  });
+}
+
+void IslandMotion::apply(const ContactCluster& cluster, double* velocity) const {
+  if (joints_.empty()) {
+    cluster.apply(velocity);
+  } else {
+    cluster.apply_coupled(velocity);
+  }
+}
+
 double IslandMotion::project(std::span<double> y, bool& changed, double& shift) {
   changed = false;
-  if (closed_.list().empty()) return 0.0;
+  if (closed_.list().empty() && joints_.empty()) return 0.0;
   MotionWorkspace& work = *work_;
   const Assembly& assembly = *assembly_;
   const Island& all = assembly.islands()[island_];
@@ -194,8 +257,16 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   };
   clear(work.of_position);
   clear(work.of_velocity);
+  if (!joints_.empty()) {
+    joints_.hold(JointLevel::displacement, work.of_position.data());
+    std::copy(work.trial.v.begin() + all.v.begin, work.trial.v.begin() + all.v.end,
+              work.of_velocity.begin() + all.v.begin);
+    joints_.hold(JointLevel::velocity, work.of_velocity.data());
+    for (Index i = all.v.begin; i < all.v.end; ++i) work.of_velocity[i] -= work.trial.v[i];
+  }
   changed =
-      closed_.corrections(assembly, work.trial.v.data(), work.of_position.data(), work.of_velocity.data());
+      closed_.corrections(assembly, work.trial.v.data(), work.of_position.data(), work.of_velocity.data()) ||
+      !joints_.empty();
   if (!changed) return 0.0;
   double lost = 0.0;
   // The potential changes by minus the work of its forces, to first order: the rest is the square of
@@ -230,9 +301,18 @@ void IslandMotion::kinks(std::vector<double>& out) const {
 }
 
 double IslandMotion::kinetic_energy(Index body) const {
-  const BodySlot slot = assembly_->layout()->bodies()[body];
-  return assembly_->body_kinds()[slot.kind]->kinetic_energy({slot.slot, slot.slot + 1},
-                                                            work_->trial.v.data() + slot.v);
+  const auto of_body = [&](Index one) {
+    const BodySlot slot = assembly_->layout()->bodies()[one];
+    return assembly_->body_kinds()[slot.kind]->kinetic_energy({slot.slot, slot.slot + 1},
+                                                              work_->trial.v.data() + slot.v);
+  };
+  if (!assembly_->is_bound(body)) return of_body(body);
+  double sum = 0.0;
+  const Range bodies = assembly_->islands()[island_].bodies;
+  for (Index other = bodies.begin; other < bodies.end; ++other) {
+    if (group(other) == group(body)) sum += of_body(other);
+  }
+  return sum;
 }
 
 }  // namespace carom

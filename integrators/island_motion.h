@@ -3,14 +3,16 @@
 /// \file
 /// The smooth motion of one island under fixed contact modes, as a problem for a flow:
 ///
-///     dq/dt = v,   M dv/dt = f + reactions of the closed contacts,   dz/dt by the elements,
+///     dq/dt = v,   M dv/dt = f + reactions of joints and closed contacts,   dz/dt by the elements,
 ///     and the works of dashpots, friction, prescribed loads and moving obstacles.
 
 #include <carom/contact/closed_contacts.h>
+#include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/core/island_joints.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
 
@@ -27,7 +29,8 @@ struct CAROM_API MotionWorkspace {
   Evaluation evaluation;                      ///< of it
   std::vector<double> dissipative, external;  ///< loads by cause [N, N m]
   std::vector<double> acceleration;           ///< with the reactions of closed contacts, if asked for
-  std::vector<double> of_position, of_velocity, momentum;  ///< corrections
+  std::vector<double> of_position, of_velocity, momentum;  ///< corrections; momentum: loads without reactions
+  std::vector<double> multipliers;                         ///< of joints
   std::vector<double> lengths;                             ///< Assembly::length_scales()
   std::vector<double> z_rates;
   ObstaclePlaces places;  ///< at the time of the state looked at
@@ -68,10 +71,10 @@ public:
   void gather(const State& state, std::span<double> y) const;
   /// Writes them into a state.
   void scatter(std::span<const double> y, State& state) const;
-  /// Fills the workspace for one state, with or without the reactions of closed contacts. False where the
-  /// reactions do not exist.
+  /// Fills the workspace for one state, with or without the reactions of closed contacts; those of joints are
+  /// in it always. False where the reactions do not exist.
   bool evaluate(double time, const double* y, bool with_reactions);
-  /// Moves y onto the constraints of the closed contacts; the workspace holds an evaluation of y, with
+  /// Moves y onto the constraints of joints and closed contacts; the workspace holds an evaluation of y, with
   /// reactions, and is out of date afterwards if y was changed. Returns the energy taken out [J]; adds the
   /// largest displacement [m] to `shift`.
   double project(std::span<double> y, bool& changed, double& shift);
@@ -82,7 +85,19 @@ public:
   [[nodiscard]] std::size_t work_place(WorkLine line) const {
     return q_size_ + v_size_ + z_size_ + static_cast<std::size_t>(line);
   }
-  /// Kinetic energy of one body in the workspace's state [J].
+  /// Joints of the island.
+  [[nodiscard]] IslandJoints& joints() { return joints_; }
+  [[nodiscard]] const IslandJoints& joints() const { return joints_; }
+  /// Bodies that answer an impulse on a body: itself, or all that joints bind to it, named by the first.
+  [[nodiscard]] Index group(Index body) const { return assembly_->group(body); }
+  /// Lets a problem of contacts know what joints bind the bodies; the workspace holds the configuration.
+  void couple(ContactCluster& cluster);
+  /// Adds what the impulses of a problem that was coupled do to the velocities.
+  void apply(const ContactCluster& cluster, double* velocity) const;
+  /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
+  /// evaluation with reactions.
+  [[nodiscard]] std::span<const double> joint_multipliers();
+  /// Kinetic energy of the group of a body in the workspace's state [J].
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.
   void contact(std::size_t pair, Contact& out) const;
@@ -95,7 +110,9 @@ public:
   /// Times at which laws of the island's elements and of obstacles jump, ascending [s].
   [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
   /// True if nothing but uniform fields acts: places are polynomials of time but for turning.
-  [[nodiscard]] bool flies_freely() const { return only_fields_ && closed_.list().empty(); }
+  [[nodiscard]] bool flies_freely() const {
+    return only_fields_ && joints_.empty() && closed_.list().empty();
+  }
   /// True if the loads or obstacles depend on time.
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
 
@@ -107,6 +124,7 @@ private:
   std::size_t q_size_, v_size_, z_size_, size_;
   std::vector<double> tolerances_;
   std::vector<ContactPair> pairs_;
+  IslandJoints joints_;
   ClosedContacts closed_;
   std::vector<LoadDerivative> derivatives_;
   std::vector<ElementId> kink_elements_;

@@ -18,7 +18,7 @@ constexpr int most_rounds = 20;
 
 }  // namespace
 
-Decision ModeDecision::decide(const Assembly& assembly, std::span<Candidate> candidates,
+Decision ModeDecision::decide(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
                               const double* acceleration, SolverChain& chain) {
   slides_.assign(candidates.size(), {});
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -35,14 +35,14 @@ Decision ModeDecision::decide(const Assembly& assembly, std::span<Candidate> can
   zero_.assign(assembly.layout()->v_size(), 0.0);
   Decision decision = Decision::failed;
   for (int round = 0; round < most_rounds; ++round) {
-    decision = solve(assembly, candidates, acceleration, chain);
+    decision = solve(assembly, motion, candidates, acceleration, chain);
     if (decision == Decision::impossible || decision == Decision::failed) return decision;
     if (!revise(candidates)) return decision;
   }
   return decision;
 }
 
-Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> candidates,
+Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
                              const double* acceleration, SolverChain& chain) {
   contacts_.clear();
   taking_part_.clear();
@@ -64,6 +64,7 @@ Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> cand
     return Decision::made;
   }
   cluster_.build(assembly, contacts_, zero_.data());
+  motion.couple(cluster_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
     if (sign != 0.0) cluster_.slide(c, -sign * contacts_[c].friction);
@@ -83,7 +84,7 @@ Decision ModeDecision::solve(const Assembly& assembly, std::span<Candidate> cand
     decision = Decision::several;
   }
   acceleration_.assign(acceleration, acceleration + zero_.size());
-  cluster_.apply(acceleration_.data());
+  motion.apply(cluster_, acceleration_.data());
   return decision;
 }
 

@@ -12,6 +12,7 @@
 #include <carom/contact/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/integrators/island_motion.h>
 
 #include <span>
 #include <vector>
@@ -46,8 +47,9 @@ enum class Decision : std::uint8_t {
 class CAROM_API ModeDecision {
 public:
   /// \param acceleration of all bodies without contact
-  Decision decide(const Assembly& assembly, std::span<Candidate> candidates, const double* acceleration,
-                  SolverChain& chain);
+  /// \param motion of their island, evaluated without contacts
+  Decision decide(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+                  const double* acceleration, SolverChain& chain);
   /// The last problem, and what is known of its answer.
   [[nodiscard]] const ContactCluster& cluster() const { return cluster_; }
 
@@ -57,8 +59,8 @@ private:
     bool out = false;   // taken as open
     bool back = false;  // was taken to break loose and did not
   };
-  Decision solve(const Assembly& assembly, std::span<Candidate> candidates, const double* acceleration,
-                 SolverChain& chain);
+  Decision solve(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+                 const double* acceleration, SolverChain& chain);
   bool revise(std::span<Candidate> candidates);
   void name_culprit(std::span<Candidate> candidates);
   bool keep_present(std::span<Candidate> candidates);

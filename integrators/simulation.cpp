@@ -1,3 +1,4 @@
+#include <carom/core/joint_closure.h>
 #include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/event_driver.h>
@@ -64,6 +65,7 @@ struct Simulation::Impl {
   Impl(System system, Mode chosen)
       : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
     state = model->assembly.initial_state();
+    report.projected = close_joints(model->assembly, state).shift;
     forget_history();
     companion.ledger.open(stored_energies(model->assembly, state));
   }
@@ -284,6 +286,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
     std::copy_n(self.state.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
     std::copy_n(self.state.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
   }
+  self.report.projected = close_joints(edited->assembly, state).shift;
   self.model = std::move(edited);
   self.state = std::move(state);
   // What stuck goes on sticking: velocities have not changed.
@@ -299,6 +302,8 @@ void Simulation::set_state(const State& state) {
   if (state.layout() != self.state.layout() || state.z.size() != self.state.z.size()) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
   }
+  State closed = state;
+  const double closed_shift = close_joints(self.model->assembly, closed).shift;
   const bool moved_in_time = state.time != self.state.time;
   if (moved_in_time) {
     for (Rhythm& rhythm : self.companion.rhythms) {
@@ -307,7 +312,8 @@ void Simulation::set_state(const State& state) {
       rhythm.fired = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
     }
   }
-  self.state = state;
+  self.report.projected = closed_shift;
+  self.state = std::move(closed);
   if (moved_in_time) self.restart_grid();
   self.forget_history();
   self.book_intervention();
@@ -326,6 +332,8 @@ void Simulation::switch_to(Mode mode) {
   self.companion.next_step = 0.0;
   self.restart_grid();
 }
+
+Mobility Simulation::mobility() const { return carom::mobility(impl_->model->assembly, impl_->state); }
 
 const System& Simulation::system() const { return impl_->model->assembly.system(); }
 const Assembly& Simulation::assembly() const { return impl_->model->assembly; }

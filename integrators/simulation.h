@@ -5,6 +5,7 @@
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/joint_closure.h>
 #include <carom/core/log.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
@@ -32,8 +33,9 @@ public:
   using Observer = std::function<void(const Simulation&)>;
   using Action = std::function<void(Simulation&)>;
 
-  /// Assembles `system`, with its described positions and velocities, at time 0.
-  /// Throws ModelError for a model or options that cannot be.
+  /// Assembles `system`, with its described positions and velocities, at time 0. Where these do not obey the
+  /// joints they are corrected (joint_closure.h); report().projected tells the largest displacement. Throws
+  /// ModelError for a model or options that cannot be.
   Simulation(System system, Mode mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -55,8 +57,9 @@ public:
   /// Changes a copy of the model, assembles it and maps the state by identity; new bodies start as described.
   /// An error changes nothing. Energy brought in or taken out is booked as `intervention`.
   void edit(const std::function<void(System&)>& change);
-  /// Replaces the state (time included). Throws ModelError naming the body for numbers that are not finite.
-  /// Energy brought in or taken out is booked as `intervention`.
+  /// Replaces the state (time included); positions and velocities are corrected to obey the joints. Throws
+  /// ModelError naming the body for numbers that are not finite. Energy brought in or taken out is booked as
+  /// `intervention`.
   void set_state(const State& state);
   /// Goes on in another mode, or with other options, from the same state. From time stepping to the
   /// event-driven mode, bodies may have sunk into obstacles: contacts that approach there are resolved by an
@@ -64,6 +67,9 @@ public:
   /// are booked as `mode_switch`, the largest displacement is told by report().projected. Throws as the
   /// constructor, and SolverError where bodies cannot be moved out; the mode then stays as it is.
   void switch_to(Mode mode);
+
+  /// Counts the degrees of freedom that joints leave at the present state, and names redundant joints.
+  [[nodiscard]] Mobility mobility() const;
 
   [[nodiscard]] const System& system() const;          ///< the model
   [[nodiscard]] const Assembly& assembly() const;      ///< the model, made ready to run

@@ -1,0 +1,174 @@
+#include <carom/core/island_joints.h>
+#include <carom/core/joint_closure.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// Gaps and velocities this small against the coordinates and velocities are rounding of a few terms.
+constexpr double rounding = 16.0 * epsilon;
+
+// What may be left where steps shrink no more: rounding of a poor matrix.
+constexpr double accepted = 1e-11;
+
+// Newton's method from a start that is roughly right; more steps than this do not come to an end.
+constexpr int most_steps = 60;
+
+double largest(const std::vector<double>& numbers, Range range, double least) {
+  double size = least;
+  for (Index i = range.begin; i < range.end; ++i) size = std::max(size, std::abs(numbers[i]));
+  return size;
+}
+
+/// Joints whose rows take part in the dependence of one row on others.
+std::vector<JointId> partners(const IslandJoints& joints, std::size_t row, std::span<const double> vector) {
+  // Against the row itself; the rest is what shift and rounding leave.
+  constexpr double takes_part = 1e-6;
+  std::vector<JointId> found;
+  for (std::size_t i = 0; i < vector.size(); ++i) {
+    const JointId joint = joints.joint(i);
+    if (joint == joints.joint(row) || std::abs(vector[i]) <= takes_part * std::abs(vector[row])) continue;
+    if (std::find(found.begin(), found.end(), joint) == found.end()) found.push_back(joint);
+  }
+  return found;
+}
+
+std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
+  std::vector<double> vector;
+  joints.factors().dependence(row, vector);
+  return partners(joints, row, vector);
+}
+
+[[noreturn]] void refuse(const Assembly& assembly, IslandJoints& joints, std::size_t row, double off,
+                         const char* what, const char* unit) {
+  const System& system = assembly.system();
+  const JointId joint = joints.joint(row);
+  std::string message = system.name(joint) + ": " + what + ", it is off by " + to_text(off) + " " + unit;
+  bool first = true;
+  if (joints.factors().pivot(row) < dependent_pivot) {
+    for (const JointId other : partners(joints, row)) {
+      message += (first ? "; contradicted by " : ", ") + system.name(other);
+      first = false;
+    }
+  }
+  message += "; allowed: joints that can be closed together";
+  throw ModelError(message);
+}
+
+/// The row that is furthest off.
+template <class F>
+std::size_t worst_row(const IslandJoints& joints, F&& off) {
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < joints.size(); ++i) {
+    if (!(std::abs(off(joints.rows()[i])) <= std::abs(off(joints.rows()[worst])))) worst = i;
+  }
+  return worst;
+}
+
+void close_island(const Assembly& assembly, Index island, const std::vector<double>& lengths, State& state,
+                  JointClosure& closure) {
+  IslandJoints joints(assembly, island);
+  if (joints.empty()) return;
+  const Island& range = assembly.islands()[island];
+  const Layout& layout = *assembly.layout();
+  for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
+    const BodySlot slot = layout.bodies()[body];
+    if (assembly.system().keeps_place(layout.id(body))) joints.hold_still({slot.v, slot.v + slot.v_size});
+  }
+  Evaluation evaluation = make_evaluation(assembly);
+  const auto locate = [&] {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    joints.locate({state.view(), evaluation.rotation.data()});
+  };
+  const auto gap = [](const JointRow& row) { return row.gap; };
+  const std::vector<double> start = state.q;
+  std::vector<double> change(state.v.size(), 0.0), moved(state.q.size(), 0.0);
+  double best = std::numeric_limits<double>::infinity();
+  for (int step = 0;; ++step) {
+    locate();
+    const std::size_t worst = worst_row(joints, gap);
+    const double left = std::abs(joints.rows()[worst].gap), size = largest(state.q, range.q, 1.0);
+    if (left <= rounding * size) break;
+    const bool stalls = !(left < 0.5 * best) && left <= accepted * size;
+    if (stalls) break;
+    if (step == most_steps || !std::isfinite(left)) {
+      refuse(assembly, joints, worst, joints.rows()[worst].gap, "cannot be closed", "m or rad");
+    }
+    best = std::min(best, left);
+    std::fill(change.begin() + range.v.begin, change.begin() + range.v.end, 0.0);
+    joints.hold(JointLevel::displacement, change.data());
+    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+      kind.advance(slots, state.q.data() + q, change.data() + v, moved.data() + q);
+    });
+    std::copy(moved.begin() + range.q.begin, moved.begin() + range.q.end, state.q.begin() + range.q.begin);
+  }
+  // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
+  for (const BodySlot& slot : layout.bodies()) {
+    if (slot.v < range.v.begin || slot.v >= range.v.end) continue;
+    for (Index i = 0; i < std::min(slot.q_size, slot.v_size); ++i) {
+      closure.shift =
+          std::max(closure.shift, std::abs(state.q[slot.q + i] - start[slot.q + i]) * lengths[slot.v + i]);
+    }
+  }
+
+  const auto off = [&](const JointRow& row) {
+    return IslandJoints::residual(JointLevel::velocity, row, state.v.data());
+  };
+  double speed = largest(state.v, range.v, 0.0);
+  for (const JointRow& row : joints.rows()) speed = std::max(speed, std::abs(row.rate));
+  if (std::abs(off(joints.rows()[worst_row(joints, off)])) <= rounding * speed) return;
+  const std::vector<double> before = state.v;
+  joints.hold(JointLevel::velocity, state.v.data());
+  joints.hold(JointLevel::velocity, state.v.data());  // what rounding left
+  const std::size_t worst = worst_row(joints, off);
+  const double left = off(joints.rows()[worst]);
+  if (!(std::abs(left) <= 1e-9 * std::max(speed, 1.0))) {
+    refuse(assembly, joints, worst, left, "cannot be kept closed", "m/s or rad/s");
+  }
+  for (Index i = range.v.begin; i < range.v.end; ++i) {
+    closure.change = std::max(closure.change, std::abs(state.v[i] - before[i]) * lengths[i]);
+  }
+}
+
+}  // namespace
+
+JointClosure close_joints(const Assembly& assembly, State& state) {
+  JointClosure closure;
+  if (assembly.joint_kinds().empty()) return closure;
+  const std::vector<double> lengths = assembly.length_scales();
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    close_island(assembly, island, lengths, state, closure);
+  }
+  return closure;
+}
+
+Mobility mobility(const Assembly& assembly, const State& state) {
+  Mobility result;
+  result.velocities = assembly.layout()->v_size();
+  Evaluation evaluation = make_evaluation(assembly);
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    IslandJoints joints(assembly, island);
+    if (joints.empty()) continue;
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    joints.locate({state.view(), evaluation.rotation.data()});
+    result.rows += static_cast<Index>(joints.size());
+    for (std::size_t row = 0; row < joints.size(); ++row) {
+      if (joints.factors().pivot(row) >= dependent_pivot) {
+        ++result.independent_rows;
+        continue;
+      }
+      result.redundant.push_back({joints.joint(row), partners(joints, row)});
+    }
+  }
+  result.degrees_of_freedom = result.velocities - result.independent_rows;
+  return result;
+}
+
+}  // namespace carom
