@@ -63,34 +63,30 @@ void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::s
   if (bound) full_.resize(assembly.layout()->v_size());
   for (std::size_t j = 0; j < count; ++j) {
     const ClosedContact& contact = contacts_[rows_[j].contact];
-    std::array<double, static_cast<std::size_t>(Contact::max_columns)> column{};
-    const double* const row = contact.at.row(rows_[j].tangent ? 1 : 0);
+    const int row = rows_[j].tangent ? 1 : 0;
     const double ratio = rows_[j].tangent || !rubbing ? 0.0 : -contact.slip_sign() * contact.friction;
-    for (int k = 0; k < contact.at.columns; ++k) {
-      column[static_cast<std::size_t>(k)] = row[k];
-      if (ratio != 0.0) column[static_cast<std::size_t>(k)] += ratio * contact.at.row(1)[k];
-    }
     double* const response = response_.data() + j * stride;
-    if (!bound) {
-      kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response);
+    if (bound) {
+      std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
+      contact.at.add_transposed(row, 1.0, full_.data());
+      if (ratio != 0.0) contact.at.add_transposed(1, ratio, full_.data());
+      joints_->respond(full_.data());
+      std::copy(full_.begin() + span_.begin, full_.begin() + span_.end, response);
       continue;
     }
-    std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
+    std::array<double, static_cast<std::size_t>(Contact::max_columns)> column{};
     for (int k = 0; k < contact.at.columns; ++k) {
-      full_[contact.at.v + static_cast<Index>(k)] = column[static_cast<std::size_t>(k)];
+      column[static_cast<std::size_t>(k)] = contact.at.row(row)[k];
+      if (ratio != 0.0) column[static_cast<std::size_t>(k)] += ratio * contact.at.row(1)[k];
     }
-    joints_->respond(full_.data());
-    std::copy(full_.begin() + span_.begin, full_.begin() + span_.end, response);
+    kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Contact& at = contacts_[rows_[i].contact].at;
-    const double* const row = at.row(rows_[i].tangent ? 1 : 0);
-    const std::size_t place = at.v - span_.begin;
     for (std::size_t j = 0; j < count; ++j) {
-      const double* const response = response_.data() + j * stride + place;
-      double sum = 0.0;
-      for (int k = 0; k < at.columns; ++k) sum += row[k] * response[k];
-      matrix_[i * count + j] = sum;
+      // Contacts count velocities from the first of all.
+      matrix_[i * count + j] =
+          at.times(rows_[i].tangent ? 1 : 0, response_.data() + j * stride - span_.begin);
     }
   }
 }

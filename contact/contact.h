@@ -16,7 +16,7 @@ namespace carom {
 /// One feature of something that can touch.
 struct FeatureKey {
   /// What the feature belongs to.
-  enum class Owner : std::uint8_t { body, shape, obstacle };
+  enum class Owner : std::uint8_t { body, shape, obstacle, joint };
 
   Owner owner = Owner::body;
   Index serial = none;  ///< serial number of the owner
@@ -24,31 +24,35 @@ struct FeatureKey {
   friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
 };
 
-/// Identity of a contact: it keys reports, modes and warm starts and survives edits and checkpoints.
+/// Identity of a contact, or of a stop of a joint (then both features are the stop's): it keys reports, modes
+/// and warm starts and survives edits and checkpoints.
 struct ContactKey {
   FeatureKey of;       ///< feature of the body or shape
   FeatureKey against;  ///< feature of the obstacle
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// A contact of a body with an obstacle, at one configuration. Row 0 is the normal direction (from the
-/// obstacle into free space), the others are tangential (in the plane: the normal turned clockwise).
+/// A contact of a body with an obstacle, or a stop of a joint between two bodies, at one configuration. Row 0
+/// is the normal direction (from the obstacle into free space), the others are tangential (in the plane: the
+/// normal turned clockwise).
 struct Contact {
   static constexpr int max_rows = 3;
   static constexpr int max_columns = 6;
 
   ContactKey key;
-  Index body = none;  ///< in the order of assembly
-  Index v = 0;        ///< first velocity of the body
-  int columns = 0;    ///< velocities of the body
-  int rows = 0;       ///< 2 in the plane, 3 in space
-  double gap = 0.0;   ///< negative where violated [m]
-  Surface law;        ///< coefficients
+  Index body = none;      ///< in the order of assembly
+  Index v = 0;            ///< first velocity of the body
+  int columns = 0;        ///< velocities of the body
+  Index other_v = 0;      ///< of a stop: first velocity of the second body
+  int other_columns = 0;  ///< its velocities; 0 where there is no second body
+  int rows = 0;           ///< 2 in the plane, 3 in space, 1 of a stop
+  double gap = 0.0;       ///< negative where violated [m]
+  Surface law;            ///< coefficients
   /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
   /// law.sticking_friction() where it stuck in the step before.
   double friction = 0.0;
   std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
-      jacobian{};  ///< row-major, stride max_columns
+      jacobian{};  ///< row-major, stride max_columns, the second body's columns behind those of the first
   std::array<double, static_cast<std::size_t>(max_rows)>
       obstacle_velocity{};  ///< of the obstacle where it is touched, along the rows [m/s]
   std::array<double, static_cast<std::size_t>(max_rows)>
@@ -64,7 +68,17 @@ struct Contact {
   [[nodiscard]] double times(int i, const double* numbers) const {
     double sum = 0.0;
     for (int c = 0; c < columns; ++c) sum += row(i)[c] * numbers[v + static_cast<Index>(c)];
+    for (int c = 0; c < other_columns; ++c) {
+      sum += row(i)[columns + c] * numbers[other_v + static_cast<Index>(c)];
+    }
     return sum;
+  }
+  /// Adds row i, transposed, times a number. \param out an array over all velocities
+  void add_transposed(int i, double factor, double* out) const {
+    for (int c = 0; c < columns; ++c) out[v + static_cast<Index>(c)] += factor * row(i)[c];
+    for (int c = 0; c < other_columns; ++c) {
+      out[other_v + static_cast<Index>(c)] += factor * row(i)[columns + c];
+    }
   }
   /// Contact velocity along row i: of the body against the obstacle. \param velocities of all bodies
   [[nodiscard]] double velocity(int i, const double* velocities) const {

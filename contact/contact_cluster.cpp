@@ -114,9 +114,8 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     for (int i = 0; i < contacts_[c].rows; ++i) {
       double* const response = coupled_.data() + static_cast<std::size_t>(first_row_[c] + i) * v.size();
-      for (int k = 0; k < contacts_[c].columns; ++k) {
-        response[contacts_[c].v - v.begin + static_cast<Index>(k)] = contacts_[c].row(i)[k];
-      }
+      // Contacts count velocities from the first of all.
+      contacts_[c].add_transposed(i, 1.0, response - v.begin);
       solve(response);
     }
   }
@@ -125,11 +124,7 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
       const int row = first_row_[c] + i;
       for (int column = 0; column <= row; ++column) {
         const double* const response = coupled_.data() + static_cast<std::size_t>(column) * v.size();
-        double sum = 0.0;
-        for (int k = 0; k < contacts_[c].columns; ++k) {
-          sum += contacts_[c].row(i)[k] * response[contacts_[c].v - v.begin + static_cast<Index>(k)];
-        }
-        problem_.w(row, column) = problem_.w(column, row) = sum;
+        problem_.w(row, column) = problem_.w(column, row) = contacts_[c].times(i, response - v.begin);
       }
     }
   }
@@ -148,10 +143,7 @@ void ContactCluster::apply_coupled(double* velocity) const {
 void ContactCluster::add_loads(double scale, double* load) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     for (int i = 0; i < contacts_[c].rows; ++i) {
-      const double impulse = scale * impulse_[static_cast<std::size_t>(first_row_[c] + i)];
-      for (int k = 0; k < contacts_[c].columns; ++k) {
-        load[contacts_[c].v + static_cast<Index>(k)] += impulse * contacts_[c].row(i)[k];
-      }
+      contacts_[c].add_transposed(i, scale * impulse_[static_cast<std::size_t>(first_row_[c] + i)], load);
     }
   }
 }

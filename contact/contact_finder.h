@@ -16,12 +16,13 @@
 
 namespace carom {
 
-/// A feature of a body and an obstacle, wherever they stand.
+/// A feature of a body and an obstacle, wherever they stand; or a stop of a joint.
 struct ContactPair {
   Index body = none;      ///< in the order of assembly
   Index feature = none;   ///< of the finder; `none` where the body touches at its centre
   Index material = none;  ///< row of the finder's table of laws
-  Index obstacle = none;  ///< of the finder
+  Index obstacle = none;  ///< of the finder; `none` of a stop
+  Index stop = none;      ///< of the finder; `none` of an obstacle
   friend bool operator==(const ContactPair&, const ContactPair&) = default;
 };
 
@@ -75,7 +76,9 @@ public:
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
 
   /// True if the obstacle of a pair moves.
-  [[nodiscard]] bool moves(const ContactPair& pair) const { return obstacles_[pair.obstacle].moving != none; }
+  [[nodiscard]] bool moves(const ContactPair& pair) const {
+    return pair.stop == none && obstacles_[pair.obstacle].moving != none;
+  }
 
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
@@ -99,7 +102,14 @@ private:
   };
   // What touches in one island: ranges of centres_ and features_.
   struct Touching {
-    Range centres, features;
+    Range centres, features, stops;
+  };
+  // A unilateral row of a joint.
+  struct Stop {
+    const JointKind* kind;
+    Index slot, which;
+    Index serial;
+    Index body;  // one of those it binds
   };
   struct Obstacle {
     const ObstacleKind* kind;
@@ -121,6 +131,9 @@ private:
   [[nodiscard]] Index row_of(MaterialId material);
   void collect_centres();
   void make_law_table();
+  void collect_stops();
+  // Writes the contact of a stop.
+  void make_stop(const Stop& stop, const StateView& state, const Evaluation& evaluation, Contact& out) const;
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
   [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
@@ -147,6 +160,7 @@ private:
   Index moving_ = 0;               // obstacles that move
   std::vector<Centres> centres_;   // ordered by body
   std::vector<Feature> features_;  // ordered by body
+  std::vector<Stop> stops_;        // by island
   std::vector<Touching> of_island_;
   std::vector<MaterialId> materials_;  // rows of the law table
   std::vector<Surface> laws_;          // row-major: material, obstacle

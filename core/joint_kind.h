@@ -62,6 +62,12 @@ struct JointRow {
   }
 };
 
+/// A unilateral row of a joint: gap >= 0, impulses that open it.
+struct JointLimit {
+  JointRow row;              ///< the gap and its derivatives
+  double restitution = 0.0;  ///< coefficient of restitution
+};
+
 /// What a joint does to its body `to`; to `from` it does the opposite, at the same place.
 struct JointReaction {
   std::array<double, 3> force{};  ///< on `to`, at its end, in the fixed frame [N], or impulse [N s]
@@ -107,6 +113,14 @@ public:
   virtual void coordinate(const JointView& /*at*/, Index /*joint*/, JointRow& /*out*/) const {}
   /// Writes which velocities the coordinate's row has blocks for.
   virtual void coordinate_pattern(Index /*joint*/, JointRow& /*out*/) const {}
+  /// Unilateral rows (stops) of each joint, beside rows().
+  [[nodiscard]] virtual Index limits() const { return 0; }
+  /// True if a joint has the unilateral row at that place.
+  [[nodiscard]] virtual bool has_limit(Index /*joint*/, Index /*which*/) const { return false; }
+  /// Writes a unilateral row.
+  virtual void limit(const JointView& /*at*/, Index /*joint*/, Index /*which*/, JointLimit& /*out*/) const {}
+  /// Name of a unilateral row in messages, e.g. "upper".
+  [[nodiscard]] virtual std::string_view limit_label(Index /*which*/) const { return {}; }
   /// What the multipliers of a joint's rows do to its body `to`.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;

@@ -135,7 +135,7 @@ void get(Reader& in, FeatureKey& key) {
   in.get(owner);
   in.get(serial);
   in.get(feature);
-  if (owner > 2) in.damaged("a contact has an unknown owner");
+  if (owner > 3) in.damaged("a contact has an unknown owner");
   key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
 }
 

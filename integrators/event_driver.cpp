@@ -115,7 +115,8 @@ void EventDriver::report_contacts(const DriverNews& news, StepReport& report) co
     entry.key = event.contact;
     entry.body = event.body;
     entry.obstacle = event.obstacle;
-    entry.directions = assembly_->layout()->dimension();
+    const bool stop = event.contact.of.owner == FeatureKey::Owner::joint;
+    entry.directions = stop ? 1 : assembly_->layout()->dimension();
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;

@@ -220,7 +220,9 @@ EventRecord& IslandDriver::tell(EventKind kind, const Contact& contact, DriverNe
   if (contact.body == none) return event;
   event.contact = contact.key;
   event.body = assembly_->layout()->id(contact.body);
-  event.obstacle = {contact.key.against.serial, assembly_->system().token()};
+  if (contact.key.against.owner == FeatureKey::Owner::obstacle) {
+    event.obstacle = {contact.key.against.serial, assembly_->system().token()};
+  }
   return event;
 }
 

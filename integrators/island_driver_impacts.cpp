@@ -120,7 +120,7 @@ void IslandDriver::close_captured(DriverNews& news) {
   for (const Contact& contact : work_->touching) {
     if (contact.velocity(0, velocity) > options_.capture_speed) continue;
     ClosedContact& closed = list.emplace_back();
-    const bool stops = contact.sliding_speed(velocity) <= rounding;
+    const bool stops = contact.rows > 1 && contact.sliding_speed(velocity) <= rounding;
     closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
     closed.at = contact;
   }
@@ -202,7 +202,7 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   restitution.reserve(2 * touching.size());
   for (const Contact& contact : touching) {
     restitution.push_back(contact.law.normal_restitution);
-    restitution.push_back(contact.law.tangential_restitution);
+    if (contact.rows > 1) restitution.push_back(contact.law.tangential_restitution);
   }
   std::size_t best = solutions_.size();
   double most = -std::numeric_limits<double>::infinity();

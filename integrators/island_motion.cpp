@@ -214,10 +214,8 @@ std::span<const double> IslandMotion::joint_multipliers() {
   const Range v = assembly_->islands()[island_].v;
   std::copy(work.momentum.begin() + v.begin, work.momentum.begin() + v.end, answer.begin() + v.begin);
   for (const ClosedContact& contact : closed_.list()) {
-    for (int k = 0; k < contact.at.columns; ++k) {
-      answer[contact.at.v + static_cast<Index>(k)] +=
-          contact.normal * contact.at.row(0)[k] + contact.tangential * contact.at.row(1)[k];
-    }
+    contact.at.add_transposed(0, contact.normal, answer.data());
+    contact.at.add_transposed(1, contact.tangential, answer.data());
   }
   assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
     kind.apply_inverse_mass(slots, answer.data() + at, answer.data() + at);

@@ -67,7 +67,7 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
   motion.couple(cluster_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
-    if (sign != 0.0) cluster_.slide(c, -sign * contacts_[c].friction);
+    if (sign != 0.0 && contacts_[c].rows > 1) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
   const ContactReport& report = cluster_.solve(chain);
@@ -136,7 +136,8 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
     const std::size_t i = taking_part_[c];
     const int row = cluster_.first_row(c);
     const double ratio = -slides_[i].sign * contacts_[c].friction;
-    candidates[i].stiffness = problem.w(row, row) + ratio * problem.w(row, row + 1);
+    candidates[i].stiffness = problem.w(row, row);
+    if (contacts_[c].rows > 1) candidates[i].stiffness += ratio * problem.w(row, row + 1);
     candidates[i].free_acceleration = problem.vector()[static_cast<std::size_t>(row)];
   }
 }

@@ -127,7 +127,9 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
   ContactRecord& entry = report_.contacts.emplace_back();
   entry.key = at.key;
   entry.body = assembly_->layout()->id(at.body);
-  entry.obstacle = {at.key.against.serial, assembly_->system().token()};
+  if (at.key.against.owner == FeatureKey::Owner::obstacle) {
+    entry.obstacle = {at.key.against.serial, assembly_->system().token()};
+  }
   entry.directions = at.rows;
   entry.gap = at.gap;
   for (int row = 0; row < at.rows; ++row) {

@@ -3,6 +3,7 @@
 #include <carom/joints/driver.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -155,6 +156,63 @@ void MotorKind::fingerprint(Fingerprint& print) const {
   for (const Part& part : parts_) {
     print.add(std::uint64_t{part.motor.joint.serial});
     if (!part.motor.breaks.empty()) print.add(part.motor.breaks);
+  }
+}
+
+void StopKind::add(const Stop& part, const PartCheck& check) {
+  check_coordinate(check, part.joint);
+  const auto bound = [&](double value, const char* quantity, double none_given) {
+    if (value != none_given) check.finite(value, quantity, "");
+  };
+  bound(part.lower, "lower", -std::numeric_limits<double>::infinity());
+  bound(part.upper, "upper", std::numeric_limits<double>::infinity());
+  if (std::isinf(part.lower) && std::isinf(part.upper)) {
+    check.refuse("lower and upper", "not given", "a limit on one side or on both");
+  }
+  if (!(part.lower < part.upper)) {
+    check.refuse("lower", to_text(part.lower), "less than upper, " + to_text(part.upper));
+  }
+  check.between(part.restitution, 0.0, 1.0, "restitution");
+  parts_.push_back({part, ends_of(check.system(), part.joint)});
+}
+
+std::unique_ptr<JointKind> StopKind::clone() const { return std::make_unique<StopKind>(*this); }
+
+std::unique_ptr<JointKind> StopKind::arranged(std::span<const Index> order, const Layout& layout) const {
+  auto copy = std::make_unique<StopKind>();
+  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+  copy->layout_ = &layout;
+  return copy;
+}
+
+void StopKind::ends(Index joint, std::vector<BodyId>& out) const {
+  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+}
+
+bool StopKind::has_limit(Index joint, Index which) const {
+  return std::isfinite(which == 0 ? parts_[joint].stop.lower : parts_[joint].stop.upper);
+}
+
+void StopKind::limit(const JointView& at, Index joint, Index which, JointLimit& out) const {
+  const Stop& stop = parts_[joint].stop;
+  out.row = coordinate_row(*layout_, stop.joint, at);
+  out.restitution = stop.restitution;
+  if (which == 0) {
+    out.row.gap -= stop.lower;
+    return;
+  }
+  out.row.gap = stop.upper - out.row.gap;
+  out.row.rate = -out.row.rate;
+  out.row.drift = -out.row.drift;
+  for (JointRow::Block& block : out.row.blocks) {
+    for (double& number : block.jacobian) number = -number;
+  }
+}
+
+void StopKind::fingerprint(Fingerprint& print) const {
+  for (const Part& part : parts_) {
+    print.add(std::uint64_t{part.stop.joint.serial});
+    for (const double number : {part.stop.lower, part.stop.upper, part.stop.restitution}) print.add(number);
   }
 }
 

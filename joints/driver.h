@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What acts on the coordinate of a joint: drivers prescribe it, motors push along it.
+/// What acts on the coordinate of a joint: drivers prescribe it, motors push along it, stops
+/// limit it.
 
 #include <carom/core/force_kind.h>
 #include <carom/core/joint_kind.h>
@@ -10,6 +11,7 @@
 #include <carom/joints/actuator.h>
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +20,7 @@ namespace carom {
 
 class DriverKind;
 class MotorKind;
+class StopKind;
 
 /// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
 CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
@@ -117,13 +120,67 @@ private:
   const Layout* layout_ = nullptr;  // of an arranged kind
 };
 
+/// Limits of the coordinate of a joint, lower <= x <= upper: unilateral, with a coefficient of restitution,
+/// in both modes. An impulse or force of a stop is that along the coordinate, positive where it opens the
+/// gap.
+struct Stop {
+  static constexpr Role role = Role::joint;
+  using Kind = StopKind;
+
+  JointId joint{};                                          ///< whose coordinate (required)
+  double lower = -std::numeric_limits<double>::infinity();  ///< [rad, m]; one of the two is required
+  double upper = std::numeric_limits<double>::infinity();   ///< [rad, m]
+  double restitution = 0.0;                                 ///< e in [0, 1]
+};
+
+/// All stops of a system.
+class CAROM_API StopKind final : public JointKind {
+public:
+  static constexpr int part_dimension() { return 0; }
+  static constexpr std::string_view part_label() { return "stop"; }
+
+  /// Checks and stores a stop. Throws ModelError.
+  void add(const Stop& part, const PartCheck& check);
+
+  [[nodiscard]] std::unique_ptr<JointKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
+                                                    const Layout& layout) const override;
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] std::string_view label() const override { return part_label(); }
+  [[nodiscard]] int dimension() const override { return 0; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] Index rows() const override { return 0; }
+  void ends(Index joint, std::vector<BodyId>& out) const override;
+  [[nodiscard]] JointId on_joint(Index joint) const override { return parts_[joint].stop.joint; }
+  void pattern(Index, JointRow*) const override {}
+  void evaluate(const JointView&, Index, JointRow*) const override {}
+  [[nodiscard]] Index limits() const override { return 2; }
+  [[nodiscard]] bool has_limit(Index joint, Index which) const override;
+  void limit(const JointView& at, Index joint, Index which, JointLimit& out) const override;
+  [[nodiscard]] std::string_view limit_label(Index which) const override {
+    return which == 0 ? "lower" : "upper";
+  }
+  [[nodiscard]] JointReaction reaction(const JointView&, Index, const double*) const override { return {}; }
+  void fingerprint(Fingerprint& print) const override;
+
+private:
+  struct Part {
+    Stop stop;
+    std::vector<BodyId> ends;
+  };
+  std::vector<Part> parts_;
+  const Layout* layout_ = nullptr;  // of an arranged kind
+};
+
 namespace planar {
 using carom::Driver;
 using carom::Motor;
+using carom::Stop;
 }  // namespace planar
 namespace spatial {
 using carom::Driver;
 using carom::Motor;
+using carom::Stop;
 }  // namespace spatial
 
 }  // namespace carom
