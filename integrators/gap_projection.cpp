@@ -41,7 +41,7 @@ void GapProjection::find(Index island, const ContactFinder& finder, const Obstac
 GapProjection::Result GapProjection::project(const Assembly& assembly, Index island,
                                              const ContactFinder& finder, const ObstaclePlaces& places,
                                              std::span<const Contact> taking_part, SolverChain& chain,
-                                             State& state, Evaluation& evaluation) {
+                                             State& state, Evaluation& evaluation, IslandJoints& joints) {
   // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
   constexpr int most_passes = 20;
   const double depth = rounding_depth(assembly, island, state);
@@ -53,17 +53,24 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
     find(island, finder, places, taking_part, 2.0 * result.shift, state, evaluation);
+    // Bodies that joints bind come last, and together.
+    const auto owner = [&](const Contact& contact) {
+      return assembly.is_bound(contact.body) ? none : contact.body;
+    };
+    std::stable_sort(contacts_.begin(), contacts_.end(),
+                     [&](const Contact& a, const Contact& b) { return owner(a) < owner(b); });
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;
     for (std::size_t first = 0; first < contacts_.size();) {
       std::size_t last = first + 1;
-      while (last < contacts_.size() && contacts_[last].body == contacts_[first].body) ++last;
+      while (last < contacts_.size() && owner(contacts_[last]) == owner(contacts_[first])) ++last;
       const std::span<const Contact> of_body(contacts_.data() + first, last - first);
-      const BodySlot& body = assembly.layout()->bodies()[of_body.front().body];
-      const bool moved =
-          std::any_of(displacement_.begin() + body.v, displacement_.begin() + body.v + body.v_size,
-                      [](double number) { return number != 0.0; });
+      const BodySlot body = assembly.layout()->bodies()[of_body.front().body];
+      const bool bound = assembly.is_bound(of_body.front().body);
+      const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
+      const bool moved = std::any_of(displacement_.begin() + own.begin, displacement_.begin() + own.end,
+                                     [](double number) { return number != 0.0; });
       for (const Contact& contact : of_body) {
         if (-contact.gap <= worst) continue;
         worst = -contact.gap;
@@ -73,7 +80,12 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
                                     [&](const Contact& at) { return at.gap < -2.0 * depth; });
       const bool open = moved && std::all_of(of_body.begin(), of_body.end(),
                                              [](const Contact& at) { return at.gap > 0.0; });
-      if (deep || open) improved = move_body(assembly, of_body, chain, state, depth) || improved;
+      if (deep || open) {
+        const bool better =
+            bound ? move_bound(assembly, island, of_body, chain, state, evaluation, depth, joints)
+                  : move_body(assembly, of_body, chain, state, depth);
+        improved = better || improved;
+      }
       first = last;
     }
     if (!improved) return result;
@@ -122,6 +134,55 @@ bool GapProjection::move_body(const Assembly& assembly, std::span<const Contact>
   moved_.assign(body.q_size, 0.0);
   kind.advance({body.slot, body.slot + 1}, unmoved_.data() + body.q, displacement, moved_.data());
   std::copy(moved_.begin(), moved_.end(), state.q.begin() + body.q);
+  return true;
+}
+
+bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span<const Contact> contacts,
+                               SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
+                               IslandJoints& joints) {
+  const std::size_t size = state.v.size();
+  const auto rows = static_cast<int>(contacts.size());
+  joints.locate({state.view(), evaluation.rotation.data()});
+  of_joints_.resize(joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    of_joints_[i] = joints.rows()[i].gap - joints.rows()[i].times(displacement_.data());
+  }
+  joints.solve(of_joints_.data());
+  towards_.assign(size, 0.0);
+  joints.add_response(of_joints_.data(), towards_.data());
+  problem_.reset(rows);
+  response_.assign(contacts.size() * size, 0.0);
+  multipliers_.assign(contacts.size(), 0.0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    double* const response = response_.data() + i * size;
+    contacts[i].add_transposed(0, 1.0, response);
+    joints.respond(response);
+    problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data()) +
+                           contacts[i].times(0, towards_.data());
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      problem_.w(i, j) = contacts[static_cast<std::size_t>(i)].times(
+          0, response_.data() + static_cast<std::size_t>(j) * size);
+    }
+  }
+  problem_.group();
+  if (!chain.solve(problem_, multipliers_).usable()) return false;
+  const auto& bodies = assembly.layout()->bodies();
+  const Range all = assembly.islands()[island].bodies;
+  moved_.resize(state.q.size());
+  for (Index body = all.begin; body < all.end; ++body) {
+    if (!assembly.is_bound(body)) continue;
+    const BodySlot slot = bodies[body];
+    for (Index k = slot.v; k < slot.v + slot.v_size; ++k) {
+      displacement_[k] = towards_[k];
+      for (std::size_t i = 0; i < contacts.size(); ++i)
+        displacement_[k] += response_[i * size + k] * multipliers_[i];
+    }
+    assembly.body_kinds()[slot.kind]->advance({slot.slot, slot.slot + 1}, unmoved_.data() + slot.q,
+                                              displacement_.data() + slot.v, moved_.data() + slot.q);
+    std::copy(moved_.begin() + slot.q, moved_.begin() + slot.q + slot.q_size, state.q.begin() + slot.q);
+  }
   return true;
 }
 

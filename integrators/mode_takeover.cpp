@@ -1,6 +1,8 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
 #include <carom/contact/contact_cluster.h>
+#include <carom/core/island_joints.h>
+#include <carom/core/joint_closure.h>
 #include <carom/integrators/gap_projection.h>
 #include <carom/integrators/mode_takeover.h>
 
@@ -29,6 +31,18 @@ StoredEnergies stored_energies(const Assembly& assembly, const State& state, Eva
   throw SolverError(message, std::move(failure));
 }
 
+/// Lets a problem of contacts know what joints bind the bodies.
+void couple(const Assembly& assembly, Index island, IslandJoints& joints, ContactCluster& cluster) {
+  if (joints.empty()) return;
+  const Range v = assembly.islands()[island].v;
+  std::vector<double> answer(assembly.layout()->v_size(), 0.0);
+  cluster.couple(v, [&](double* x) {
+    std::copy(x, x + v.size(), answer.begin() + v.begin);
+    joints.respond(answer.data());
+    std::copy(answer.begin() + v.begin, answer.begin() + v.end, x);
+  });
+}
+
 }  // namespace
 
 void take_over(const Assembly& assembly, const ContactFinder& finder, State& state, Companion& companion,
@@ -47,26 +61,39 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
     evaluate_positions(assembly, island, trial.view(), evaluation);
     contacts.clear();
     finder.find(island, trial.view(), evaluation, 0.0, contacts);
-    for (std::size_t first = 0; first < contacts.size();) {
+    IslandJoints joints(assembly, island);
+    joints.locate({trial.view(), evaluation.rotation.data()});
+    std::vector<Contact> in_order = contacts;  // what answers together stands together
+    const auto group = [&](const Contact& contact) { return assembly.group(contact.body); };
+    std::stable_sort(in_order.begin(), in_order.end(),
+                     [&](const Contact& a, const Contact& b) { return group(a) < group(b); });
+    for (std::size_t first = 0; first < in_order.size();) {
       std::size_t last = first + 1;
-      while (last < contacts.size() && contacts[last].body == contacts[first].body) ++last;
-      const std::span<const Contact> of_body(contacts.data() + first, last - first);
+      while (last < in_order.size() && group(in_order[last]) == group(in_order[first])) ++last;
+      const std::span<const Contact> of_body(in_order.data() + first, last - first);
       first = last;
       const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Contact& contact) {
         return contact.velocity(0, trial.v.data()) < 0.0;
       });
       if (!approaches) continue;
       cluster.build(assembly, of_body, trial.v.data());
+      couple(assembly, island, joints, cluster);
       cluster.set_free_velocity(trial.v.data());
       if (!cluster.solve(chain).usable()) fail(finder, of_body.front(), state.time, "no impact is found");
-      cluster.apply(trial.v.data());
+      if (joints.empty()) {
+        cluster.apply(trial.v.data());
+      } else {
+        cluster.apply_coupled(trial.v.data());
+      }
       for (std::size_t c = 0; c < of_body.size(); ++c) {
         EventRecord& event = told.emplace_back();
         event.time = state.time;
         event.kind = EventKind::mode_switch;
         event.contact = of_body[c].key;
         event.body = assembly.layout()->id(of_body[c].body);
-        event.obstacle = {of_body[c].key.against.serial, assembly.system().token()};
+        if (of_body[c].key.against.owner == FeatureKey::Owner::obstacle) {
+          event.obstacle = {of_body[c].key.against.serial, assembly.system().token()};
+        }
         for (int row = 0; row < of_body[c].rows; ++row) {
           const auto at = static_cast<std::size_t>(row);
           const auto place = static_cast<std::size_t>(cluster.first_row(c)) + at;
@@ -81,10 +108,12 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
       }
     }
     const GapProjection::Result result =
-        projection.project(assembly, island, finder, places, contacts, chain, trial, evaluation);
+        projection.project(assembly, island, finder, places, contacts, chain, trial, evaluation, joints);
     if (result.left != nullptr) fail(finder, *result.left, state.time, "no way is found to open the gap");
     shift = std::max(shift, result.shift);
   }
+  // Where bodies were moved their joints stand elsewhere.
+  shift = std::max(shift, close_joints(assembly, trial).shift);
   const StoredEnergies stored = stored_energies(assembly, trial, evaluation);
   EnergyFlows flows;
   flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();

@@ -72,8 +72,9 @@ void TimeStepper::project(Index island, const State& state, double step) {
   if (contacts_.empty()) return;
   const Assembly& assembly = *assembly_;
   evaluate_positions(assembly, island, trial_.view(), evaluation_);
-  const GapProjection::Result result =
-      projection_.project(assembly, island, finder_, places_after_, contacts_, chain_, trial_, evaluation_);
+  IslandJoints joints;  // islands with joints are refused
+  const GapProjection::Result result = projection_.project(assembly, island, finder_, places_after_,
+                                                           contacts_, chain_, trial_, evaluation_, joints);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
