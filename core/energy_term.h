@@ -33,7 +33,7 @@ enum class EnergyFlow : std::uint8_t {
   accumulation,              ///< thrown away where an accumulation of impacts is closed
   projection,                ///< taken out by moving bodies back onto constraints
   mode_switch,               ///< taken out when the mode of integration is changed
-  coupling_discretisation,   ///< -(change of potential energy + work of the couplings over the steps)
+  coupling_discretisation,   ///< -(change of potential energy + work of couplings and of joints' reactions)
 };
 /// Number of ways.
 inline constexpr std::size_t energy_flow_count = 14;

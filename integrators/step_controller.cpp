@@ -130,6 +130,12 @@ void StepController::merge(StepReport& report) {
   report.energy_gain += second_.energy_gain;
   report.projected = std::max(report.projected, second_.projected);
   report.contacts.insert(report.contacts.end(), second_.contacts.begin(), second_.contacts.end());
+  for (std::size_t i = 0; i < report.joint_impulses.size(); ++i) {
+    JointReaction& sum = report.joint_impulses[i].impulse;
+    const JointReaction& part = second_.joint_impulses[i].impulse;
+    for (std::size_t k = 0; k < sum.force.size(); ++k) sum.force[k] += part.force[k];
+    sum.moment += part.moment;
+  }
 }
 
 }  // namespace carom

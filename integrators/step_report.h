@@ -7,6 +7,7 @@
 #include <carom/contact/contact_solver.h>
 #include <carom/contact/solver_chain.h>
 #include <carom/core/ids.h>
+#include <carom/core/joint_kind.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/time_stepping.h>
 
@@ -35,6 +36,12 @@ struct ContactRecord {
   std::string_view solver{};                ///< solver whose answer was used
 };
 
+/// What a joint did over a step: its mean force is the impulse divided by the length of the step.
+struct JointImpulse {
+  JointId joint;          ///< identity
+  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the configuration halfway
+};
+
 /// What step control did (TimeStepping::control). The step that it made was kept as two halves, which the
 /// report's other numbers span; contacts are those of the first half, then of the second.
 struct ControlReport {
@@ -57,6 +64,8 @@ struct StepReport {
   double projected = 0.0;            ///< largest displacement by which a body was moved out of obstacles [m]
   ControlReport control;             ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
+  /// All joints, what contact asks of them included; by island, then by kind. Time stepping only.
+  std::vector<JointImpulse> joint_impulses;
 };
 
 /// Counts and extremes since the start.

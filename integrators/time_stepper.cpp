@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -50,7 +51,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   rounding_.resize(size);
   ratings_.resize(assembly.islands().size());
   rated_contraction_.assign(assembly.islands().size(), -1.0);
-  if (mean_rule() || assembly.layout()->z_size() > 0) {
+  prepare_joints();
+  if (mean_rule() || assembly.layout()->z_size() > 0 || !joints_.empty()) {
     middle_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
   }
@@ -81,6 +83,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   coupling_work_ = {};
   projected_ = 0.0;
   report_.contacts.clear();
+  report_.joint_impulses.clear();
   report_.time = end_time;
   report_.step = step;
   report_.iteration = options_.iteration;
@@ -150,14 +153,12 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   const std::vector<int>& before = companion.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool with_joints = jointed(island);
+  double violation = std::numeric_limits<double>::infinity();
+  double contraction = 0.0;
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
-    if (implicit) {
-      solve_implicit(island, state, step);
-    } else {
-      solve_contacts(island, state, companion, step);
-    }
-    sweep(island, state, companion, step);
+    sweep_all(island, state, companion, step);
     follow_iterate(island, state, step);
     const bool by_cause = judge.sweeps() + 1 >= expected;
     if (by_cause) {
@@ -166,12 +167,27 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
       evaluate_loads_together(island, state, step);
     }
     // Newton's method has its own change: that of the loads is magnified where couplings are stiff.
-    const SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step);
-    auto verdict =
-        implicit ? judge.judge(change.change, change.size) : judge.judge_ahead(change.change, change.size);
+    SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step);
+    if (with_joints) {
+      const SweepChange seen = joint_change(island, step);
+      change.take(seen.change, seen.size);
+    }
+    auto verdict = implicit || with_joints ? judge.judge(change.change, change.size)
+                                           : judge.judge_ahead(change.change, change.size);
     // Its first is that from t_j: small or not, it says nothing of the guess.
     if (implicit && judge.sweeps() == 1 && verdict == FixedPointJudge::Verdict::converged) {
       verdict = FixedPointJudge::Verdict::go_on;
+    }
+    // Sweeps beyond the tolerance, for the joints, say nothing of the contraction.
+    if (std::isinf(violation)) contraction = judge.contraction();
+    if (with_joints && verdict == FixedPointJudge::Verdict::converged) {
+      // A change below the tolerance may leave the constraints above their rounding: on while they improve.
+      constexpr double improved = 0.5;
+      const double left = joint_violation(island);
+      if (left > 1.0 && left < improved * violation && judge.sweeps() < options_.max_sweeps) {
+        verdict = FixedPointJudge::Verdict::go_on;
+      }
+      violation = left;
     }
     if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
     if (verdict == FixedPointJudge::Verdict::converged) {
@@ -183,11 +199,12 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   sweeps_[island] = judge.sweeps();
 
   book_couplings(island, state, companion, step);
+  if (with_joints) book_joints(island, state, step);
   book_contacts(state, step);
   if (options_.project_gaps) project(island, state, step);
-  rate(island, state, step, judge.contraction());
+  rate(island, state, step, contraction);
   report_.sweeps = std::max(report_.sweeps, judge.sweeps());
-  report_.contraction = std::max(report_.contraction, judge.contraction());
+  report_.contraction = std::max(report_.contraction, contraction);
 }
 
 void TimeStepper::find_contacts(Index island, const State& state) {
@@ -204,7 +221,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   const Range v = assembly_->islands()[island].v;
   response_.resize(trial_.v.size());
   std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
-  if (options_.iteration == Iteration::linearly_implicit) {
+  if (options_.iteration == Iteration::linearly_implicit || jointed(island)) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together
     return;
   }
@@ -230,6 +247,7 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
   const Range z = assembly_->islands()[island].z;
   std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
   swept_ = false;
+  if (jointed(island)) start_joints(island, state, step);
   if (options_.iteration == Iteration::anderson) anderson_.start(v.size());
 
   const double* const now = companion.loads.total.data();
@@ -274,15 +292,29 @@ void TimeStepper::solve_contacts(Index island, const State& state, const Compani
   }
 }
 
+void TimeStepper::sweep_all(Index island, const State& state, const Companion& companion, double step) {
+  if (jointed(island)) {
+    sweep_joints(island, state, companion, step);
+    return;
+  }
+  if (options_.iteration == Iteration::linearly_implicit) {
+    solve_implicit(island, state, step);
+  } else {
+    solve_contacts(island, state, companion, step);
+  }
+  sweep(island, state, companion, step);
+}
+
 void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
   swept_ = true;
   const double* const load0 = start_of_sum(companion);
+  const bool responds = clusters_in_use_ > 0 || jointed(island);
   for_blocks(island, [&](const Block& block, Index) {
     assembly_->for_bodies(
         island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
           kind.sweep(slots, step,
                      {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
-                      evaluation_.force.data() + v, clusters_in_use_ > 0 ? response_.data() + v : nullptr,
+                      evaluation_.force.data() + v, responds ? response_.data() + v : nullptr,
                       trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
         });
   });
@@ -320,16 +352,21 @@ void TimeStepper::follow_iterate(Index island, const State& state, double step) 
     if (failed.valid()) fail_internal(failed, state, step);
   }
   if (!(mean_rule() || !range.z.empty()) || !uses_middle(assembly, island)) return;
-  middle_.time = state.time + 0.5 * step;
-  for (Index i = range.v.begin; i < range.v.end; ++i) {
-    middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
-  }
-  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
-  });
-  for (Index i = range.v.begin; i < range.v.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
+  place_middle(island, state, step);
   for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
   if (loads_need_rotations_) evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+}
+
+void TimeStepper::place_middle(Index island, const State& state, double step) {
+  const Range v_range = assembly_->islands()[island].v;
+  middle_.time = state.time + 0.5 * step;
+  for (Index i = v_range.begin; i < v_range.end; ++i) {
+    middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
+  }
+  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
+  });
+  for (Index i = v_range.begin; i < v_range.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
 }
 
 void TimeStepper::evaluate_loads_together(Index island, const State& state, double step) {

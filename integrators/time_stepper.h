@@ -13,6 +13,15 @@
 ///
 /// Under the rule `energy_momentum` the mean (F_j + F_{j+1})/2 is replaced by the elements' own mean loads of
 /// the step, which are guessed and repeated in the same way.
+///
+/// Bodies with joints (docs/method.md, section 8): with the rows G of the joints, Gm halfway and G1 at the
+/// end,
+///
+///                v_{j+1} = v_free + M^-1 Gm^T L + K H^T P,   K = M^-1 - M^-1 Gm^T (Gm M^-1 Gm^T)^-1 Gm M^-1
+///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
+///
+/// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
+/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0.
 
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
@@ -20,6 +29,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/core/island_joints.h>
 #include <carom/integrators/anderson.h>
 #include <carom/integrators/companion.h>
 #include <carom/integrators/coupling_rating.h>
@@ -41,7 +51,7 @@ CAROM_API void check_options(const TimeStepping& options);
 /// options.
 class CAROM_API TimeStepper {
 public:
-  /// Throws ModelError for impossible options or a contact without a law.
+  /// Throws ModelError for impossible options, ones that joints do not go with, or a contact without a law.
   TimeStepper(const Assembly& assembly, const TimeStepping& options);
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
@@ -61,6 +71,19 @@ private:
   void start_iteration(Index island, const State& state, const Companion& companion, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
   void sweep(Index island, const State& state, const Companion& companion, double step);
+  [[nodiscard]] bool jointed(Index island) const { return !joints_.empty() && !joints_[island].end.empty(); }
+  void prepare_joints();
+  void start_joints(Index island, const State& state, double step);
+  void sweep_joints(Index island, const State& state, const Companion& companion, double step);
+  void correct_joint_impulses(Index island);
+  void solve_joint_contacts(Index island, const State& state, double step);
+  void return_to_joints(Index island);
+  void move(Index island, const std::vector<double>& displacement, State& state) const;
+  [[nodiscard]] SweepChange joint_change(Index island, double step) const;
+  [[nodiscard]] double joint_violation(Index island);
+  void book_joints(Index island, const State& state, double step);
+  void place_middle(Index island, const State& state, double step);
+  void sweep_all(Index island, const State& state, const Companion& companion, double step);
   void follow_iterate(Index island, const State& state, double step);
   void evaluate_loads_together(Index island, const State& state, double step);
   void evaluate_loads_by_cause(Index island, const State& state, double step);
@@ -87,6 +110,7 @@ private:
   void find_culprit(Index island, const State& state, const Companion& companion, double step, int sweeps);
   [[noreturn]] void fail_contraction(Index island, const State& state, const Companion& companion,
                                      double step, const FixedPointJudge& judge);
+  [[nodiscard]] JointId worst_joint(Index island, double& violation) const;
   [[noreturn]] static void fail_motion(const SolverError& error, const State& state, double step);
   [[noreturn]] void fail_contact(Index island, const ContactCluster& cluster, const State& state,
                                  double step);
@@ -155,6 +179,21 @@ private:
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
+
+  // The joints of an island.
+  struct JointWork {
+    IslandJoints end, mean;                // rows at the end; halfway, with factors where bodies touch
+    std::vector<JointRow> start, at_hand;  // rows at the start, where they depend on time; scratch
+    std::vector<JointRow> mean_rows;       // halfway
+    std::vector<double> impulse;           // L
+    std::vector<double> total;             // L, and what contact adds
+    std::vector<double> left;              // of the constraints
+  };
+  std::vector<JointWork> joints_;  // by island; empty without joints
+  // Over all velocities or coordinates, sized if there are joints: changes of velocity by joints, by contact;
+  // velocities without contact; displacements back onto the joints; scratch; the iterate before.
+  std::vector<double> reaction_, struck_, free_, displacement_, scratch_, before_q_, before_v_;
+  std::vector<double> lengths_;
 
   EnergyFlows flows_;
   CompensatedSum coupling_work_;

@@ -99,8 +99,7 @@ void TimeStepper::find_culprit(Index island, const State& state, const Companion
   // because the iteration diverged; then no element is to blame.
   start_iteration(island, state, companion, step);
   for (int i = 0; i < sweeps; ++i) {
-    solve_contacts(island, state, companion, step);
-    sweep(island, state, companion, step);
+    sweep_all(island, state, companion, step);
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
     demand_finite_loads(island, trial_.view(), state, step);
     follow_iterate(island, state, step);
@@ -139,13 +138,25 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
     message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
   }
+  if (jointed(island)) {
+    double violation = 0.0;
+    const JointId joint = worst_joint(island, violation);
+    if (joint.valid()) {
+      failure.parts.push_back(assembly_->system().name(joint));
+      message += "; of the joints " + failure.parts.back() + " is violated most, by " + to_text(violation);
+    }
+  }
   if (rating.island_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
-    if (!implicit) message += ", as would the linearly implicit iteration";
+    if (!implicit && !jointed(island)) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the couplings contract (rate " +
                to_text(rating.island_rate) + " together), so a force jumps or stiffens";
+    if (jointed(island)) {
+      failure.suggested_step = 0.5 * step;
+      message += ", or the joints turn far within the step or are near a singular position";
+    }
     if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
     failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
   }

@@ -29,7 +29,7 @@ enum class Iteration : std::uint8_t {
   fixed_point,  ///< sweeps from loads to motion to loads; contract for roughly h^2 k/m and h d/m below a few
   anderson,  ///< the same, each guess combined from the last sweeps: contracts faster, and a little further
   /// Newton's method with the elements' derivatives, frozen while it contracts well: a sparse linear problem
-  /// in every sweep. For couplings too stiff for the others. Allocates.
+  /// in every sweep. For couplings too stiff for the others. Allocates. Not where there are joints.
   linearly_implicit
 };
 
@@ -68,7 +68,7 @@ struct TimeStepping {
   /// Move bodies out of obstacles at the end of each step, along the smallest displacement in the sense of
   /// their masses: contacts that took part in the step end at gaps >= 0 but for rounding. One that was struck
   /// within the step is noticed at its end and takes part in the next. What a displacement changes of the
-  /// potential energy is booked as `projection`.
+  /// potential energy is booked as `projection`. Not for bodies in an island with joints.
   bool project_gaps = false;
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};

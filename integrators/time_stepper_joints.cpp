@@ -1,0 +1,271 @@
+// Problem: end a step on the joints, with velocities that they allow, and say what they did.
+
+#include <carom/integrators/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+[[noreturn]] void refuse(const Assembly& assembly, Index island, const char* option, const char* allowed) {
+  const BodyId body = assembly.layout()->id(assembly.islands()[island].bodies.begin);
+  throw ModelError(std::string("time stepping: ") + option + ", and the island of " +
+                   assembly.system().name(body) + " has joints; allowed: " + allowed);
+}
+
+JointView view_of(const State& state, const Evaluation& evaluation) {
+  return {state.view(), evaluation.rotation.data()};
+}
+
+void clear(std::vector<double>& numbers, Range range) {
+  std::fill(numbers.begin() + range.begin, numbers.begin() + range.end, 0.0);
+}
+
+}  // namespace
+
+void TimeStepper::prepare_joints() {
+  const Assembly& assembly = *assembly_;
+  const auto islands = static_cast<Index>(assembly.islands().size());
+  for (Index island = 0; island < islands; ++island) {
+    if (!assembly.has_joints(island)) continue;
+    if (options_.iteration == Iteration::linearly_implicit) {
+      refuse(assembly, island, "iteration is linearly implicit", "fixed-point or Anderson");
+    }
+    if (options_.project_gaps) refuse(assembly, island, "project_gaps is set", "not set");
+    joints_.resize(islands);
+    JointWork& work = joints_[island];
+    work.end = IslandJoints(assembly, island);
+    work.mean = work.end;
+    work.impulse.resize(work.end.size());
+    work.total.resize(work.end.size());
+    work.left.resize(work.end.size());
+  }
+  if (joints_.empty()) return;
+  const std::size_t size = assembly.layout()->v_size();
+  for (std::vector<double>* const numbers :
+       {&response_, &reaction_, &struck_, &free_, &displacement_, &scratch_, &before_v_}) {
+    numbers->resize(size);
+  }
+  before_q_.resize(assembly.layout()->q_size());
+  lengths_ = assembly.length_scales();
+}
+
+/// The first guess: no reactions, and the positions that the present velocities lead to.
+void TimeStepper::start_joints(Index island, const State& state, double step) {
+  JointWork& work = joints_[island];
+  const Range q = assembly_->islands()[island].q;
+  const Range v = assembly_->islands()[island].v;
+  std::fill(work.impulse.begin(), work.impulse.end(), 0.0);
+  for (std::vector<double>* const numbers : {&response_, &reaction_, &struck_, &displacement_}) {
+    clear(*numbers, v);
+  }
+  std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
+  std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = step * state.v[i];
+  move(island, scratch_, trial_);
+  if (!work.end.depends_on_time()) return;
+  evaluate_positions(*assembly_, island, state.view(), start_);
+  try {
+    work.end.evaluate(view_of(state, start_), work.start);
+  } catch (const SolverError& error) {
+    fail_motion(error, state, step);
+  }
+}
+
+void TimeStepper::sweep_joints(Index island, const State& state, const Companion& companion, double step) {
+  JointWork& work = joints_[island];
+  const Range q = assembly_->islands()[island].q;
+  const Range v = assembly_->islands()[island].v;
+  std::copy(trial_.q.begin() + q.begin, trial_.q.begin() + q.end, before_q_.begin() + q.begin);
+  std::copy(trial_.v.begin() + v.begin, trial_.v.begin() + v.end, before_v_.begin() + v.begin);
+
+  place_middle(island, state, step);
+  evaluate_positions(*assembly_, island, middle_.view(), middle_evaluation_);
+  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+  try {
+    work.end.locate(view_of(trial_, evaluation_));
+    if (clusters_in_use_ > 0) {
+      work.mean.locate(view_of(middle_, middle_evaluation_));
+      work.mean_rows.assign(work.mean.rows().begin(), work.mean.rows().end());
+    } else {
+      work.mean.evaluate(view_of(middle_, middle_evaluation_), work.mean_rows);
+    }
+  } catch (const SolverError& error) {
+    fail_motion(error, state, step);
+  }
+
+  const double half = 0.5 * step;
+  const double* const load0 = start_of_sum(companion);
+  for (Index i = v.begin; i < v.end; ++i) free_[i] = half * (load0[i] + evaluation_.force[i]);
+  work.end.apply_inverse_mass(free_.data());
+  for (Index i = v.begin; i < v.end; ++i) free_[i] += companion.rounding[i] + state.v[i];
+  correct_joint_impulses(island);
+  if (clusters_in_use_ > 0) solve_joint_contacts(island, state, step);
+  for (Index i = v.begin; i < v.end; ++i) response_[i] = reaction_[i] + struck_[i];
+  sweep(island, state, companion, step);
+  return_to_joints(island);
+}
+
+/// One step of Newton's method for G1 v_{j+1} + rate = 0. With G1 on both sides, instead of Gm on one, the
+/// matrix is symmetric and its range is that of G1, where rows depend on each other too.
+void TimeStepper::correct_joint_impulses(Index island) {
+  JointWork& work = joints_[island];
+  const Range v = assembly_->islands()[island].v;
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
+  for (std::size_t row = 0; row < work.left.size(); ++row) {
+    work.left[row] = IslandJoints::residual(JointLevel::velocity, work.end.rows()[row], scratch_.data());
+  }
+  work.end.solve(work.left.data());
+  clear(reaction_, v);
+  for (std::size_t row = 0; row < work.left.size(); ++row) {
+    work.impulse[row] += work.left[row];
+    work.mean_rows[row].add_transposed(work.impulse[row], reaction_.data());
+  }
+  work.end.apply_inverse_mass(reaction_.data());
+}
+
+/// Contacts against bodies that the joints make answer together.
+void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
+  IslandJoints& mean = joints_[island].mean;
+  ContactCluster& cluster = clusters_.front();
+  const Range v = assembly_->islands()[island].v;
+  cluster.couple(v, [&mean, v](double* numbers) {
+    double* const all = numbers - v.begin;
+    mean.apply_inverse_mass(all);
+    mean.hold(JointLevel::change, all);
+  });
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
+  cluster.set_free_velocity(scratch_.data());
+  if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+  clear(struck_, v);
+  cluster.apply_coupled(struck_.data());
+}
+
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before.
+void TimeStepper::return_to_joints(Index island) {
+  JointWork& work = joints_[island];
+  const Range v = assembly_->islands()[island].v;
+  move(island, displacement_, trial_);
+  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+  work.end.evaluate(view_of(trial_, evaluation_), work.at_hand);
+  for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] = work.at_hand[row].gap;
+  work.end.solve(work.left.data());
+  clear(scratch_, v);
+  work.end.add_response(work.left.data(), scratch_.data());
+  for (Index i = v.begin; i < v.end; ++i) displacement_[i] += scratch_[i];
+  move(island, scratch_, trial_);
+}
+
+void TimeStepper::move(Index island, const std::vector<double>& displacement, State& state) const {
+  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.advance(slots, state.q.data() + q, displacement.data() + v, state.q.data() + q);
+  });
+}
+
+/// What the sweep has changed.
+SweepChange TimeStepper::joint_change(Index island, double step) const {
+  SweepChange change;
+  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += kind.v_size()) {
+      for (Index i = 0; i < kind.v_size(); ++i) {
+        const double weight = step * lengths_[v + i];
+        change.take(weight * (trial_.v[v + i] - before_v_[v + i]), weight * trial_.v[v + i]);
+      }
+      for (Index i = 0; i < kind.q_size(); ++i) {
+        // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
+        const double weight = i < kind.v_size() ? lengths_[v + i] : 1.0;
+        change.take(weight * (trial_.q[q + i] - before_q_[q + i]), trial_.q[q + i]);
+      }
+    }
+  });
+  return change;
+}
+
+/// How far positions and velocities are from obeying the joints, in units of what rounding lets them.
+double TimeStepper::joint_violation(Index island) {
+  // Roundings of the numbers that a row is made of, some room for those of the factors included.
+  constexpr double rounding = 1e-13;
+  JointWork& work = joints_[island];
+  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+  work.end.evaluate(view_of(trial_, evaluation_), work.at_hand);
+  const Range q = assembly_->islands()[island].q;
+  double extent = 0.0, largest = 0.0;
+  for (Index i = q.begin; i < q.end; ++i) extent = std::max(extent, std::abs(trial_.q[i]));
+  for (const JointRow& row : work.at_hand) {
+    double speed = std::abs(row.rate);
+    for (int b = 0; b < row.bodies; ++b) {
+      const JointRow::Block& block = row.blocks[static_cast<std::size_t>(b)];
+      for (int c = 0; c < block.columns; ++c) {
+        speed +=
+            std::abs(block.jacobian[static_cast<std::size_t>(c)] * trial_.v[block.v + static_cast<Index>(c)]);
+      }
+    }
+    const double left = std::abs(IslandJoints::residual(JointLevel::velocity, row, trial_.v.data()));
+    if (extent > 0.0) largest = std::max(largest, std::abs(row.gap) / (rounding * extent));
+    if (speed > 0.0) largest = std::max(largest, left / (rounding * speed));
+  }
+  return largest;
+}
+
+/// The work of reactions and of the way back onto the joints; impulses for the report.
+void TimeStepper::book_joints(Index island, const State& state, double step) {
+  const Assembly& assembly = *assembly_;
+  JointWork& work = joints_[island];
+  const Range v = assembly.islands()[island].v;
+  work.total = work.impulse;
+  if (clusters_in_use_ > 0) {
+    clear(scratch_, v);
+    clusters_.front().add_loads(1.0, scratch_.data());
+    work.mean.apply_inverse_mass(scratch_.data());
+    work.mean.hold(JointLevel::change, scratch_.data(), work.left.data());
+    for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
+  }
+  place_middle(island, state, step);
+  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step.
+  for (std::size_t row = 0; row < work.total.size(); ++row) {
+    double rate = 0.0;
+    if (!work.start.empty()) rate = 0.5 * (work.start[row].rate + work.end.rows()[row].rate);
+    flows_[EnergyFlow::external] -= work.total[row] * rate;
+    coupling_work_.add(work.total[row] * (work.mean_rows[row].times(middle_.v.data()) + rate));
+  }
+  // Work of the conservative loads along the displacement.
+  double taken = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) {
+    double load = evaluated_[i];
+    if (!dissipative_.empty()) load -= dissipative_[i];
+    if (!external_.empty()) load -= external_[i];
+    taken += load * displacement_[i];
+  }
+  projected_ += taken;
+
+  evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+  const JointView halfway = view_of(middle_, middle_evaluation_);
+  Index row = 0;
+  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+    const JointKind& joints = *assembly.joint_kinds()[kind];
+    const Range range = assembly.joints(island, kind);
+    for (Index joint = range.begin; joint < range.end; ++joint, row += joints.rows()) {
+      report_.joint_impulses.push_back(
+          {assembly.joint_id(kind, joint), joints.reaction(halfway, joint, work.total.data() + row)});
+    }
+  }
+}
+
+/// The joint whose constraints the last iterate violates most.
+JointId TimeStepper::worst_joint(Index island, double& violation) const {
+  const JointWork& work = joints_[island];
+  JointId worst;
+  violation = 0.0;
+  for (std::size_t row = 0; row < work.at_hand.size(); ++row) {
+    const double gap = std::abs(work.at_hand[row].gap);
+    if (!(gap > violation)) continue;
+    violation = gap;
+    worst = work.end.joint(row);
+  }
+  return worst;
+}
+
+}  // namespace carom
