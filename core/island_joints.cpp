@@ -141,8 +141,12 @@ void IslandJoints::add_response(const double* multipliers, double* x) const {
   }
 }
 
-void IslandJoints::respond(double* x) {
+void IslandJoints::apply_inverse_mass(double* x) const {
   for (Index i = v_.begin; i < v_.end; ++i) x[i] *= inverse_mass_[i - v_.begin];
+}
+
+void IslandJoints::respond(double* x) {
+  apply_inverse_mass(x);
   hold(JointLevel::change, x);
 }
 

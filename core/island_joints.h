@@ -57,6 +57,8 @@ public:
   void solve(double* r);
   /// x += M^-1 G^T l.
   void add_response(const double* multipliers, double* x) const;
+  /// x becomes M^-1 x over the island.
+  void apply_inverse_mass(double* x) const;
   /// Impulses or forces x of the bodies become what they do, with the joints' answer: M^-1 x, held.
   void respond(double* x);
   /// Velocities of the island.
