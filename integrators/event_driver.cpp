@@ -54,6 +54,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   if (!started_) start(state, companion);
   news_.flows = {};
   news_.events.clear();
+  news_.joint_impulses.clear();
   news_.counts = {};
   news_.energy_gain = news_.shift = 0.0;
   try {
@@ -74,8 +75,11 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   order_events();
   std::vector<ContactRecord> contacts = std::move(report.contacts);
   contacts.clear();
+  std::vector<JointImpulse> joints = std::move(report.joint_impulses);
   report = {};
   report.contacts = std::move(contacts);
+  report.joint_impulses = std::move(joints);
+  report.joint_impulses.assign(news_.joint_impulses.begin(), news_.joint_impulses.end());
   report.time = target;
   report.step = target - state.time;
   report.energy_gain = news_.energy_gain;
@@ -89,6 +93,18 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.z.swap(trial_.z);
   state.time = target;
   if (options_.record_events) events.insert(events.end(), news_.events.begin(), news_.events.end());
+}
+
+JointReaction EventDriver::reaction(const State& state, const Companion& companion, JointId joint) {
+  if (!started_) start(state, companion);
+  const JointTable::Place place = assembly_->layout()->joints()->place(joint.serial);
+  Index island = 0;
+  const auto within = [&](Index i) {
+    const Range range = assembly_->joints(i, place.kind);
+    return place.slot >= range.begin && place.slot < range.end;
+  };
+  while (!within(island)) ++island;
+  return islands_[island]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
 }
 
 /// Islands were gone through one after the other; their events are told in time, then by island.

@@ -29,6 +29,8 @@ public:
   /// ModelError where bodies are too deep in obstacles at a start.
   void advance(State& state, Companion& companion, double target, StepReport& report,
                std::vector<EventRecord>& events);
+  /// Reaction of a joint at a state last advanced to, or changed to since.
+  [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
   /// The state was changed from outside: start anew from it.
   void forget() { started_ = false; }
 

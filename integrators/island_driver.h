@@ -16,6 +16,7 @@
 #include <carom/integrators/island_motion.h>
 #include <carom/integrators/mode_decision.h>
 #include <carom/integrators/step_polynomial.h>
+#include <carom/integrators/step_report.h>
 
 #include <memory>
 #include <span>
@@ -45,8 +46,9 @@ struct DriverNews {
   EnergyFlows flows;
   std::vector<EventRecord> events;
   EventCounts counts{};
-  double energy_gain = 0.0;  ///< by impacts [J]
-  double shift = 0.0;        ///< largest displacement by projection [m]
+  std::vector<JointImpulse> joint_impulses;  ///< of impacts
+  double energy_gain = 0.0;                  ///< by impacts [J]
+  double shift = 0.0;                        ///< largest displacement by projection [m]
 };
 
 /// Modes by contact.
@@ -139,6 +141,7 @@ private:
   [[nodiscard]] bool touches(std::size_t pair) const;
   [[nodiscard]] double speed_noise() const;
   void count_event();
+  void tell_joints(DriverNews& news);
   void remember_impact(const ContactKey& contact);
   [[nodiscard]] double accumulation_time() const;
 

@@ -167,6 +167,7 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
     event.accumulation_time = pile_up;
     if (event.impulse[0] > 0.0) remember_impact(contact.key);
   }
+  tell_joints(news);
   constexpr double rounding = 1e-13;  // of the sum of works
   if (!(gain > rounding * scale)) return;
   news.energy_gain += gain;
@@ -176,6 +177,32 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
   for (const Contact& contact : cluster.contacts()) names.push_back(finder_->name(contact.key));
   fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
        &cluster);
+}
+
+/// What joints did in the impact just solved.
+void IslandDriver::tell_joints(DriverNews& news) {
+  IslandJoints& joints = motion_.joints();
+  if (joints.empty()) return;
+  MotionWorkspace& work = work_->motion;
+  const Range v = joints.velocities();
+  std::fill(work.of_velocity.begin() + v.begin, work.of_velocity.begin() + v.end, 0.0);
+  work_->cluster.add_loads(1.0, work.of_velocity.data());
+  joints.apply_inverse_mass(work.of_velocity.data());
+  work.multipliers.resize(joints.size());
+  joints.hold(JointLevel::change, work.of_velocity.data(), work.multipliers.data());
+  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
+  std::size_t row = 0;
+  for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly_->joint_kinds()[k];
+    const Range range = assembly_->joints(motion_.island(), k);
+    for (Index joint = range.begin; joint < range.end; ++joint, row += kind.rows()) {
+      const double* const of_joint = work.multipliers.data() + row;
+      if (std::all_of(of_joint, of_joint + kind.rows(), [](double number) { return number == 0.0; }))
+        continue;
+      news.joint_impulses.push_back(
+          {assembly_->joint_id(k, joint), kind.reaction(at, joint, of_joint), time_});
+    }
+  }
 }
 
 /// The limit of an impact at vanishing speed: of its answers with impulses the one that takes most energy.

@@ -335,6 +335,33 @@ void Simulation::switch_to(Mode mode) {
 
 Mobility Simulation::mobility() const { return carom::mobility(impl_->model->assembly, impl_->state); }
 
+JointReaction Simulation::reaction(JointId joint) const {
+  Impl& self = *impl_;
+  const Assembly& assembly = self.model->assembly;
+  const System& system = assembly.system();
+  if (!system.contains(joint)) {
+    throw ModelError("reaction of a joint: joint is " + system.name(joint) +
+                     "; allowed: a joint of this model");
+  }
+  if (system.joint_kinds().kind_of(joint.serial).rows() == 0) {
+    throw ModelError("reaction of a joint: " + system.name(joint) +
+                     " only limits; allowed: a joint that binds (impacts of a stop are events)");
+  }
+  if (self.model->machines.driver) {
+    return self.model->machines.driver->reaction(self.state, self.companion, joint);
+  }
+  const auto told = std::find_if(self.report.joint_impulses.begin(), self.report.joint_impulses.end(),
+                                 [&](const JointImpulse& entry) { return entry.joint == joint; });
+  if (told == self.report.joint_impulses.end()) {
+    EventDriver driver(assembly, EventDriven{});
+    return driver.reaction(self.state, Companion{}, joint);
+  }
+  JointReaction mean = told->impulse;
+  for (double& force : mean.force) force /= self.report.step;
+  mean.moment /= self.report.step;
+  return mean;
+}
+
 const System& Simulation::system() const { return impl_->model->assembly.system(); }
 const Assembly& Simulation::assembly() const { return impl_->model->assembly; }
 const State& Simulation::state() const { return impl_->state; }

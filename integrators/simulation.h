@@ -71,6 +71,11 @@ public:
   /// Counts the degrees of freedom that joints leave at the present state, and names redundant joints.
   [[nodiscard]] Mobility mobility() const;
 
+  /// What a joint does to its body `to`, forces at the present time. In time stepping the mean over the last
+  /// step. Before the first step no contact is known: forces are those without. Of a redundant joint one of
+  /// many possible ones. Throws ModelError for a joint that is not of this model or only limits.
+  [[nodiscard]] JointReaction reaction(JointId joint) const;
+
   [[nodiscard]] const System& system() const;          ///< the model
   [[nodiscard]] const Assembly& assembly() const;      ///< the model, made ready to run
   [[nodiscard]] const State& state() const;            ///< the state

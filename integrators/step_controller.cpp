@@ -135,6 +135,7 @@ void StepController::merge(StepReport& report) {
     const JointReaction& part = second_.joint_impulses[i].impulse;
     for (std::size_t k = 0; k < sum.force.size(); ++k) sum.force[k] += part.force[k];
     sum.moment += part.moment;
+    report.joint_impulses[i].time = second_.joint_impulses[i].time;
   }
 }
 

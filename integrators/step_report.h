@@ -36,10 +36,12 @@ struct ContactRecord {
   std::string_view solver{};                ///< solver whose answer was used
 };
 
-/// What a joint did over a step: its mean force is the impulse divided by the length of the step.
+/// What a joint did over a step of time stepping: its mean force is the impulse divided by the length of the
+/// step. Or in an impact of the event-driven mode.
 struct JointImpulse {
   JointId joint;          ///< identity
-  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the configuration halfway
+  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the configuration halfway or of the impact
+  double time = 0.0;      ///< end of the step, or time of the impact [s]
 };
 
 /// What step control did (TimeStepping::control). The step that it made was kept as two halves, which the
@@ -64,7 +66,8 @@ struct StepReport {
   double projected = 0.0;            ///< largest displacement by which a body was moved out of obstacles [m]
   ControlReport control;             ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
-  /// All joints, what contact asks of them included; by island, then by kind. Time stepping only.
+  /// All joints, what contact asks of them included; by island, then by kind. In the
+  /// event-driven mode those of impacts: impact after impact, joints without an impulse left out.
   std::vector<JointImpulse> joint_impulses;
 };
 

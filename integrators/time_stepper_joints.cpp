@@ -248,8 +248,9 @@ void TimeStepper::book_joints(Index island, const State& state, double step) {
     const JointKind& joints = *assembly.joint_kinds()[kind];
     const Range range = assembly.joints(island, kind);
     for (Index joint = range.begin; joint < range.end; ++joint, row += joints.rows()) {
-      report_.joint_impulses.push_back(
-          {assembly.joint_id(kind, joint), joints.reaction(halfway, joint, work.total.data() + row)});
+      if (joints.rows() == 0) continue;
+      const JointReaction impulse = joints.reaction(halfway, joint, work.total.data() + row);
+      report_.joint_impulses.push_back({assembly.joint_id(kind, joint), impulse, trial_.time});
     }
   }
 }
