@@ -147,7 +147,9 @@ void ContactFinder::make_stop(const Stop& stop, const StateView& state, const Ev
   out.rows = 1;
   out.gap = limit.row.gap;
   out.drift[0] = limit.row.drift;
+  out.law.friction = 0.0;
   out.law.normal_restitution = limit.restitution;
+  out.law.tangential_restitution = 0.0;
   const JointRow::Block& first = limit.row.blocks[0];
   out.v = first.v;
   out.columns = first.columns;

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Draws the rod and the double pendulum that hit a wall, from rod.csv, double_pendulum.csv and their events.
+
+Usage: plot_pendulums.py <data folder> <figure folder>
+"""
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from plotting import columns_of, save, times_of
+
+WALL = -0.25  # [m]
+UNTIL = 1.6  # of the strobe picture [s]
+
+
+def strobe(axes, run, links, title):
+    shades = plt.get_cmap("viridis")
+    for i in range(0, len(run["time"]), 8):
+        if run["time"][i] > UNTIL:
+            break
+        x = [0.0] + [run[f"x{link}"][i] for link in range(1, links + 1)]
+        y = [0.0] + [run[f"y{link}"][i] for link in range(1, links + 1)]
+        axes.plot(x, y, color=shades(run["time"][i] / UNTIL), linewidth=1.2, marker="o", markersize=2.5)
+    axes.axvline(WALL, color="0.3", linewidth=2.0)
+    axes.set(aspect="equal", title=title, xlabel="x [m]", ylabel="y [m]")
+
+
+def course(axes, run, links, impacts):
+    for time in impacts:
+        axes.axvline(time, color="0.85", linewidth=0.8, zorder=0)
+    for link in range(1, links + 1):
+        axes.plot(run["time"], run[f"x{link}"], label="tip" if link == links else "elbow")
+    axes.axhline(WALL, color="0.3", linewidth=1.0)
+    axes.set(xlim=(0, run["time"][-1]), xlabel="t [s]", ylabel="x [m]")
+    axes.legend(loc="upper right", frameon=False)
+    energy = axes.twinx()
+    energy.plot(run["time"], run["energy"], color="tab:red", linestyle=":", linewidth=1.5)
+    energy.set_ylabel("energy above rest [J]", color="tab:red")
+    energy.set_ylim(bottom=0.0)
+
+
+def main():
+    data, figures = Path(sys.argv[1]), Path(sys.argv[2])
+    figure, axes = plt.subplots(2, 2, figsize=(13, 9), layout="constrained", width_ratios=(1, 1.6))
+    for row, (file, links, title) in enumerate((("rod", 1, "Rod"), ("double_pendulum", 2, "Double pendulum"))):
+        run = columns_of(data / f"{file}.csv")
+        strobe(axes[row][0], run, links, f"{title}, the first {UNTIL} s, every 0.04 s")
+        course(axes[row][1], run, links, times_of(data / f"{file}_events.csv", "impact"))
+    save(figure, figures, "pendulums_and_wall")
+
+
+if __name__ == "__main__":
+    main()
