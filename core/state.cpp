@@ -57,10 +57,12 @@ JointRow coordinate_row(const State& state, JointId joint) {
   const JointTable::Place place =
       table != nullptr && joint.token == layout->token() ? table->place(joint.serial) : JointTable::Place{};
   const auto refuse = [&](const char* why) {
-    throw ModelError("coordinate of joint #" + std::to_string(joint.serial) + ": " + why +
-                     "; allowed: a joint of this model that has a coordinate");
+    throw ModelError("coordinate of a joint" +
+                     (joint.valid() ? " (#" + std::to_string(joint.serial) + ")" : ", never given") + ": " +
+                     why + "; allowed: a joint of this model that has a coordinate");
   };
-  if (place.slot == none) refuse("it is not of this model");
+  if (layout == nullptr) refuse("the state belongs to no model");
+  if (place.slot == none) refuse("it is not in this model");
   const JointKind& kind = *table->kinds[place.kind];
   if (!kind.has_coordinate()) refuse("it has none");
   std::vector<double> rotation(layout->rotation_size());

@@ -35,7 +35,8 @@ LocatedBinding::LocatedBinding(const Binding& binding, const Layout& layout)
       to_(side(binding.to.body, binding.to.point, binding.turn_to, layout)),
       carrier_(side(binding.carrier, Vec<2>::Zero(), binding.turn_carrier, layout)),
       axis_(binding.axis),
-      offset_(binding.offset) {
+      offset_(binding.offset),
+      moment_(binding.turn_to) {
   // The ground does not turn.
   for (Side* const side : {&from_, &to_, &carrier_}) {
     if (side->rotation == none) side->turn = 0.0;
@@ -127,7 +128,7 @@ void LocatedBinding::add_reaction(const JointView& at, double multiplier, JointR
   const Vec<2> force = multiplier * direction(at, between);
   out.force[0] += force[0];
   out.force[1] += force[1];
-  out.moment += multiplier * to_.turn;
+  out.moment += multiplier * moment_;
 }
 
 Vec<2> DescribedPlace::point(const Vec<2>& local) const {
@@ -155,7 +156,7 @@ void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& 
 
 Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis, std::string_view quantity) {
   check.finite({axis.data(), 2}, quantity, "");
-  const double length = axis.norm();
+  const double length = axis.stableNorm();  // squares of what is far from 1 over- or underflow
   if (!(length > 0.0)) check.refuse(quantity, "(0, 0)", "an axis of any length > 0");
   return axis / length;
 }

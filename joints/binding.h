@@ -75,10 +75,11 @@ private:
   Side from_, to_, carrier_;
   Vec<2> axis_;
   double offset_;
+  double moment_;  // on `to` by a unit of the multiplier; the ground takes it too
 };
 
 /// Where a body stands as described.
-struct DescribedPlace {
+struct CAROM_API DescribedPlace {
   Vec<2> position = Vec<2>::Zero();  ///< of its centre of mass [m]
   double angle = 0.0;                ///< [rad]
 

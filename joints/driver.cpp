@@ -1,7 +1,9 @@
 #include <carom/core/layout.h>
 #include <carom/core/system.h>
 #include <carom/joints/driver.h>
+#include <carom/joints/revolute.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -32,9 +34,15 @@ void check_coordinate(const PartCheck& check, JointId joint) {
   const System& system = check.system();
   if (!joint.valid()) check.refuse("joint", "not given", "a joint of this system");
   if (!system.contains(joint)) check.refuse("joint", system.name(joint), "a joint of this system");
-  if (!system.joint_kinds().kind_of(joint.serial).has_coordinate()) {
-    check.refuse("joint", system.name(joint),
-                 "a joint with a coordinate (revolute, prismatic, point on line)");
+  const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
+  constexpr std::string_view allowed =
+      "a joint with a coordinate (revolute, prismatic, point on line, rolling)";
+  if (!kind.has_coordinate()) check.refuse("joint", system.name(joint), allowed);
+  // Nothing that turns, nothing to push.
+  if (dynamic_cast<const planar::BindingKind<planar::Revolute>*>(&kind) == nullptr) return;
+  const std::vector<BodyId> ends = ends_of(system, joint);
+  if (std::none_of(ends.begin(), ends.end(), [&](BodyId body) { return system.has_orientation(body); })) {
+    check.refuse("joint", system.name(joint) + ", of particles, which do not turn", allowed);
   }
 }
 

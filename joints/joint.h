@@ -3,10 +3,8 @@
 /// \file
 /// Kinds of planar joints that are sums of bindings. A joint describes itself by
 ///
-///     std::vector<Binding> bindings(const PartCheck& check) const;       // checks, then says what it binds
-///     std::vector<Binding> coordinate(const PartCheck& check) const;     // optional: one binding, its gap
-///     is
-///                                                                        // the coordinate
+///     std::vector<Binding> bindings(const PartCheck& check) const;    // checks, then says what it binds
+///     Binding coordinate(const PartCheck& check) const;               // optional: its gap is the coordinate
 ///
 /// and by the number of rows, `static constexpr Index row_count`.
 
@@ -50,8 +48,10 @@ public:
   [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
                                                     const Layout& layout) const override {
     auto copy = std::make_unique<BindingKind>();
+    copy->described_.reserve(order.size());
     copy->located_.reserve(order.size() * stored);
     for (const Index slot : order) {
+      copy->described_.push_back(described_[slot]);
       for (const Binding& binding : described_[slot].bindings) copy->located_.emplace_back(binding, layout);
     }
     return copy;
@@ -59,9 +59,7 @@ public:
   void remove(Index slot) override { described_.erase(described_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] Index size() const override {
-    return static_cast<Index>(described_.empty() ? located_.size() / stored : described_.size());
-  }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(described_.size()); }
   [[nodiscard]] Index rows() const override { return row_count; }
   void ends(Index joint, std::vector<BodyId>& out) const override {
     const Binding& first = described_[joint].bindings[0];

@@ -60,6 +60,8 @@ Binding Prismatic::coordinate(const PartCheck& check) const {
 
 std::vector<Binding> PointOnLine::bindings(const PartCheck& check) const {
   check_joint_ends(check, from, to);
+  // A line must be held at its angle: a particle cannot take the moment.
+  check_turning_end(check, from.body, "from");
   check_zero(check, zero_distance);
   return {line_binding(from, to, across(checked_axis(check, axis, "axis")))};
 }
@@ -70,6 +72,7 @@ Binding PointOnLine::coordinate(const PartCheck& check) const {
 
 std::vector<Binding> Rolling::bindings(const PartCheck& check) const {
   check_joint_ends(check, from, to);
+  check_turning_end(check, from.body, "from");
   check.oriented_body(to.body, "to");
   const Vec<2> unit = checked_axis(check, normal, "normal");
   check.positive(radius, "radius", "m");

@@ -41,7 +41,7 @@ struct CAROM_API PointOnLine {
   static constexpr std::string_view label = "point-on-line joint";
   static constexpr Index row_count = 1;
 
-  End<2> from{};  ///< a body or ground: a point of the line (required)
+  End<2> from{};  ///< a rigid body or ground: a point of the line (required)
   End<2> to{};    ///< a body or ground: the pin (required)
   Vec<2> axis =
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());   ///< of the line, in the frame of `from`,
@@ -63,7 +63,7 @@ struct CAROM_API Rolling {
   static constexpr std::string_view label = "rolling joint";
   static constexpr Index row_count = 2;
 
-  End<2> from{};  ///< a body or ground: a point of the line (required)
+  End<2> from{};  ///< a rigid body or ground: a point of the line (required)
   End<2> to{};    ///< a rigid body: the centre of the disc (required)
   Vec<2> normal =
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,

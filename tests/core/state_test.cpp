@@ -2,6 +2,9 @@
 #include <carom/bodies/rigid_body.h>
 #include <carom/core/assembly.h>
 #include <carom/core/state.h>
+#include <carom/joints/driver.h>
+#include <carom/joints/revolute.h>
+#include <carom/joints/rod.h>
 
 #include "tests/model_error.h"
 
@@ -79,6 +82,35 @@ TEST_F(StateTest, RefusesAnAngleWhereThereIsNone) {
   const State in_space = Assembly(flying).initial_state();
   EXPECT_EQ(in_space.position(body).size(), 3);
   EXPECT_MODEL_ERROR(in_space.angle(body), "body #0", "a planar rigid body");
+}
+
+TEST_F(StateTest, KnowsTheCoordinatesOfJoints) {
+  const JointId pin = system.add(Revolute{.from = {ground, {1, 2}}, .to = plate, .zero_angle = 0.25});
+  const State with = Assembly(system).initial_state();
+  EXPECT_EQ(with.coordinate(pin), 0.25);
+  EXPECT_EQ(with.rate(pin), -6.0);
+}
+
+TEST_F(StateTest, RefusesCoordinatesThatAreNotThere) {
+  const JointId rod = system.add(Rod{.from = plate, .to = dot});
+  const JointId pin = system.add(Revolute{.from = ground, .to = plate});
+  const JointId drive = system.add(Driver{.joint = pin, .position = [](double) { return 0.0; }});
+  System other;
+  const BodyId body = other.add(RigidBody{.mass = disc(1.0, 1.0)});
+  other.add(Revolute{.from = ground, .to = body});
+  const JointId foreign = other.add(Revolute{.from = ground, .to = body});
+  const State with = Assembly(system).initial_state();
+  const std::string_view allowed = "allowed: a joint of this model that has a coordinate";
+  EXPECT_MODEL_ERROR(with.coordinate(rod), "coordinate of a joint (#0): it has none", allowed);
+  EXPECT_MODEL_ERROR(with.rate(rod), "coordinate of a joint (#0): it has none", allowed);
+  EXPECT_MODEL_ERROR(with.coordinate(drive), "(#2): it has none", allowed);
+  EXPECT_MODEL_ERROR(with.coordinate(foreign), "(#1): it is not in this model", allowed);
+  EXPECT_MODEL_ERROR(with.rate(JointId{}), "coordinate of a joint, never given: it is not in this model");
+  EXPECT_MODEL_ERROR(state.coordinate(pin),
+                     "(#1): it is not in this model");  // made before there were joints
+  EXPECT_MODEL_ERROR(State().coordinate(pin), "(#1): the state belongs to no model");
+  system.remove(rod);
+  EXPECT_MODEL_ERROR(Assembly(system).initial_state().coordinate(rod), "(#0): it is not in this model");
 }
 
 TEST_F(StateTest, AStateOfNoModelSaysSo) {
