@@ -1,5 +1,6 @@
 #include <carom/core/assembly.h>
 #include <carom/core/dot.h>
+#include <carom/core/joint_kind.h>
 #include <carom/core/part_check.h>
 #include <carom/core/system.h>
 
@@ -38,6 +39,7 @@ std::string quoted(std::string_view text) {
 
 std::string node(BodyId id) { return id == ground ? "ground" : "body" + std::to_string(id.serial); }
 std::string node(ElementId id) { return "element" + std::to_string(id.serial); }
+std::string node(JointId id) { return "joint" + std::to_string(id.serial); }
 std::string node(ShapeId id) { return "shape" + std::to_string(id.serial); }
 std::string node(ObstacleId id) { return "obstacle" + std::to_string(id.serial); }
 
@@ -51,6 +53,7 @@ public:
         "graph carom {\n  node [fontname=\"sans-serif\"];\n  edge [fontname=\"sans-serif\", fontsize=10];\n";
     draw_islands();
     draw_elements();
+    draw_joints();
     draw_obstacles();
     if (ground_used_) text_ += "  ground [label=\"ground\", shape=box, style=filled, fillcolor=lightgrey];\n";
     return text_ + "}\n";
@@ -89,21 +92,47 @@ private:
   void draw_elements() {
     std::vector<BodyId> ends;
     for (const ElementId id : system_.elements()) {
-      const ForceKind& kind = system_.force_kinds().kind_of(id.serial);
-      const std::string label = " [label=" + quoted(system_.name(id));
+      const auto place = system_.force_kinds().place(id.serial);
+      const ForceKind& kind = *system_.force_kinds().entries()[place.entry].kind;
+      const std::string label = label_of(system_.name(id), kind.on_joint(place.slot));
       ends.clear();
-      kind.ends(system_.force_kinds().place(id.serial).slot, ends);
-      ground_used_ = ground_used_ || std::find(ends.begin(), ends.end(), ground) != ends.end();
+      kind.ends(place.slot, ends);
       if (kind.is_field()) {
         text_ += "  " + node(id) + label + ", shape=note];\n";
-      } else if (ends.size() == 2) {
-        text_ += "  " + node(ends[0]) + " -- " + node(ends[1]) + label + "];\n";
       } else {
-        text_ +=
-            "  " + node(id) + label + (ends.size() == 1 ? ", shape=plaintext];\n" : ", shape=diamond];\n");
-        for (const BodyId end : ends) text_ += "  " + node(id) + " -- " + node(end) + ";\n";
+        draw_edge(node(id), label, ends, "", ";\n");
       }
     }
+  }
+
+  // Bold: what binds.
+  void draw_joints() {
+    std::vector<BodyId> ends;
+    for (const JointId id : system_.joints()) {
+      const auto place = system_.joint_kinds().place(id.serial);
+      const JointKind& kind = *system_.joint_kinds().entries()[place.entry].kind;
+      ends.clear();
+      kind.ends(place.slot, ends);
+      draw_edge(node(id), label_of(system_.name(id), kind.on_joint(place.slot)), ends, ", style=bold",
+                " [style=bold];\n");
+    }
+  }
+
+  // What acts on the coordinate of a joint names it.
+  [[nodiscard]] std::string label_of(const std::string& name, JointId on) const {
+    return " [label=" + quoted(on.valid() ? name + "\non " + system_.name(on) : name);
+  }
+
+  // Two ends make an edge, any other number a node of its own.
+  void draw_edge(const std::string& own, const std::string& label, const std::vector<BodyId>& ends,
+                 const char* style, const char* end_of_line) {
+    ground_used_ = ground_used_ || std::find(ends.begin(), ends.end(), ground) != ends.end();
+    if (ends.size() == 2) {
+      text_ += "  " + node(ends[0]) + " -- " + node(ends[1]) + label + style + "];\n";
+      return;
+    }
+    text_ += "  " + own + label + (ends.size() == 1 ? ", shape=plaintext];\n" : ", shape=diamond];\n");
+    for (const BodyId end : ends) text_ += "  " + own + " -- " + node(end) + end_of_line;
   }
 
   void draw_obstacles() {

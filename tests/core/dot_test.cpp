@@ -6,7 +6,10 @@
 #include <carom/core/force_element.h>
 #include <carom/core/system.h>
 #include <carom/joints/applied_load.h>
+#include <carom/joints/driver.h>
 #include <carom/joints/gravity.h>
+#include <carom/joints/revolute.h>
+#include <carom/joints/rod.h>
 #include <carom/joints/spring_damper.h>
 
 #include <gtest/gtest.h>
@@ -94,6 +97,31 @@ TEST(ToDot, ElementsAreEdgesLoadsOrNotes) {
   EXPECT_LINE(text, "element4 -- ground;");
 }
 
+TEST(ToDot, JointsAreBoldEdges) {
+  System system;
+  const BodyId a = system.add(RigidBody{.mass = disc(1.0, 1.0)}),
+               b = system.add(RigidBody{.mass = disc(1.0, 1.0)});
+  const BodyId arm = system.add(RigidBody{.mass = disc(1.0, 1.0)});
+  const JointId pin = system.add(Revolute{.from = ground, .to = arm}, "hub");
+  system.add(Revolute{.from = arm, .to = a});
+  system.add(Gear{.from = a, .to = b, .ratio = 0.5, .carrier = arm});
+  system.add(Gear{.from = a, .to = b, .ratio = 2.0}, "fixed");
+  system.add(Driver{.joint = pin, .position = [](double t) { return t; }}, "crank");
+  system.add(Motor{.joint = pin, .torque = [](double, double, double) { return 1.0; }});
+  const std::string text = to_dot(system);
+  EXPECT_LINE(text, "  ground -- body2 [label=\"revolute joint 'hub'\", style=bold];\n");
+  EXPECT_LINE(text, "  body2 -- body0 [label=\"revolute joint #1\", style=bold];\n");
+  EXPECT_LINE(text, "  joint2 [label=\"gear pair #2\", shape=diamond];\n");
+  for (const char* const body : {"body0", "body1", "body2"}) {
+    EXPECT_LINE(text, "  joint2 -- " + std::string(body) + " [style=bold];\n");
+  }
+  EXPECT_LINE(text, "  body0 -- body1 [label=\"gear pair 'fixed'\", style=bold];\n");
+  EXPECT_LINE(text, "  ground -- body2 [label=\"driver 'crank'\\non revolute joint 'hub'\", style=bold];\n");
+  EXPECT_LINE(text, "  ground -- body2 [label=\"motor #0\\non revolute joint 'hub'\"];\n");
+  EXPECT_LINE(text, "  ground [");
+  EXPECT_EQ(count(text, "subgraph cluster_"), 1);  // joints bind bodies to one island
+}
+
 TEST(ToDot, TheGroundAppearsOnlyWhereItIsUsed) {
   EXPECT_LINE(to_dot(scene()), "  ground [");
   System free;
@@ -130,6 +158,7 @@ TEST(ToDot, NamesAreEscaped) {
 TEST(ToDot, GraphvizDrawsIt) {
   if (std::system("dot -V >/dev/null 2>&1") != 0) GTEST_SKIP() << "Graphviz is not installed";
   System system = scene();
+  system.add(Rod{.from = {ground, {0, 5}}, .to = system.body("upper")}, "rod & \\N");
   system.add(Particle{.mass = 1.0}, "odd \"\\N\\\" & name\n{|}; --");
   const std::filesystem::path stem = std::filesystem::path(testing::TempDir()) / "carom_dot_test";
   const std::string source = stem.string() + ".dot", picture = stem.string() + ".svg";
