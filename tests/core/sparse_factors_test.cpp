@@ -1,0 +1,227 @@
+#include <carom/core/sparse_factors.h>
+
+#include "tests/random.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using carom_test::Random;
+using Entries = std::vector<std::pair<Index, Index>>;
+
+/// Places of the lower triangle that are not zero, the diagonal among them, in random order.
+Entries entries_of(const Eigen::MatrixXd& matrix, Random& random) {
+  Entries entries;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      if (i == j || matrix(i, j) != 0.0) entries.emplace_back(static_cast<Index>(i), static_cast<Index>(j));
+    }
+  }
+  for (std::size_t i = entries.size(); i > 1; --i) {
+    std::swap(entries[i - 1], entries[random.below(static_cast<unsigned>(i))]);
+  }
+  return entries;
+}
+
+void set_values(SparseFactors& factors, const Entries& entries, const Eigen::MatrixXd& matrix) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    factors.values()[factors.place(i)] = matrix(entries[i].first, entries[i].second);
+  }
+}
+
+Eigen::VectorXd solved(SparseFactors& factors, Eigen::VectorXd right) {
+  factors.solve(right.data());
+  return right;
+}
+
+/// G of rows that join few columns.
+Eigen::MatrixXd random_rows(Eigen::Index rows, Eigen::Index columns, Random& random) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      matrix(i, random.below(static_cast<unsigned>(columns))) += random.uniform(-1.0, 1.0);
+    }
+  }
+  return matrix;
+}
+
+Eigen::VectorXd random_vector(Eigen::Index size, Random& random) {
+  Eigen::VectorXd result(size);
+  for (double& x : result) x = random.uniform(-1.0, 1.0);
+  return result;
+}
+
+TEST(SparseFactors, OfNothingDoNothing) {
+  SparseFactors factors;
+  factors.factor();
+  factors.solve(nullptr);
+  factors.analyse(0, {});
+  factors.factor();
+  factors.solve(nullptr);
+  EXPECT_EQ(factors.size(), 0u);
+  EXPECT_EQ(factors.fill(), 0u);
+  EXPECT_EQ(factors.least_pivot(), 1.0);
+}
+
+TEST(SparseFactors, OfOneRowDivide) {
+  SparseFactors factors;
+  const Entries entries{{0, 0}};
+  factors.analyse(1, entries);
+  for (const double value : {4.0, 1e-200, 1e200}) {
+    factors.values()[factors.place(0)] = value;
+    factors.factor();
+    double x = 2.0;
+    factors.solve(&x);
+    EXPECT_NEAR(x, 2.0 / value, 1e-15 * x);
+  }
+}
+
+TEST(SparseFactors, MeetADenseSolution) {
+  Random random(401);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    const Eigen::Index size = 1 + random.below(30);
+    const Eigen::MatrixXd rows = random_rows(size, size + 10, random);
+    // The diagonal keeps the condition below about 100.
+    const Eigen::MatrixXd matrix = rows * rows.transpose() + 0.1 * Eigen::MatrixXd::Identity(size, size);
+    const Entries entries = entries_of(matrix, random);
+    SparseFactors factors;
+    factors.analyse(static_cast<Index>(size), entries);
+    EXPECT_EQ(factors.size(), static_cast<Index>(size));
+    set_values(factors, entries, matrix);
+    factors.factor();
+    const Eigen::VectorXd right = random_vector(size, random);
+    const Eigen::VectorXd expected = matrix.ldlt().solve(right), found = solved(factors, right);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-13 * (1.0 + expected.cwiseAbs().maxCoeff()));
+    // Again, and with other numbers in the same places.
+    EXPECT_EQ(solved(factors, right), found);
+    const Eigen::MatrixXd other = 3.0 * matrix + Eigen::MatrixXd(matrix.diagonal().asDiagonal());
+    set_values(factors, entries, other);
+    factors.factor();
+    EXPECT_LE((other * solved(factors, right) - right).cwiseAbs().maxCoeff(), 1e-13);
+    set_values(factors, entries, matrix);
+    factors.factor();
+    EXPECT_EQ(solved(factors, right), found);
+  }
+}
+
+TEST(SparseFactors, TheOrderOfEntriesDoesNotMatter) {
+  Random random(402);
+  const Eigen::MatrixXd rows = random_rows(20, 30, random);
+  const Eigen::MatrixXd matrix = rows * rows.transpose() + 0.1 * Eigen::MatrixXd::Identity(20, 20);
+  const Eigen::VectorXd right = random_vector(20, random);
+  Eigen::VectorXd first;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const Entries entries = entries_of(matrix, random);
+    SparseFactors factors;
+    factors.analyse(20, entries);
+    set_values(factors, entries, matrix);
+    factors.factor();
+    const Eigen::VectorXd found = solved(factors, right);
+    if (repeat == 0) first = found;
+    EXPECT_EQ(found, first);
+  }
+}
+
+TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
+  Random random(403);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    const Eigen::Index size = 2 + random.below(20);
+    Eigen::MatrixXd rows = random_rows(size, size + 10, random);
+    const Eigen::Index doubled = 1 + random.below(3);
+    // Some rows are sums of others, one is a row once more.
+    for (Eigen::Index k = 0; k < std::min(doubled, size - 1); ++k) {
+      rows.row(size - 1 - k) = k == 0 ? Eigen::RowVectorXd(rows.row(0))
+                                      : Eigen::RowVectorXd(rows.row(0) - 2.0 * rows.row((size - 1 - k) / 2));
+    }
+    const Eigen::MatrixXd matrix = rows * rows.transpose();
+    const Entries entries = entries_of(matrix, random);
+    SparseFactors factors;
+    factors.analyse(static_cast<Index>(size), entries);
+    set_values(factors, entries, matrix);
+    factors.factor();
+    EXPECT_LE(factors.least_pivot(), 1e-10);
+    const Eigen::VectorXd right = rows * random_vector(rows.cols(), random);
+    const Eigen::VectorXd found = solved(factors, right);
+    EXPECT_LE((matrix * found - right).cwiseAbs().maxCoeff(), 1e-13 * (1.0 + found.cwiseAbs().maxCoeff()))
+        << size;
+    // What is solved for is not large: as large as what the best solution needs.
+    const Eigen::VectorXd least = matrix.completeOrthogonalDecomposition().solve(right);
+    EXPECT_LE(found.cwiseAbs().maxCoeff(), 100.0 * (1.0 + least.cwiseAbs().maxCoeff()));
+  }
+}
+
+TEST(SparseFactors, TwinsShareTheLoad) {
+  // Of all solutions the one without a part that does nothing.
+  SparseFactors factors;
+  const Entries entries{{0, 0}, {1, 0}, {1, 1}};
+  factors.analyse(2, entries);
+  for (const double value : {1.0, 0.3, 7e5}) {
+    std::fill(factors.values().begin(), factors.values().end(), value);
+    factors.factor();
+    const Eigen::VectorXd found = solved(factors, Eigen::Vector2d(6.0 * value, 6.0 * value));
+    EXPECT_NEAR(found[0], 3.0, 1e-2);
+    EXPECT_NEAR(found[1], 3.0, 1e-2);
+    EXPECT_NEAR(found[0] + found[1], 6.0, 1e-14);
+  }
+}
+
+TEST(SparseFactors, ARowOfZerosIsHarmless) {
+  SparseFactors factors;
+  const Entries entries{{0, 0}, {1, 1}};
+  factors.analyse(2, entries);
+  factors.values()[factors.place(0)] = 2.0;
+  factors.values()[factors.place(1)] = 0.0;
+  factors.factor();
+  const Eigen::VectorXd found = solved(factors, Eigen::Vector2d(1.0, 0.0));
+  EXPECT_NEAR(found[0], 0.5, 1e-15);
+  EXPECT_EQ(found[1], 0.0);
+}
+
+TEST(SparseFactors, ALongChainStaysSparseAndExact) {
+  // Tridiagonal, 2 and -1, fixed at one end only: the inverse is min(i, j) + 1 from the fixed end.
+  constexpr Index size = 1000;
+  Entries entries;
+  std::vector<double> values;
+  for (Index i = 0; i < size; ++i) {
+    entries.emplace_back(i, i);
+    values.push_back(i + 1 < size ? 2.0 : 1.0);
+    if (i > 0) {
+      entries.emplace_back(i, i - 1);
+      values.push_back(-1.0);
+    }
+  }
+  SparseFactors factors;
+  factors.analyse(size, entries);
+  for (std::size_t i = 0; i < entries.size(); ++i) factors.values()[factors.place(i)] = values[i];
+  factors.factor();
+  EXPECT_EQ(factors.fill(), size - 1u);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+  right[size - 1] = 1.0;
+  const Eigen::VectorXd found = solved(factors, right);
+  // Rounding of 1e-16 by a condition of 4e6.
+  for (Index i = 0; i < size; ++i) EXPECT_NEAR(found[i], i + 1.0, 1e-10 * (i + 1.0));
+}
+
+TEST(SparseFactors, ATreeHasLittleFill) {
+  // Every row joined to the one half its number. In that order the factor is nearly full.
+  constexpr Index size = 255;
+  Entries entries{{0, 0}};
+  for (Index i = 1; i < size; ++i) {
+    entries.emplace_back(i, i);
+    entries.emplace_back(i, (i - 1) / 2);
+  }
+  SparseFactors factors;
+  factors.analyse(size, entries);
+  EXPECT_LE(factors.fill(), 3 * size / 2);
+}
+
+}  // namespace
