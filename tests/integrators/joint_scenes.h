@@ -80,6 +80,32 @@ inline Scene slider_crank() {
   return scene;
 }
 
+/// Rods of 1 kg and 1 m upright on the ground, 1 m apart, their tops joined by such rods (IFToMM A02). Where
+/// all are in line, rows depend on each other and the motion could branch. The uprights turn clockwise at
+/// 1 rad/s. Bodies: the uprights, then the level ones.
+inline Scene windows(int number) {
+  Scene scene;
+  System& system = scene.system;
+  system.add(Gravity{{0.0, -g}});
+  for (int i = 0; i <= number; ++i) {
+    scene.bodies.push_back(system.add(RigidBody{.mass = rod(1.0, 1.0),
+                                                .position = {i + 0.0, 0.5},
+                                                .angle = quarter,
+                                                .velocity = {0.5, 0.0},
+                                                .spin = -1.0}));
+    system.add(Revolute{.from = {ground, {i + 0.0, 0.0}}, .to = {scene.bodies.back(), {-0.5, 0.0}}});
+  }
+  for (int i = 0; i < number; ++i) {
+    const auto left = static_cast<std::size_t>(i);
+    const BodyId level =
+        system.add(RigidBody{.mass = rod(1.0, 1.0), .position = {i + 0.5, 1.0}, .velocity = {1.0, 0.0}});
+    system.add(Revolute{.from = {scene.bodies[left], {0.5, 0.0}}, .to = {level, {-0.5, 0.0}}});
+    system.add(Revolute{.from = {level, {0.5, 0.0}}, .to = {scene.bodies[left + 1], {0.5, 0.0}}});
+    scene.bodies.push_back(level);
+  }
+  return scene;
+}
+
 /// Andrews' squeezing mechanism (Hairer and Wanner, Solving Ordinary Differential Equations II, VII.7): seven
 /// bodies, whose angles are those of q_angles().
 inline Scene squeezing_mechanism() {

@@ -238,33 +238,17 @@ TEST(JointsTimeStepping, DrivenSliderCrank) {
   EXPECT_LE(errors[1], 0.27 * errors[0]);
 }
 
-TEST(JointsTimeStepping, RowsThatDependOnEachOther) {
-  // IFToMM A02 with two windows: three links upright, two level ones between their tops; one row too many.
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  std::vector<BodyId> upright;
-  for (int i = 0; i < 3; ++i) {
-    upright.push_back(system.add(RigidBody{.mass = rod(1.0, 1.0),
-                                           .position = {i + 0.0, 0.5},
-                                           .angle = quarter,
-                                           .velocity = {0.5, 0.0},
-                                           .spin = -1.0}));
-    system.add(Revolute{.from = {ground, {i + 0.0, 0.0}}, .to = {upright.back(), {-0.5, 0.0}}});
-  }
-  for (std::size_t i = 0; i < 2; ++i) {
-    const BodyId level = system.add(RigidBody{
-        .mass = rod(1.0, 1.0), .position = {static_cast<double>(i) + 0.5, 1.0}, .velocity = {1.0, 0.0}});
-    system.add(Revolute{.from = {upright[i], {0.5, 0.0}}, .to = {level, {-0.5, 0.0}}});
-    system.add(Revolute{.from = {level, {0.5, 0.0}}, .to = {upright[i + 1], {0.5, 0.0}}});
-  }
+TEST(JointsTimeStepping, Windows) {
+  const Scene scene = windows(2);
   const auto data =
       carom_test::reference_data("smooth_planar.json").at("A02_double_fourbar_N2").at("reference").at("0.5");
   std::vector<double> errors;
   for (const double step : {2e-3, 1e-3}) {
-    Simulation simulation(system, TimeStepping{.step = step});
+    Simulation simulation(scene.system, TimeStepping{.step = step});
     JointCheck check(simulation);
     simulation.run_until(0.5);
-    errors.push_back(std::abs(quarter - simulation.state().angle(upright[0]) - data.at("phi").get<double>()));
+    errors.push_back(
+        std::abs(quarter - simulation.state().angle(scene.bodies[0]) - data.at("phi").get<double>()));
     EXPECT_LE(check.gap, 1e-10);
     EXPECT_LE(check.speed, 1e-9);
     EXPECT_TRUE(ledger_closes(simulation.energy()));
