@@ -47,6 +47,9 @@ run_example 01_bar_and_pair scripts/plot_incline.py
 run_example 02_ball_between_tables scripts/plot_tables.py
 run_example 03_ball_in_a_box scripts/plot_box.py
 run_example 04_block_on_a_moving_plane scripts/plot_shaker.py
+run_example 05_squeezing_mechanism scripts/plot_squeezer.py
+run_example 06_slider_crank_and_stop scripts/plot_slider_crank.py
+run_example 07_pendulums_and_wall scripts/plot_pendulums.py
 
 if $update_docs; then
   mkdir -p docs/figures

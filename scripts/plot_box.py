@@ -3,12 +3,12 @@
 
 Usage: plot_box.py <data folder> <figure folder>
 """
-import csv
 import math
 import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from plotting import columns_of, rows_of, save
 
 SLOPE, LEAN, WIDTH = 0.2, 0.15, 1.0  # rad, rad, m: of the floor, of the walls, of the floor along x
 RADIUS = 0.05  # m
@@ -26,17 +26,6 @@ TERMS = (  # column, label, colour; from the bottom
     ("impact_tangential", "lost in impacts, tangential", "#fd8d3c"),
     ("impact_normal", "lost in impacts, normal", "#d94801"),
 )
-
-
-def rows_of(path):
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    return [name.split(" [")[0] for name in rows[0]], rows[1:]
-
-
-def read(path):
-    names, rows = rows_of(path)
-    return dict(zip(names, zip(*([float(text) for text in row] for row in rows))))
 
 
 def read_events(path):
@@ -112,8 +101,7 @@ def draw_energies(axes, exact, events):
 
 def main():
     data, figures = Path(sys.argv[1]), Path(sys.argv[2])
-    plt.rcParams["svg.hashsalt"] = "carom"  # equal pictures are equal files
-    exact, stepped = read(data / "event_driven.csv"), read(data / "time_stepping.csv")
+    exact, stepped = columns_of(data / "event_driven.csv"), columns_of(data / "time_stepping.csv")
     events = read_events(data / "events.csv")
     assert events[-1][0] < END, "the ball has not come to rest"
 
@@ -123,10 +111,7 @@ def main():
     draw_velocities(figure.add_subplot(grid[0, 1]), exact, stepped, events)
     draw_energies(figure.add_subplot(grid[1, :]), exact, events)
     figure.axes[0].legend(loc="upper right", bbox_to_anchor=(0.92, 1.0), fontsize=9, frameon=False)
-    for ending in ("svg", "png"):
-        figure.savefig(figures / f"ball_in_a_box.{ending}", dpi=150,
-                       metadata={"Date": None} if ending == "svg" else None)
-    plt.close(figure)
+    save(figure, figures, "ball_in_a_box")
 
 
 if __name__ == "__main__":

@@ -3,25 +3,14 @@
 
 Usage: plot_shaker.py <data folder> <figure folder>
 """
-import csv
 import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from plotting import columns_of, rows_of, save
 
 MODES = {"stick": "#c7e9c0", "slip+": "#fdd0a2", "slip-": "#c6dbef"}
 TITLES = {"stick": "sticks", "slip+": "slips downhill", "slip-": "slips uphill"}
-
-
-def rows_of(path):
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    return [name.split(" [")[0] for name in rows[0]], rows[1:]
-
-
-def read(path):
-    names, rows = rows_of(path)
-    return dict(zip(names, zip(*([float(text) for text in row] for row in rows))))
 
 
 def read_phases(path, end):
@@ -40,8 +29,7 @@ def read_phases(path, end):
 
 def main():
     data, figures = Path(sys.argv[1]), Path(sys.argv[2])
-    plt.rcParams["svg.hashsalt"] = "carom"  # equal pictures are equal files
-    exact, stepped = read(data / "event_driven.csv"), read(data / "time_stepping.csv")
+    exact, stepped = columns_of(data / "event_driven.csv"), columns_of(data / "time_stepping.csv")
     end = exact["time"][-1]
     phases = read_phases(data / "events.csv", end)
     assert len(phases) == 2, "the block does not lie on two corners"
@@ -78,10 +66,7 @@ def main():
                label="time stepping")
     below.set(xlim=(0, end), xlabel="t [s]", ylabel="slipped downhill\non the plane [mm]")
     below.legend(loc="upper left", frameon=False)
-    for ending in ("svg", "png"):
-        figure.savefig(figures / f"block_on_a_moving_plane.{ending}", dpi=150,
-                       metadata={"Date": None} if ending == "svg" else None)
-    plt.close(figure)
+    save(figure, figures, "block_on_a_moving_plane")
 
 
 if __name__ == "__main__":

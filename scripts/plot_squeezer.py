@@ -27,7 +27,9 @@ def main():
     run, shots = columns_of(data / "angles.csv"), outlines(data / "outline.csv")
     time = [1e3 * t for t in run["time"]]
 
-    figure, (drawing, graph) = plt.subplots(1, 2, figsize=(13, 5.5), layout="constrained")
+    figure, places = plt.subplot_mosaic([["drawing", "turns"], ["drawing", "swings"]], figsize=(13, 6.5),
+                                        layout="constrained", height_ratios=(1, 1.8))
+    drawing, turns, swings = places["drawing"], places["turns"], places["swings"]
     shades = plt.get_cmap("viridis")
     for number, (moment, bodies) in enumerate(sorted(shots.items())):
         colour = shades(number / max(1, len(shots) - 1))
@@ -39,14 +41,11 @@ def main():
     drawing.legend(frameon=False, fontsize="small")
 
     for name, symbol in ANGLES.items():
-        graph.plot(time, run[name], label=symbol)
-    # beta and Theta turn round and round.
-    graph.set(xlim=(0, time[-1]), ylim=(-0.7, 1.4), xlabel="t [ms]", ylabel="angle [rad]", title="Angles")
-    inset = graph.inset_axes((0.6, 0.62, 0.38, 0.36))
-    inset.plot(time, run["beta"])
-    inset.plot(time, run["Theta"])
-    inset.tick_params(labelsize="small")
-    graph.legend(loc="lower left", ncols=4, frameon=False)
+        (turns if name in ("beta", "Theta") else swings).plot(time, run[name], label=symbol)
+    turns.set(xlim=(0, time[-1]), ylabel="angle [rad]", title="Angles")
+    swings.set(xlim=(0, time[-1]), xlabel="t [ms]", ylabel="angle [rad]")
+    for graph in (turns, swings):
+        graph.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     save(figure, figures, "squeezing_mechanism")
 
 

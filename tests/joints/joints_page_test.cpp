@@ -87,6 +87,15 @@ System planet_gear() {
   return system;
 }
 
+System buffer() {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  const BodyId block = system.add(RigidBody{.mass = box(1.0, 0.2, 0.2), .position = {0.0, 1.0}}, "block");
+  const JointId guide = system.add(Prismatic{.from = ground, .to = block, .axis = {0.0, 1.0}}, "guide");
+  system.add(Stop{.joint = guide, .lower = -0.9, .restitution = 0.5}, "buffer");
+  return system;
+}
+
 using carom_test::JointModel;
 using carom_test::text_of;
 
@@ -94,20 +103,20 @@ TEST(JointsPage, ShowsWhatIsTestedHere) {
   const std::string source = text_of("tests/joints/joints_page_test.cpp");
   const auto blocks = carom_test::code_blocks("docs/joints.md", "cpp");
   for (const std::string& block : blocks) EXPECT_NE(source.find(block), std::string::npos) << block;
-  EXPECT_EQ(blocks.size(), 7u);
+  EXPECT_EQ(blocks.size(), 8u);
 }
 
 TEST(JointsPage, NamesEveryJoint) {
   const std::string page = text_of("docs/joints.md");
   for (const char* name : {"Revolute", "Weld", "Prismatic", "PointOnLine", "Rolling", "Rod", "Gear", "Driver",
-                           "Motor", "JointReaction"}) {
+                           "Motor", "Stop", "JointReaction"}) {
     EXPECT_NE(page.find("`" + std::string(name) + "`"), std::string::npos) << name;
   }
 }
 
 TEST(JointsPage, ItsSystemsHangTogetherAsDescribed) {
-  const std::vector<System> systems{pendulum(), gallows(),         lift(),       yoke(),
-                                    wheel(),    double_pendulum(), planet_gear()};
+  const std::vector<System> systems{pendulum(), gallows(),         lift(),        yoke(),
+                                    wheel(),    double_pendulum(), planet_gear(), buffer()};
   for (const System& system : systems) {
     const JointModel model(system);
     for (const JointId joint : system.joints()) {
