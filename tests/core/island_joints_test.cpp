@@ -12,7 +12,9 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace {
@@ -241,7 +243,11 @@ TEST(IslandJoints, AThirdParallelLinkChangesNothing) {
       const JointModel model(swing->system);
       IslandJoints joints(model.assembly, 0);
       joints.locate(model.view());
-      EXPECT_LE(joints.factors().least_pivot(), 1e-10);
+      std::size_t left_out = 0;
+      for (std::size_t row = 0; row < joints.size(); ++row) {
+        if (joints.factors().pivot(row) <= dependent_pivot) ++left_out;
+      }
+      EXPECT_EQ(left_out, joints.size() - 2);
       for (const JointLevel level : levels) {
         const std::vector<double> before{0.3, -9.81, 0.7};
         std::vector<double> x = before, y = before, multipliers(joints.size());
@@ -249,26 +255,23 @@ TEST(IslandJoints, AThirdParallelLinkChangesNothing) {
         expected.hold(level, y.data());
         for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], y[i], 1e-12) << i;
         EXPECT_LE(largest_residual(joints, level, x), 1e-12);
-        for (const double multiplier : multipliers) EXPECT_LE(std::abs(multiplier), 40.0);
+        for (const double multiplier : multipliers) EXPECT_LE(std::abs(multiplier), 100.0);
       }
     }
   }
 }
 
-TEST(IslandJoints, RedundantLinksShareTheWeightByTheirDiagonals) {
-  // Of all multipliers those whose squares, weighed by the diagonal of G M^-1 G^T (1/m + x^2/I: 2, 1/2, 2),
-  // are least, but for a part of 1e-3 that does nothing.
+TEST(IslandJoints, OfRedundantLinksOneCarriesNothing) {
+  // Three links under a weight in the middle: forces and moments balance, one multiplier is zero.
   Swing swing(3);
   const JointModel model(swing.system);
   IslandJoints joints(model.assembly, 0);
   joints.locate(model.view());
   std::vector<double> a{0.0, -9.81, 0.0}, multipliers(3);
   joints.hold(JointLevel::acceleration, a.data(), multipliers.data());
-  const double weight = 2.0 * 9.81;
-  EXPECT_NEAR(multipliers[0], -weight / 6.0, 0.01 * weight);
-  EXPECT_NEAR(multipliers[1], -weight * 4.0 / 6.0, 0.01 * weight);
-  EXPECT_NEAR(multipliers[2], -weight / 6.0, 0.01 * weight);
-  EXPECT_NEAR(multipliers[0] + multipliers[1] + multipliers[2], -weight, 1e-12);
+  EXPECT_NEAR(multipliers[0] + multipliers[1] + multipliers[2], -2.0 * 9.81, 1e-12);
+  EXPECT_NEAR(multipliers[0], multipliers[2], 1e-12);
+  EXPECT_EQ(std::count(multipliers.begin(), multipliers.end(), 0.0), multipliers[1] == 0.0 ? 1 : 2);
 }
 
 TEST(IslandJoints, EveryJointTwiceIsAsEveryJointOnce) {
