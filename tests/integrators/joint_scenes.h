@@ -175,6 +175,7 @@ inline std::vector<double> relative(const std::array<double, 7>& k) {
 struct JointCheck {
   double gap = 0.0, speed = 0.0;
 
+  JointCheck() = default;
   explicit JointCheck(Simulation& simulation) {
     simulation.observe([this](const Simulation& now) { look(now); });
   }

@@ -37,6 +37,9 @@ TEST(JointsEventDriven, ParticleOnARod) {
     worst(x[1], at.at("y").get<double>());
     worst(v[0], at.at("vx").get<double>());
     worst(v[1], at.at("vy").get<double>());
+    const auto& pull = run.simulation.reaction(scene.system.joint("rod")).force;
+    worst(std::hypot(pull[0], pull[1]), at.at("rod_tension").get<double>(), 3.0 * g);
+    EXPECT_LE(pull[0] * x[0] + pull[1] * x[1], 0.0);  // towards the pin
     EXPECT_LE(worst.value(), 5e-11 * t) << "t = " << t;
     carom_test::note("error", worst.value());
   }

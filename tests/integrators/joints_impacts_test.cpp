@@ -81,6 +81,10 @@ TEST(JointImpacts, PinnedRodHitsAtADistance) {
       const double pin =
           m * (run.simulation.state().velocity(bar)[1] - 0.5 * l * spin) - impacts[0].impulse[0];
       EXPECT_NEAR(pin, m * jump * (0.5 * l - l * l / (3.0 * d)), 1e-11);
+      const std::vector<JointImpulse>& told = run.simulation.report().joint_impulses;
+      ASSERT_EQ(told.size(), 1U);
+      EXPECT_NEAR(told[0].impulse.force[1], m * jump * (0.5 * l - l * l / (3.0 * d)), 1e-13);
+      EXPECT_NEAR(told[0].impulse.force[0], 0.0, 1e-13);
       EXPECT_NEAR(run.simulation.energy().flow(EnergyFlow::impact_normal),
                   0.5 * inertia * spin * spin * (1.0 - e * e), 1e-13);
     }
