@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace carom {
 
@@ -229,11 +230,12 @@ void IslandMotion::couple(ContactCluster& cluster) {
   if (joints_.empty()) return;
   const Range v = assembly_->islands()[island_].v;
   std::vector<double>& answer = work_->of_velocity;
-  cluster.couple(v, [&](double* x) {
+  const auto solve = [&](double* x) {
     std::copy(x, x + v.size(), answer.begin() + v.begin);
     joints_.respond(answer.data());
     std::copy(answer.begin() + v.begin, answer.begin() + v.end, x);
-  });
+  };
+  cluster.couple(v, std::ref(solve));  // no copy, which would allocate
 }
 
 void IslandMotion::apply(const ContactCluster& cluster, double* velocity) const {
