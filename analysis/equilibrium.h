@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// Static equilibrium: where loads, reactions of joints and forces of closed contacts balance,
+///
+///     f(q) + G(q)^T l = 0,   g(q) = 0,
+///
+/// G being the rows of the joints, the normals of the closed contacts and the tangents of those that stick.
+/// Matrices are dense: for models of some hundred bodies.
+
+#include <carom/contact/contact.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/state.h>
+#include <carom/core/system.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// How an equilibrium is looked for.
+struct EquilibriumOptions {
+  /// Contacts with gaps up to this at the start are taken as closed, and stay so; with friction, they stick
+  /// where they touch. >= 0 [m]
+  double contact_tolerance = 1e-6;
+  /// Forces that may be left over against those that act, and gaps against coordinates (at least 1 m), where
+  /// Newton's method makes no more progress. > 0
+  double tolerance = 1e-10;
+  int most_steps = 200;  ///< of Newton's method, >= 1
+};
+
+/// What a joint does in equilibrium.
+struct JointForce {
+  JointId joint;                    ///< identity
+  std::vector<double> multipliers;  ///< of its rows [N, N m]
+  JointReaction reaction;           ///< on its body `to`
+};
+
+/// What a closed contact or a stop does in equilibrium.
+struct ContactForce {
+  ContactKey key;                      ///< identity
+  std::string name;                    ///< "particle 'lower' on half-plane #0"
+  double normal = 0.0;                 ///< force, >= 0 [N; N m of the stop of an angle]
+  std::array<double, 2> tangential{};  ///< along the contact's other rows [N]; one of them in the plane
+  double friction = 0.0;               ///< coefficient of sticking; 0 without friction
+};
+
+/// A state of rest. Forces of joints and contacts that are not determined (redundant ones) are one choice of
+/// many: the smallest, or where that is outside a cone of friction one within all of them.
+struct Equilibrium {
+  State state;                         ///< positions; velocities are 0
+  std::vector<JointForce> joints;      ///< by island, then by kind; stops are among the contacts
+  std::vector<ContactForce> contacts;  ///< closed ones
+  double residual = 0.0;               ///< largest force left over, moments over radii of gyration [N]
+  double gap = 0.0;                    ///< largest gap left in joints and closed contacts [m, rad]
+  int steps = 0;                       ///< of Newton's method
+
+  /// What a joint does. Throws ModelError for a joint that is not in it.
+  [[nodiscard]] CAROM_API const JointForce& force(JointId joint) const;
+};
+
+/// Looks for an equilibrium near a state by Newton's method, at the state's time: what moves as prescribed
+/// stands where it then is. Stable or not is not asked (find_modes() tells). Throws ModelError for options,
+/// a state or elements (with internal variables) that cannot be; SolverError, naming the parts,
+///  - where no equilibrium is found: what is furthest from balance or from being closed,
+///  - where something can move without being held back: the bodies that do,
+///  - where a contact would have to pull, would slip, or an open one would be entered.
+[[nodiscard]] CAROM_API Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
+                                                     const EquilibriumOptions& options = {});
+/// The same from positions as described, at time 0. A Simulation takes states of its own assembly only: for
+/// one, give its assembly() and state().
+[[nodiscard]] CAROM_API Equilibrium find_equilibrium(const System& system,
+                                                     const EquilibriumOptions& options = {});
+
+}  // namespace carom
