@@ -220,8 +220,13 @@ void IslandDriver::go_to_event(DriverNews& news) {
     if (kink) event.element = motion_.kink_element(next_.which);
   }
   stopped_ = next_.guard == Guard::slip ? closed[next_.which].pair : ContactPair{};
-  settle(news);
+  // Contacts push but do not pull: where the rate of a driver jumps, what was closed may part, or be hit.
+  // Slower jumps count as none, as impacts do.
+  jumped_ = next_.guard == Guard::law &&
+            motion_.follow_jump(y_, options_.capture_speed, news.flows[EnergyFlow::external]);
+  if (!jumped_) settle(news);
   begin_phase(news);
+  jumped_ = false;
 }
 
 bool IslandDriver::at_rest() {

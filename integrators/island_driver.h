@@ -165,7 +165,8 @@ private:
   bool pending_ = false;                        // the flow's last step is ahead of time_
   bool in_phase_ = false;                       // modes are decided and the flow has started
   bool resting_ = false;
-  Found next_{};  // event in the pending step
+  bool jumped_ = false;  // the rate of a driver just did
+  Found next_{};         // event in the pending step
   Watch start_, end_;
   struct Sample {
     std::vector<double> margins, kinks;

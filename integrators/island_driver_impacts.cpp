@@ -61,6 +61,10 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
     if (!touches(i)) continue;
     Contact& contact = touching.emplace_back(work_->contacts[i]);
     contact.friction = contact.law.friction_at(contact.sliding_speed(velocity));
+    // Before the jump of a driver it did not approach: there is nothing to give back.
+    if (jumped_ && closed_at_[i] != 0) {
+      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    }
   }
   const bool captured = fastest <= options_.capture_speed;
   if (captured) take_captured(first, last);
@@ -190,6 +194,10 @@ void IslandDriver::tell_joints(DriverNews& news) {
   joints.apply_inverse_mass(work.of_velocity.data());
   work.multipliers.resize(joints.size());
   joints.hold(JointLevel::change, work.of_velocity.data(), work.multipliers.data());
+  // What is prescribed moves on: G v = -rate before and after.
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    news.flows[EnergyFlow::external] -= work.multipliers[i] * joints.rows()[i].rate;
+  }
   const JointView at{work.trial.view(), work.evaluation.rotation.data()};
   std::size_t row = 0;
   for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {

@@ -286,6 +286,29 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   return lost;
 }
 
+bool IslandMotion::follow_jump(std::span<double> y, double noise, double& work) {
+  if (!joints_.depends_on_time()) return false;
+  MotionWorkspace& space = *work_;
+  const Range v = assembly_->islands()[island_].v;
+  std::vector<double>& change = space.of_velocity;
+  std::copy(space.trial.v.begin() + v.begin, space.trial.v.begin() + v.end, change.begin() + v.begin);
+  joints_.hold(JointLevel::velocity, change.data());
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) {
+    change[i] -= space.trial.v[i];
+    largest = std::max(largest, std::abs(change[i]) * space.lengths[i]);
+  }
+  if (!(largest > noise)) return false;
+  assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
+    kind.apply_mass(slots, change.data() + at, space.momentum.data() + at);
+  });
+  for (Index i = v.begin; i < v.end; ++i) {
+    work += (space.trial.v[i] + 0.5 * change[i]) * space.momentum[i];
+    y[q_size_ + (i - v.begin)] += change[i];
+  }
+  return true;
+}
+
 void IslandMotion::kinks(std::vector<double>& out) const {
   out.resize(kink_elements_.size());
   if (out.empty()) return;

@@ -78,6 +78,10 @@ public:
   /// reactions, and is out of date afterwards if y was changed. Returns the energy taken out [J]; adds the
   /// largest displacement [m] to `shift`.
   double project(std::span<double> y, bool& changed, double& shift);
+  /// Where a law of time of joints jumps in its rate: the impulse that makes joints follow, contacts aside.
+  /// The workspace holds an evaluation of y, and is out of date afterwards if y was changed: where a velocity
+  /// is off by more than `noise`. Adds the work of the impulse [J].
+  bool follow_jump(std::span<double> y, double noise, double& work);
 
   /// Place of the first velocity in y.
   [[nodiscard]] std::size_t v_begin() const { return q_size_; }
