@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy over the sources of the library.
+
+    scripts/tidy.py [<build dir>] [<source>...]    build/sanitizers, which must be configured; all
+
+Most of what clang-tidy does for a file it does for the headers of Eigen and of the standard library. So files are
+looked at together, as one text, which need not mean anything as long as it compiles: where it does not, or where
+something is found in it, it is halved, down to single files. Only what is found in a single file counts.
+"""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+LARGEST = 12  # files at once
+FOLDERS = ("core", "bodies", "joints", "contact", "integrators", "analysis", "testing")
+
+root = Path(__file__).resolve().parent.parent
+printing = threading.Lock()
+
+
+def flags_of(command):
+    """What a compile command says besides its input and outputs."""
+    words = shlex.split(command)
+    while not words[0].startswith("-"):
+        words.pop(0)
+    result = []
+    skip = False
+    for word in words:
+        if skip:
+            skip = False
+        elif word in ("-o", "-c", "-MF", "-MT"):
+            skip = True
+        elif word not in ("-MD", "-Werror"):
+            result.append(word)
+    return result
+
+
+def tidy_together(files, flags, build):
+    text = build / "tidy" / ("__".join(files[0].relative_to(root).parts[:-1] + (files[0].stem, str(len(files)))) + ".cpp")
+    text.write_text("\n".join(file.read_text() for file in files))
+    compiles = subprocess.run(["clang++", *flags, "-w", "-fsyntax-only", str(text)], cwd=build, capture_output=True)
+    if compiles.returncode != 0:
+        return False
+    found = subprocess.run(["clang-tidy", "--quiet", str(text), "--", *flags], cwd=build, capture_output=True)
+    return found.returncode == 0
+
+
+def tidy(files, flags, build):
+    """True if nothing is found."""
+    if len(files) > 1:
+        if tidy_together(files, flags, build):
+            return True
+        middle = len(files) // 2
+        return all([tidy(files[:middle], flags, build), tidy(files[middle:], flags, build)])
+    found = subprocess.run(
+        ["clang-tidy", "-p", str(build), "--quiet", str(files[0])], cwd=root, capture_output=True, text=True)
+    if found.returncode == 0:
+        return True
+    with printing:
+        print(found.stdout, end="")
+        print("\n".join(line for line in found.stderr.splitlines() if "warnings generated" not in line), flush=True)
+    return False
+
+
+def main():
+    arguments = sys.argv[1:]
+    build = Path(arguments.pop(0) if arguments else root / "build" / "sanitizers").resolve()
+    wanted = {Path(name).resolve() for name in arguments}
+    (build / "tidy").mkdir(exist_ok=True)
+
+    groups = {}  # by folder and flags
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        file = Path(entry["file"]).resolve()
+        if file.parent.parent != root or file.parent.name not in FOLDERS or (wanted and file not in wanted):
+            continue
+        flags = flags_of(entry["command"])
+        groups.setdefault((file.parent.name, *flags), (flags, []))[1].append(file)
+    if wanted - {file for _, files in groups.values() for file in files}:
+        sys.exit("tidy: not among the sources of the library in " + str(build))
+
+    batches = []
+    for flags, files in groups.values():
+        count = -(-len(files) // LARGEST)
+        batches += [(sorted(files)[i * len(files) // count:(i + 1) * len(files) // count], flags) for i in range(count)]
+    batches.sort(key=lambda batch: -len(batch[0]))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        good = list(pool.map(lambda batch: tidy(*batch, build), batches))
+    files = sum(len(batch[0]) for batch in batches)
+    print(f"tidy: {files} files, " + ("nothing found" if all(good) else "see above"))
+    sys.exit(0 if files > 0 and all(good) else 1)
+
+
+main()
