@@ -2,6 +2,7 @@
 
 // Mechanisms with known motions, in absolute coordinates, and a check of how well a run obeys its joints.
 
+#include "examples/scenes/squeezer.h"
 #include "tests/reference/reference_data.h"
 
 #include <carom/carom.h>
@@ -106,69 +107,18 @@ inline Scene windows(int number) {
   return scene;
 }
 
-/// Andrews' squeezing mechanism (Hairer and Wanner, Solving Ordinary Differential Equations II, VII.7): seven
-/// bodies, whose angles are those of q_angles().
+/// Andrews' squeezing mechanism, K1 to K7.
 inline Scene squeezing_mechanism() {
-  const auto data = carom_test::reference_data("andrews.json");
-  const auto& p = data.at("parameters");
-  const auto number = [&](const char* name) { return p.at(name).get<double>(); };
-  std::vector<double> q;
-  for (const auto& text : data.at("q0")) q.push_back(std::stod(text.get<std::string>()));
-  const double beta = q[0], theta = q[1], gamma = q[2], phi = q[3], delta = q[4], omega = q[5],
-               epsilon = q[6];
-  const Vec<2> a(number("xa"), number("ya")), b(number("xb"), number("yb")), c(number("xc"), number("yc"));
-  const double da = number("da"), ea = number("ea"), e = number("e"), d = number("d"), rr = number("rr"),
-               ra = number("ra"), sa = number("sa"), sb = number("sb"), sc = number("sc"), sd = number("sd"),
-               ss = number("ss"), ta = number("ta"), tb = number("tb"), u = number("u"), ua = number("ua"),
-               ub = number("ub"), zf = number("zf"), zt = number("zt"), fa = number("fa");
   Scene scene;
-  System& system = scene.system;
-  /// A body by the place of one of its points.
-  const auto add = [&](const char* name, double angle, const Vec<2>& point, const Vec<2>& at) {
-    const auto i = scene.bodies.size();
-    const Vec<2> turned(std::cos(angle) * point[0] - std::sin(angle) * point[1],
-                        std::sin(angle) * point[0] + std::cos(angle) * point[1]);
-    scene.bodies.push_back(system.add(
-        RigidBody{.mass = {.mass = p.at("m")[i].get<double>(), .inertia = p.at("I")[i].get<double>()},
-                  .position = at - turned,
-                  .angle = angle},
-        name));
-    return scene.bodies.back();
-  };
-  const auto along = [](double angle) { return Vec<2>(std::cos(angle), std::sin(angle)); };
-  const auto across = [](double angle) { return Vec<2>(-std::sin(angle), std::cos(angle)); };
-  const Vec<2> z = a + zt * along(delta), w = a - u * across(epsilon);
-  const BodyId k1 = add("K1", beta, {-ra, 0.0}, Vec<2>::Zero());
-  const BodyId k2 = add("K2", beta + theta, {da, 0.0}, rr * along(beta));
-  const BodyId k3 = add("K3", gamma, {-sb, sa}, b);
-  const BodyId k4 = add("K4", phi + delta, {0.0, e - ea}, z);
-  const BodyId k5 = add("K5", delta, {-ta, -tb}, a);
-  const BodyId k6 = add("K6", omega + epsilon, {fa - zf, 0.0}, w);
-  const BodyId k7 = add("K7", epsilon, {ub, ua}, a);
-  const End<2> common{k2, {da - d, 0.0}};
-  system.add(Revolute{.from = ground, .to = {k1, {-ra, 0.0}}}, "O");
-  system.add(Revolute{.from = {k1, {rr - ra, 0.0}}, .to = {k2, {da, 0.0}}}, "F");
-  system.add(Revolute{.from = common, .to = {k3, {-sb, sa - ss}}}, "E with K3");
-  system.add(Revolute{.from = common, .to = {k4, {0.0, -ea}}}, "E with K4");
-  system.add(Revolute{.from = common, .to = {k6, {fa, 0.0}}}, "E with K6");
-  system.add(Revolute{.from = {ground, b}, .to = {k3, {-sb, sa}}}, "B");
-  system.add(Revolute{.from = {ground, a}, .to = {k5, {-ta, -tb}}}, "A with K5");
-  system.add(Revolute{.from = {ground, a}, .to = {k7, {ub, ua}}}, "A with K7");
-  system.add(Revolute{.from = {k5, {zt - ta, -tb}}, .to = {k4, {0.0, e - ea}}}, "G");
-  system.add(Revolute{.from = {k7, {ub, ua - u}}, .to = {k6, {fa - zf, 0.0}}}, "H");
-  system.add(SpringDamper{.from = {ground, c},
-                          .to = {k3, {sd - sb, sa - sc}},
-                          .stiffness = number("c0"),
-                          .free_length = number("l0")});
-  const double torque = number("mom");
-  system.add(AppliedTorque{.on = k1, .torque = [torque](double) { return torque; }});
+  for (const scenes::SqueezerBody& body : scenes::add_squeezer(scene.system)) scene.bodies.push_back(body.id);
   return scene;
 }
 
 /// The angles (or rates) of the reference from those of the bodies: beta, Theta, gamma, Phi, delta, Omega,
 /// epsilon.
 inline std::vector<double> relative(const std::array<double, 7>& k) {
-  return {k[0], k[1] - k[0], k[2], k[3] - k[4], k[4], k[5] - k[6], k[6]};
+  const std::array<double, 7> angles = scenes::squeezer_angles(k);
+  return {angles.begin(), angles.end()};
 }
 
 /// Follows a run: the largest violations of its joints at the ends of steps.
