@@ -34,7 +34,7 @@ def main():
     below.plot(exact["time"], [start + work for work in exact["work of the motor"]], color="black", linewidth=1.2,
                label="start + work of the motor")
     below.set(xlim=(0, exact["time"][-1]), xlabel="t [s]", ylabel="energy [J]")
-    below.legend(loc="upper left", frameon=False)
+    below.legend(loc="lower right", frameon=True)
     save(figure, figures, "slider_crank_and_stop")
 
 
