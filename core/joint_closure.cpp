@@ -29,7 +29,7 @@ double largest(const std::vector<double>& numbers, Range range, double least) {
 
 /// Joints whose rows take part in the dependence of one row on others.
 std::vector<JointId> partners(const IslandJoints& joints, std::size_t row, std::span<const double> vector) {
-  // Against the row itself; the rest is what shift and rounding leave.
+  // Against the row itself; the rest is rounding.
   constexpr double takes_part = 1e-6;
   std::vector<JointId> found;
   for (std::size_t i = 0; i < vector.size(); ++i) {

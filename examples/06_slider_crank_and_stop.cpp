@@ -31,7 +31,7 @@ constexpr double crank_length = 0.153, rod_length = 0.306;                   // 
 constexpr double crank_mass = 0.038, rod_mass = 0.038, slider_mass = 0.076;  // [kg]
 constexpr double reach = 0.42;     // of the slider, where the stop is [m]
 constexpr double step = 1e-5;      // [s], of time stepping
-constexpr double interval = 2e-4;  // [s], between rows
+constexpr double interval = 1e-3;  // [s], between rows
 constexpr double end = 1.5;        // [s]
 
 struct Mechanism {
