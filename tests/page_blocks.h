@@ -2,6 +2,8 @@
 
 // The code that a page of the documentation shows.
 
+#include "tests/paths.h"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -13,7 +15,7 @@ namespace carom_test {
 
 /// Content of a file of the project.
 inline std::string text_of(const std::string& file) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + file);
+  std::ifstream in(carom_test::source_file(file));
   EXPECT_TRUE(in) << file;
   return {std::istreambuf_iterator<char>(in), {}};
 }

@@ -1,5 +1,7 @@
 // The include edges between the library's folders, and who may see third-party headers.
 
+#include "tests/paths.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -106,7 +108,7 @@ std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-const fs::path source_dir = CAROM_SOURCE_DIR;
+const fs::path source_dir = carom_test::source_file("");
 
 TEST(IncludeEdges, LibraryFollowsTheTable) {
   int files = 0;

@@ -4,7 +4,7 @@
 #include <carom/contact/lemke.h>
 #include <carom/contact/principal_pivoting.h>
 
-#include "tests/contact/reference_data.h"
+#include "tests/reference/reference_data.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ LcpStatus recorded(const std::string& name) {
 
 TEST(LcpCases, LemkeEndsAsRecorded) {
   int solved = 0, rays = 0, bounds = 0, recorded_ones = 0;
-  const auto data = contact_test::reference_data("lcp_cases.json");
+  const auto data = carom_test::reference_data("lcp_cases.json");
   ASSERT_EQ(data.at("cases").size(), 57u);
   for (const auto& c : data.at("cases")) {
     SCOPED_TRACE(c.at("name").get<std::string>());
@@ -99,7 +99,7 @@ TEST(LcpCases, LemkeEndsAsRecorded) {
 
 TEST(LcpCases, PrincipalPivotingEndsAsRecorded) {
   int solved = 0, vanishing = 0, bounds = 0, recorded_ones = 0;
-  const auto data = contact_test::reference_data("lcp_cases.json");
+  const auto data = carom_test::reference_data("lcp_cases.json");
   for (const auto& c : data.at("cases")) {
     SCOPED_TRACE(c.at("name").get<std::string>());
     const Lcp lcp = read(c);
@@ -129,7 +129,7 @@ TEST(LcpCases, PrincipalPivotingEndsAsRecorded) {
 }
 
 TEST(LcpCases, DefaultBoundsEndEverything) {
-  const auto data = contact_test::reference_data("lcp_cases.json");
+  const auto data = carom_test::reference_data("lcp_cases.json");
   for (const auto& c : data.at("cases")) {
     SCOPED_TRACE(c.at("name").get<std::string>());
     const Lcp lcp = read(c);

@@ -6,6 +6,7 @@
 
 #include "tests/contact/random_problems.h"
 #include "tests/integrators/throws.h"
+#include "tests/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -305,7 +306,7 @@ TEST_F(ProblemFileTest, TheGoodFileIsGood) {
 }
 
 TEST_F(ProblemFileTest, ThePageShowsAGoodFile) {
-  std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/docs/contact_problems.md");
+  std::ifstream in(carom_test::source_file("docs/contact_problems.md"));
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   const std::string fence = "```json\n";
   const std::size_t begin = page.find(fence) + fence.size();

@@ -5,7 +5,7 @@
 #include <carom/contact/solver_chain.h>
 
 #include "tests/contact/random_problems.h"
-#include "tests/contact/reference_data.h"
+#include "tests/reference/reference_data.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ bool same_mode(const std::string& name, ContactMode mode) {
 }
 
 TEST(ReferenceImpacts, SingleContacts) {
-  const auto data = contact_test::reference_data("open_variants.json");
+  const auto data = carom_test::reference_data("open_variants.json");
   ASSERT_EQ(data.at("single_contact").size(), 40u);
   SolverChain chain;
   for (const auto& c : data.at("single_contact")) {
@@ -64,7 +64,7 @@ TEST(ReferenceImpacts, SingleContacts) {
 }
 
 TEST(ReferenceImpacts, TwoContactsOfOneBody) {
-  const auto data = contact_test::reference_data("open_variants.json");
+  const auto data = carom_test::reference_data("open_variants.json");
   ASSERT_EQ(data.at("two_contacts").size(), 20u);
   SolverChain chain;
   for (const auto& c : data.at("two_contacts")) {
@@ -127,7 +127,7 @@ TEST(ReferenceImpacts, TwoContactsOfOneBody) {
 
 // Walton's law is this law (docs/method.md section 4): psi2 over psi1, with unit normal speed.
 TEST(ReferenceImpacts, WaltonCurves) {
-  const auto data = contact_test::reference_data("impacts_planar.json");
+  const auto data = carom_test::reference_data("impacts_planar.json");
   SolverChain chain;
   int points = 0;
   for (const auto& c : data.at("walton_curves").at("cases")) {
@@ -157,7 +157,7 @@ TEST(ReferenceImpacts, WaltonCurves) {
 
 // Johansson 1999 section 5: thin shell, contact speed v_x + r spin.
 TEST(ReferenceImpacts, HoraksBall) {
-  const auto data = contact_test::reference_data("impacts_planar.json");
+  const auto data = carom_test::reference_data("impacts_planar.json");
   const double m = 0.1134, r = 0.0359, inertia = 2.0 / 3.0 * m * r * r;
   const double v_n = data.at("horak").at("impact_speed").get<double>();
   SolverChain chain;

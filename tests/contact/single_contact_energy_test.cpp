@@ -3,7 +3,7 @@
 #include <carom/contact/solver_chain.h>
 
 #include "tests/contact/random_problems.h"
-#include "tests/contact/reference_data.h"
+#include "tests/reference/reference_data.h"
 
 #include <gtest/gtest.h>
 
@@ -102,7 +102,7 @@ TEST(SingleContactEnergy, GainsWhereTheFormulaSaysSo) {
 
 TEST(SingleContactEnergy, EnergyInconsistencyOfTheReference) {
   SolverChain chain;
-  const auto data = contact_test::reference_data("impacts_planar.json");
+  const auto data = carom_test::reference_data("impacts_planar.json");
   const auto& values = data.at("energy_inconsistency").at("values");
   ASSERT_EQ(values.size(), 36u);
   for (const auto& row : values) {

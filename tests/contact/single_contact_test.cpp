@@ -4,7 +4,7 @@
 #include <carom/contact/solver_chain.h>
 
 #include "tests/contact/random_problems.h"
-#include "tests/contact/reference_data.h"
+#include "tests/reference/reference_data.h"
 
 #include <gtest/gtest.h>
 
@@ -130,7 +130,7 @@ TEST(SingleContact, SphereInSpaceIsTheSphereInThePlaneOfItsMotion) {
 // The Painleve rod of tests/reference/contacts_planar.json: rod tip at mu = 2, tan theta = 2. Impact without
 // collision: stick with P = (0.3, 0.4).
 TEST(SingleContact, PainleveRod) {
-  const auto data = contact_test::reference_data("contacts_planar.json");
+  const auto data = carom_test::reference_data("contacts_planar.json");
   int compared = 0;
   for (const auto& state : data.at("painleve_rod").at("states")) {
     SCOPED_TRACE(state.at("name").get<std::string>());

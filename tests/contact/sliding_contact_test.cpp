@@ -9,7 +9,7 @@
 
 #include "tests/contact/brute_force.h"
 #include "tests/contact/random_problems.h"
-#include "tests/contact/reference_data.h"
+#include "tests/reference/reference_data.h"
 
 #include <gtest/gtest.h>
 
@@ -286,7 +286,7 @@ TEST(SlidingContact, EverySolverIsRightOrSaysThatItIsNot) {
 
 // The states of the sliding rod in tests/reference/contacts_planar.json, forces in place of impulses.
 TEST(SlidingContact, PainleveRod) {
-  const auto data = contact_test::reference_data("contacts_planar.json");
+  const auto data = carom_test::reference_data("contacts_planar.json");
   int none = 0, two = 0, slides = 0, detaches = 0;
   SolverChain chain;
   for (const auto& state : data.at("painleve_rod").at("states")) {

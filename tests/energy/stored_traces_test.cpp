@@ -2,6 +2,7 @@
 // it is meant, store the new ones with CAROM_REWRITE_TRACES=1 and say in the commit why.
 
 #include "examples/scenes/incline.h"
+#include "tests/paths.h"
 
 #include <carom/carom.h>
 #include <carom/testing/matchers.h>
@@ -19,9 +20,7 @@ using namespace carom::energy_test;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-std::string stored(const std::string& name) {
-  return std::string(CAROM_SOURCE_DIR) + "/tests/energy/traces/" + name;
-}
+std::string stored(const std::string& name) { return carom_test::source_file("tests/energy/traces/" + name); }
 
 /// Compilers differ in the rounding of the step (order of sums, sine and cosine). Each of n steps rounds
 /// velocities and positions by some eps, impacts magnify what came before by a few, and the spring (w = 45/s)

@@ -2,6 +2,8 @@
 
 // The reference problems of tests/reference/*.json (README.md there says where they come from).
 
+#include "tests/paths.h"
+
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -13,7 +15,7 @@ namespace carom_test {
 using Json = nlohmann::json;
 
 inline Json reference_data(const std::string& name) {
-  const std::string path = std::string(CAROM_TEST_DATA) + "/" + name;
+  const std::string path = carom_test::reference_file(name);
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path);
   return Json::parse(file);
