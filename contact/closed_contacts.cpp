@@ -15,6 +15,9 @@ namespace {
 // A pivot below this part of the largest one is rounding: the constraint follows from the others.
 constexpr double dependent = 1e-11;
 
+// Margin where nothing can come to an end: friction in joints that slips [N].
+constexpr double no_end = 1.0;
+
 }  // namespace
 
 void ClosedContacts::bind(const Assembly& assembly, IslandJoints& joints) {
@@ -54,7 +57,7 @@ void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::s
   span_ = bound ? joints_->velocities() : Range{body.v, body.v + body.v_size};
   rows_.clear();
   for (std::size_t i = first; i < last; ++i) {
-    rows_.push_back({i, false});
+    if (!contacts_[i].at.rubs()) rows_.push_back({i, false});
     if (contacts_[i].sticks()) rows_.push_back({i, true});
   }
   const std::size_t count = rows_.size(), stride = span_.size();
@@ -88,6 +91,22 @@ void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::s
       matrix_[i * count + j] =
           at.times(rows_[i].tangent ? 1 : 0, response_.data() + j * stride - span_.begin);
     }
+  }
+}
+
+/// Friction in joints is known where it slips: a load. \param acceleration to add to; may be null
+void ClosedContacts::rub(std::size_t first, std::size_t last, double* acceleration) {
+  for (std::size_t i = first; i < last; ++i) {
+    ClosedContact& contact = contacts_[i];
+    if (!contact.at.rubs()) continue;
+    contact.normal = contact.at.pressed;
+    if (contact.sticks()) continue;
+    contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
+    if (acceleration == nullptr) continue;
+    std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
+    contact.at.add_transposed(1, contact.tangential, full_.data());
+    joints_->respond(full_.data());
+    for (Index k = span_.begin; k < span_.end; ++k) acceleration[k] += full_[k];
   }
 }
 
@@ -145,6 +164,7 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
   null_.clear();
   for_groups([&](std::size_t first, std::size_t last) {
     lay_out(assembly, first, last, true);
+    rub(first, last, change ? nullptr : acceleration);
     const std::size_t n = rows_.size();
     unknown_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -214,9 +234,9 @@ bool ClosedContacts::share_out(std::size_t from, std::size_t to) {
   double least = std::numeric_limits<double>::infinity(), size = 0.0;
   for (std::size_t i = first; i < last; ++i) {
     const ClosedContact& c = contacts_[i];
-    lines += c.sticks() ? 3 : 1;
+    lines += (c.at.rubs() ? 0 : 1) + (c.sticks() ? 2 : 0);
     size += std::abs(c.normal) + std::abs(c.tangential);
-    least = std::min(least, c.normal);
+    if (!c.at.rubs()) least = std::min(least, c.normal);
     if (c.sticks()) least = std::min(least, c.friction * c.normal - std::abs(c.tangential));
   }
   if (!(size > 0.0) || !std::isfinite(size)) return false;
@@ -238,7 +258,7 @@ bool ClosedContacts::share_out(std::size_t from, std::size_t to) {
   for (std::size_t i = first; i < last; ++i) {
     const ClosedContact& c = contacts_[i];
     const std::size_t at = 2 * (i - first);
-    line(c.normal, [&](const double* vector) { return vector[at]; });
+    if (!c.at.rubs()) line(c.normal, [&](const double* vector) { return vector[at]; });
     if (!c.sticks()) continue;
     for (const double side : {-1.0, 1.0}) {
       line(c.friction * c.normal + side * c.tangential,
@@ -268,7 +288,7 @@ void ClosedContacts::margins(std::vector<ForceMargin>& out) {
       const ClosedContact& c = contacts_[i];
       const double dn = vector ? vector[2 * (i - first)] : 0.0;
       const double dt = vector ? vector[2 * (i - first) + 1] : 0.0;
-      lines.push_back({c.normal, dn});
+      if (!c.at.rubs()) lines.push_back({c.normal, dn});
       if (!c.sticks()) continue;
       lines.push_back({c.friction * c.normal - c.tangential, c.friction * dn - dt});
       lines.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
@@ -310,7 +330,7 @@ void ClosedContacts::margins(std::vector<ForceMargin>& out) {
   out.clear();
   for_groups([&](std::size_t first, std::size_t last) {
     collect(first, last, nullptr);
-    out.push_back({first, last, least(0.0)});
+    out.push_back({first, last, lines.empty() ? no_end : least(0.0)});
   });
 }
 

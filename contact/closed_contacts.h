@@ -31,8 +31,8 @@ struct ClosedContact {
   bool slippery = false;                  ///< without friction: neither sticks nor cares which way it slips
   Contact at;                             ///< at the present configuration
   double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
-  double normal = 0.0;                    ///< force [N]
-  double tangential = 0.0;                ///< force [N]
+  double normal = 0.0;                    ///< force; of friction in a joint Contact::pressed [N]
+  double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
 
   /// True if the tangent is a constraint.
   [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
@@ -84,6 +84,7 @@ private:
   template <class F>
   void for_groups(F&& f);
   void lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing);
+  void rub(std::size_t first, std::size_t last, double* acceleration);
   bool solve();
   void spread(std::size_t first, std::size_t last);
   bool share_out(std::size_t from, std::size_t to);

@@ -24,8 +24,8 @@ struct FeatureKey {
   friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
 };
 
-/// Identity of a contact, or of a stop of a joint (then both features are the stop's): it keys reports, modes
-/// and warm starts and survives edits and checkpoints.
+/// Identity of a contact, of a stop of a joint or of friction in one (then both features are that's): it keys
+/// reports, modes and warm starts and survives edits and checkpoints.
 struct ContactKey {
   FeatureKey of;       ///< feature of the body or shape
   FeatureKey against;  ///< feature of the obstacle
@@ -35,6 +35,9 @@ struct ContactKey {
 /// A contact of a body with an obstacle, or a stop of a joint between two bodies, at one configuration. Row 0
 /// is the normal direction (from the obstacle into free space), the others are tangential (in the plane: the
 /// normal turned clockwise).
+///
+/// Dry friction in a joint is a contact that never opens: row 1 is the rate of the joint's coordinate, row 0
+/// is empty and stands for a force that is known.
 struct Contact {
   static constexpr int max_rows = 3;
   static constexpr int max_columns = 6;
@@ -45,7 +48,9 @@ struct Contact {
   int columns = 0;        ///< velocities of the body
   Index other_v = 0;      ///< of a stop: first velocity of the second body
   int other_columns = 0;  ///< its velocities; 0 where there is no second body
-  int rows = 0;           ///< 2 in the plane, 3 in space, 1 of a stop
+  int rows = 0;           ///< 2 in the plane and of friction in a joint, 3 in space, 1 of a stop
+  Index rub = none;       ///< of friction in a joint: its number in the finder
+  double pressed = 0.0;   ///< then: `friction` times this is the largest force [N, N m] or impulse
   double gap = 0.0;       ///< negative where violated [m]
   Surface law;            ///< coefficients
   /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
@@ -61,6 +66,10 @@ struct Contact {
       obstacle_velocity_after{};  ///< of the same place of the obstacle at the end of a time step; else the
                                   ///< same as obstacle_velocity [m/s]
 
+  /// True of friction in a joint.
+  [[nodiscard]] bool rubs() const { return rub != none; }
+  /// First row that is one.
+  [[nodiscard]] int begin_row() const { return rubs() ? 1 : 0; }
   /// Row of the map from the body's velocities to the contact velocity.
   [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
   [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }

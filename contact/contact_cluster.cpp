@@ -29,7 +29,8 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
   contacts_ = contacts;
   solved_ = changed_modes_ = false;
-  if (contacts.size() == 1 && contacts[0].rows == 2 && is_one_planar_contact(problem_)) {
+  if (contacts.size() == 1 && contacts[0].rows == 2 && !contacts[0].rubs() &&
+      is_one_planar_contact(problem_)) {
     // The same form as before, which is the hot path.
     const Contact& contact = contacts[0];
     const BodySlot body = assembly.layout()->bodies()[contact.body];
@@ -58,8 +59,8 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   first_row_.clear();
   int rows = 0;
   for (const Contact& contact : contacts) {
-    first_row_.push_back(rows);
-    rows += contact.rows;
+    first_row_.push_back(rows - contact.begin_row());
+    rows += contact.rows - contact.begin_row();
   }
   const auto count = static_cast<std::size_t>(rows);
   problem_.reset(rows);
@@ -67,19 +68,22 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   restitution_.resize(count);
   impulse_.assign(count, 0.0);
   response_.resize(count * stride);
+  slides_.assign(contacts.size(), 0.0);
 
   const auto& bodies = assembly.layout()->bodies();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
     const BodySlot& body = bodies[contact.body];
     const BodyKind& kind = *assembly.body_kinds()[body.kind];
-    for (int i = 0; i < contact.rows; ++i) {
+    for (int i = contact.begin_row(); i < contact.rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       kind.apply_inverse_mass({body.slot, body.slot + 1}, contact.row(i), response_.data() + row * stride);
       before_[row] = contact.velocity(i, velocity_before);
       restitution_[row] = i == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
       RowSet& set = problem_.sets()[row];
-      if (i == 0) {
+      if (contact.rubs()) {
+        press(c);
+      } else if (i == 0) {
         set.kind = SetKind::half_line;
       } else {
         set.kind = contact.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
@@ -91,10 +95,10 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     for (std::size_t d = 0; d <= c; ++d) {
       if (contacts[c].body != contacts[d].body) continue;
-      for (int i = 0; i < contacts[c].rows; ++i) {
+      for (int i = contacts[c].begin_row(); i < contacts[c].rows; ++i) {
         const int row = first_row_[c] + i;
         const int last = c == d ? i + 1 : contacts[d].rows;
-        for (int j = 0; j < last; ++j) {
+        for (int j = contacts[d].begin_row(); j < last; ++j) {
           const int column = first_row_[d] + j;
           const double* const response = response_.data() + static_cast<std::size_t>(column) * stride;
           double sum = 0.0;
@@ -112,7 +116,7 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
   const auto rows = static_cast<std::size_t>(problem_.rows());
   coupled_.assign(rows * v.size(), 0.0);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = 0; i < contacts_[c].rows; ++i) {
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       double* const response = coupled_.data() + static_cast<std::size_t>(first_row_[c] + i) * v.size();
       // Contacts count velocities from the first of all.
       contacts_[c].add_transposed(i, 1.0, response - v.begin);
@@ -120,7 +124,7 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
     }
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = 0; i < contacts_[c].rows; ++i) {
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       const int row = first_row_[c] + i;
       for (int column = 0; column <= row; ++column) {
         const double* const response = coupled_.data() + static_cast<std::size_t>(column) * v.size();
@@ -142,13 +146,28 @@ void ContactCluster::apply_coupled(double* velocity) const {
 
 void ContactCluster::add_loads(double scale, double* load) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = 0; i < contacts_[c].rows; ++i) {
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       contacts_[c].add_transposed(i, scale * impulse_[static_cast<std::size_t>(first_row_[c] + i)], load);
     }
   }
 }
 
+void ContactCluster::press(std::size_t contact) {
+  const Contact& at = contacts_[contact];
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact] + 1)];
+  const double slides = slides_[contact] * at.pressed, bound = at.friction * at.pressed;
+  set.kind = SetKind::interval;
+  set.lower = slides_[contact] != 0.0 ? slides : -bound;
+  set.upper = slides_[contact] != 0.0 ? slides : bound;
+}
+
 void ContactCluster::slide(std::size_t contact, double ratio) {
+  if (contacts_[contact].rubs()) {
+    slides_[contact] = ratio;
+    press(contact);
+    problem_.group();
+    return;
+  }
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact] + 1)];
   set.kind = SetKind::proportional;
   set.coefficient = ratio;
@@ -158,7 +177,7 @@ void ContactCluster::slide(std::size_t contact, double ratio) {
 void ContactCluster::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = 0; i < contacts_[c].rows; ++i) {
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       b[row] = contacts_[c].velocity_after(i, velocity_free) + restitution_[row] * before_[row];
     }
@@ -222,7 +241,7 @@ void ContactCluster::set_impulses(std::span<const double> impulses) {
 double ContactCluster::obstacle_work(std::size_t contact) const {
   const Contact& at = contacts_[contact];
   double work = 0.0;
-  for (int i = 0; i < at.rows; ++i) {
+  for (int i = at.begin_row(); i < at.rows; ++i) {
     const auto row = static_cast<std::size_t>(i);
     work += 0.5 * impulse_[static_cast<std::size_t>(first_row_[contact] + i)] *
             (at.obstacle_velocity[row] + at.obstacle_velocity_after[row]);
@@ -233,7 +252,7 @@ double ContactCluster::obstacle_work(std::size_t contact) const {
 void ContactCluster::apply(double* velocity) const {
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = 0; i < contacts_[c].rows; ++i) {
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       for (int k = 0; k < contacts_[c].columns; ++k) {
         velocity[contacts_[c].v + static_cast<Index>(k)] +=

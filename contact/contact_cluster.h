@@ -27,6 +27,8 @@ public:
   /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is symmetric and positive
   /// definite over the velocities `v`, `solve` overwrites numbers over them by A^-1 times them.
   void couple(Range v, const std::function<void(double*)>& solve);
+  /// Takes note of another Contact::pressed of friction in a joint.
+  void press(std::size_t contact);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
   void slide(std::size_t contact, double ratio);
   /// Makes b from the velocities that the step would end with if no contact acted, against those of the
@@ -65,7 +67,7 @@ public:
   [[nodiscard]] bool changed_modes() const { return changed_modes_; }
   /// Report of the last solution.
   [[nodiscard]] const ContactReport& report() const { return report_; }
-  /// First row of a contact.
+  /// Place of row 0 of a contact, the others behind it; of friction in a joint only the row behind is there.
   [[nodiscard]] int first_row(std::size_t contact) const { return first_row_[contact]; }
 
 private:
@@ -74,6 +76,7 @@ private:
   std::span<const Contact> contacts_;
   ContactProblem problem_;
   std::vector<int> first_row_;
+  std::vector<double> slides_;  // by contact: of friction in a joint the ratio given to slide(), or 0
   std::vector<double> before_, restitution_, impulse_;
   std::vector<double> response_;  // M^-1 H^T, one row of max_columns numbers per contact row
   Range coupled_range_;

@@ -15,7 +15,7 @@ ContactFinder::ContactFinder(const Assembly& assembly) : assembly_(&assembly) {
   of_island_.reserve(assembly.islands().size());
   Index centre = 0, feature = 0;
   for (const Island& island : assembly.islands()) {
-    Touching touching{{centre, centre}, {feature, feature}, {}};
+    Touching touching{{centre, centre}, {feature, feature}, {}, {}};
     while (centre < centres_.size() && centres_[centre].bodies.end <= island.bodies.end) ++centre;
     while (feature < features_.size() && features_[feature].body < island.bodies.end) ++feature;
     touching.centres.end = centre;
@@ -23,6 +23,7 @@ ContactFinder::ContactFinder(const Assembly& assembly) : assembly_(&assembly) {
     of_island_.push_back(touching);
   }
   collect_stops();
+  collect_rubbing();
 }
 
 void ContactFinder::collect_obstacles() {
@@ -112,55 +113,6 @@ void ContactFinder::make_law_table() {
   }
 }
 
-void ContactFinder::collect_stops() {
-  std::vector<BodyId> ends;
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    Range& range = of_island_[island].stops;
-    range.begin = static_cast<Index>(stops_.size());
-    for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {
-      const JointKind& kind = *assembly_->joint_kinds()[k];
-      if (kind.limits() == 0) continue;
-      const Range joints = assembly_->joints(island, k);
-      for (Index joint = joints.begin; joint < joints.end; ++joint) {
-        ends.clear();
-        kind.ends(joint, ends);
-        std::erase(ends, ground);
-        const Index body = assembly_->layout()->index(ends.front());
-        for (Index which = 0; which < kind.limits(); ++which) {
-          if (!kind.has_limit(joint, which)) continue;
-          stops_.push_back({&kind, joint, which, assembly_->joint_id(k, joint).serial, body});
-        }
-      }
-    }
-    range.end = static_cast<Index>(stops_.size());
-  }
-}
-
-void ContactFinder::make_stop(const Stop& stop, const StateView& state, const Evaluation& evaluation,
-                              Contact& out) const {
-  JointLimit limit;
-  stop.kind->limit({state, evaluation.rotation.data()}, stop.slot, stop.which, limit);
-  out = {};
-  const FeatureKey key{FeatureKey::Owner::joint, stop.serial, stop.which};
-  out.key = {key, key};
-  out.body = stop.body;
-  out.rows = 1;
-  out.gap = limit.row.gap;
-  out.drift[0] = limit.row.drift;
-  out.law.friction = 0.0;
-  out.law.normal_restitution = limit.restitution;
-  out.law.tangential_restitution = 0.0;
-  const JointRow::Block& first = limit.row.blocks[0];
-  out.v = first.v;
-  out.columns = first.columns;
-  std::copy_n(first.jacobian.begin(), first.columns, out.row(0));
-  if (limit.row.bodies < 2) return;
-  const JointRow::Block& second = limit.row.blocks[1];
-  out.other_v = second.v;
-  out.other_columns = second.columns;
-  std::copy_n(second.jacobian.begin(), second.columns, out.row(0) + first.columns);
-}
-
 bool ContactFinder::needs_rotations() const {
   if (!stops_.empty()) return true;
   return std::any_of(features_.begin(), features_.end(), [](const Feature& feature) {
@@ -173,8 +125,8 @@ std::string ContactFinder::name(const ContactKey& key) const {
   const Index token = system.token();
   if (key.of.owner == FeatureKey::Owner::joint) {
     const JointKind& kind = system.joint_kinds().kind_of(key.of.serial);
-    return system.name(JointId{key.of.serial, token}) + " (" + std::string(kind.limit_label(key.of.feature)) +
-           ")";
+    const std::string name = system.name(JointId{key.of.serial, token});
+    return kind.rubs() ? name : name + " (" + std::string(kind.limit_label(key.of.feature)) + ")";
   }
   std::string text =
       key.of.owner == FeatureKey::Owner::body
@@ -210,7 +162,7 @@ void ContactFinder::find(Index island, const Query& query, std::vector<Contact>&
   const Range stops = of_island_[island].stops;
   for (Index stop = stops.begin; stop < stops.end; ++stop) {
     Contact contact;
-    make_stop(stops_[stop], query.state, query.evaluation, contact);
+    make_stop(stop, query.state, query.evaluation, contact);
     if (contact.gap <= query.margin) out.push_back(contact);
   }
 }
@@ -289,7 +241,7 @@ void ContactFinder::add(const BodySlot& body, const Feature& feature, const Quer
 
 void ContactFinder::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             Contact& out) const {
-  if (pair.stop != none) return make_stop(stops_[pair.stop], state, evaluation, out);
+  if (pair.stop != none) return make_stop(pair.stop, state, evaluation, out);
   const Obstacle& obstacle = obstacles_[pair.obstacle];
   if (obstacle.moving == none) return make_contact(pair, state, evaluation, nullptr, out);
   const ObstacleMotion now = motion(obstacle, state.time);
@@ -299,7 +251,7 @@ void ContactFinder::contact(const ContactPair& pair, const StateView& state, con
 void ContactFinder::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             const ObstaclePlaces& places, Contact& out) const {
   assert(moving_ == 0 || places.time_ == state.time);
-  if (pair.stop != none) return make_stop(stops_[pair.stop], state, evaluation, out);
+  if (pair.stop != none) return make_stop(pair.stop, state, evaluation, out);
   const Index moving = obstacles_[pair.obstacle].moving;
   make_contact(pair, state, evaluation, moving == none ? nullptr : &places.motions_[moving], out);
 }

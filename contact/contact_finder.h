@@ -16,13 +16,13 @@
 
 namespace carom {
 
-/// A feature of a body and an obstacle, wherever they stand; or a stop of a joint.
+/// A feature of a body and an obstacle, wherever they stand; or a stop of a joint, or friction in one.
 struct ContactPair {
   Index body = none;      ///< in the order of assembly
   Index feature = none;   ///< of the finder; `none` where the body touches at its centre
   Index material = none;  ///< row of the finder's table of laws
   Index obstacle = none;  ///< of the finder; `none` of a stop
-  Index stop = none;      ///< of the finder; `none` of an obstacle
+  Index stop = none;      ///< of the finder, or friction in a joint; `none` of an obstacle
   friend bool operator==(const ContactPair&, const ContactPair&) = default;
 };
 
@@ -64,6 +64,15 @@ public:
 
   /// All pairs of one island, in the order of find(). Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index island) const;
+  /// Friction in the joints of one island. Made at each call.
+  [[nodiscard]] std::vector<ContactPair> rubbing(Index island) const;
+  /// Appends it as contacts, whose `pressed` has the constant part of the bound. Sets nothing of the past.
+  void find_rubbing(Index island, const StateView& state, const Evaluation& evaluation,
+                    std::vector<Contact>& out) const;
+  /// True if there is any in an island.
+  [[nodiscard]] bool rubs(Index island) const { return !of_island_[island].rubbing.empty(); }
+  /// Brings row 1 of friction in a joint to a configuration, and its drift.
+  void place_rubbing(const JointView& at, Contact& contact) const;
   /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date. Places
   /// its obstacle by itself.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
@@ -102,9 +111,9 @@ private:
   };
   // What touches in one island: ranges of centres_ and features_.
   struct Touching {
-    Range centres, features, stops;
+    Range centres, features, stops, rubbing;
   };
-  // A unilateral row of a joint.
+  // A unilateral row of a joint, or friction in one (`which`: none).
   struct Stop {
     const JointKind* kind;
     Index slot, which;
@@ -132,8 +141,12 @@ private:
   void collect_centres();
   void make_law_table();
   void collect_stops();
-  // Writes the contact of a stop.
-  void make_stop(const Stop& stop, const StateView& state, const Evaluation& evaluation, Contact& out) const;
+  void collect_rubbing();
+  // Calls f(kind, slot, serial, one of the bodies) for joints of one island that limit or rub.
+  template <class F>
+  void for_joints(Index island, F&& f) const;
+  // Writes the contact of a stop or of friction.
+  void make_stop(Index number, const StateView& state, const Evaluation& evaluation, Contact& out) const;
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
   [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
@@ -160,7 +173,7 @@ private:
   Index moving_ = 0;               // obstacles that move
   std::vector<Centres> centres_;   // ordered by body
   std::vector<Feature> features_;  // ordered by body
-  std::vector<Stop> stops_;        // by island
+  std::vector<Stop> stops_;        // by island, then friction by island
   std::vector<Touching> of_island_;
   std::vector<MaterialId> materials_;  // rows of the law table
   std::vector<Surface> laws_;          // row-major: material, obstacle

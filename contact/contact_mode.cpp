@@ -13,12 +13,16 @@ namespace {
 
 ContactMode interval_mode(const RowSet& set, double impulse, double xi, double impulse_scale,
                           double velocity_scale) {
-  if (std::abs(impulse) <= mode_threshold * impulse_scale) return ContactMode::open;
-  if (std::abs(xi) <= mode_threshold * velocity_scale) return ContactMode::stick;
   const double margin = mode_threshold * impulse_scale;
-  if (impulse <= set.lower + margin && xi > 0.0) return ContactMode::slip_positive;
-  if (impulse >= set.upper - margin && xi < 0.0) return ContactMode::slip_negative;
-  return ContactMode::stick;
+  const bool moves = std::abs(xi) > mode_threshold * velocity_scale;
+  // Bounds may be small against the impulses around them, so what moves is told from them.
+  if (moves && xi > 0.0 && impulse <= set.lower + margin) {
+    return set.lower == 0.0 ? ContactMode::open : ContactMode::slip_positive;
+  }
+  if (moves && xi < 0.0 && impulse >= set.upper - margin) {
+    return set.upper == 0.0 ? ContactMode::open : ContactMode::slip_negative;
+  }
+  return std::abs(impulse) <= margin ? ContactMode::open : ContactMode::stick;
 }
 
 }  // namespace

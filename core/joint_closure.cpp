@@ -62,6 +62,34 @@ std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
   throw ModelError(message);
 }
 
+/// Demands that forces of joints which bound friction are unique.
+void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints& joints) {
+  const System& system = assembly.system();
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly.joint_kinds()[k];
+    if (!kind.rubs()) continue;
+    const Range range = assembly.joints(island, k);
+    for (Index slot = range.begin; slot < range.end; ++slot) {
+      if (kind.rub(slot).coefficient == 0.0) continue;
+      const JointId bearing = kind.on_joint(slot);
+      for (std::size_t row = 0; row < joints.size(); ++row) {
+        if (joints.factors().pivot(row) >= dependent_pivot) continue;
+        std::vector<JointId> taking_part = partners(joints, row);
+        taking_part.push_back(joints.joint(row));
+        if (std::find(taking_part.begin(), taking_part.end(), bearing) == taking_part.end()) continue;
+        std::string message = system.name(assembly.joint_id(k, slot)) + ": coefficient is " +
+                              to_text(kind.rub(slot).coefficient) + ", and forces of " +
+                              system.name(bearing) + " are not unique: redundant are";
+        for (const JointId joint : taking_part) {
+          message += (joint == taking_part.front() ? " " : ", ") + system.name(joint);
+        }
+        throw ModelError(message +
+                         "; allowed: a constant bound, or joints none of which follows from others");
+      }
+    }
+  }
+}
+
 /// The row that is furthest off.
 template <class F>
 std::size_t worst_row(const IslandJoints& joints, F&& off) {
@@ -109,6 +137,7 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
     });
     std::copy(moved.begin() + range.q.begin, moved.begin() + range.q.end, state.q.begin() + range.q.begin);
   }
+  demand_unique_pressure(assembly, island, joints);
   // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
   for (const BodySlot& slot : layout.bodies()) {
     if (slot.v < range.v.begin || slot.v >= range.v.end) continue;

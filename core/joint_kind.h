@@ -68,6 +68,13 @@ struct JointLimit {
   double restitution = 0.0;  ///< coefficient of restitution
 };
 
+/// Dry friction along the coordinate of a joint.
+struct JointRub {
+  double bound = 0.0;          ///< of the friction while it slides, constant part [N, N m]
+  double static_factor = 1.0;  ///< sticking takes this many times more
+  double coefficient = 0.0;  ///< of the force between the bodies of the joint, which adds to the bound [1, m]
+};
+
 /// What a joint does to its body `to`; to `from` it does the opposite, at the same place.
 struct JointReaction {
   std::array<double, 3> force{};  ///< on `to`, at its end, in the fixed frame [N], or impulse [N s]
@@ -121,7 +128,11 @@ public:
   virtual void limit(const JointView& /*at*/, Index /*joint*/, Index /*which*/, JointLimit& /*out*/) const {}
   /// Name of a unilateral row in messages, e.g. "upper".
   [[nodiscard]] virtual std::string_view limit_label(Index /*which*/) const { return {}; }
-  /// What the multipliers of a joint's rows do to its body `to`.
+  /// True if joints of this kind rub along the coordinate of the joint that they act on.
+  [[nodiscard]] virtual bool rubs() const { return false; }
+  /// The friction of a joint.
+  [[nodiscard]] virtual JointRub rub(Index /*joint*/) const { return {}; }
+  /// What the multipliers of a joint's rows do to its body `to`; of one that rubs, what its friction does.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;
   /// Adds all that distinguishes this kind's joints (functions cannot).

@@ -76,9 +76,10 @@ void IslandDriver::advance(double target, DriverNews& news) {
   const auto look = [&](std::span<const double> y, double projected) {
     news.flows[EnergyFlow::projection] += projected - shown_projection_;
     shown_projection_ = projected;
-    for (Index line = 0; line < work_lines; ++line) {
+    for (Index line = 0; line < motion_.work_count(); ++line) {
       const double value = y[motion_.work_place(static_cast<WorkLine>(line))];
-      constexpr std::array flows{EnergyFlow::dashpot, EnergyFlow::sliding, EnergyFlow::external};
+      constexpr std::array<EnergyFlow, work_lines> flows{EnergyFlow::dashpot, EnergyFlow::sliding,
+                                                         EnergyFlow::external, EnergyFlow::joint_friction};
       news.flows[flows[line]] += value - delivered_[line];
       delivered_[line] = value;
     }
@@ -121,11 +122,20 @@ void IslandDriver::write(State& state, ContactModes& modes) const {
 
 JointReaction IslandDriver::reaction(const JointKind& kind, Index slot, JointId joint) {
   motion_.evaluate(looked_at_, seen_.data(), true);
+  const MotionWorkspace& work = work_->motion;
+  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
+  if (kind.rubs()) {
+    const auto& closed = motion_.closed().list();
+    const auto rubs = std::find_if(closed.begin(), closed.end(), [&](const ClosedContact& contact) {
+      return contact.at.rubs() && contact.at.key.of.serial == joint.serial;
+    });
+    const double force = rubs == closed.end() ? 0.0 : rubs->tangential;
+    return kind.reaction(at, slot, &force);
+  }
   const std::span<const double> multipliers = motion_.joint_multipliers();
   std::size_t row = 0;
   while (motion_.joints().joint(row) != joint) ++row;
-  const MotionWorkspace& work = work_->motion;
-  return kind.reaction({work.trial.view(), work.evaluation.rotation.data()}, slot, multipliers.data() + row);
+  return kind.reaction(at, slot, multipliers.data() + row);
 }
 
 double IslandDriver::longest_step() const {
@@ -207,7 +217,7 @@ void IslandDriver::go_to_event(DriverNews& news) {
     const double noise = 4.0 * std::max(start_.noises[next_.which], end_.noises[next_.which]);
     for (std::size_t i = at.first; i < at.last; ++i) {
       const ClosedContact& c = closed[i];
-      if (c.normal <= at.margin + noise && c.normal <= noise) {
+      if (!c.at.rubs() && c.normal <= at.margin + noise && c.normal <= noise) {
         lifting_.push_back(c.pair);
       } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
         breaking_.push_back({c.pair, c.tangential});

@@ -124,6 +124,7 @@ void IslandDriver::collect_candidates(std::size_t first, std::size_t last) {
     Candidate& candidate = candidates.emplace_back();
     candidate.pair = motion_.pairs()[i];
     candidate.at = contact;
+    if (contact.rubs()) candidate.stiffness = std::numeric_limits<double>::infinity();
     const double slip = contact.rows == 2 ? contact.velocity(1, velocity) : 0.0;
     candidate.slip = std::abs(slip) > speed_noise() && candidate.pair != stopped_ ? slip : 0.0;
     candidate.slippery = contact.law.sticking_friction() == 0.0;
@@ -205,6 +206,7 @@ void IslandDriver::tell_changes(DriverNews& news) {
   for (const ClosedContact& contact : now) {
     const auto before = find(before_, contact.pair);
     if (before == before_.end()) {
+      if (contact.at.rubs()) continue;  // it was there all the time
       change(EventKind::closing, contact.at, contact.mode);
     } else if (before->mode != contact.mode && !contact.slippery) {
       change(contact.sticks() ? EventKind::stick : EventKind::slip, contact.at, contact.mode);

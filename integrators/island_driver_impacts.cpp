@@ -59,7 +59,10 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   touching.clear();
   for (std::size_t i = first; i < last; ++i) {
     if (!touches(i)) continue;
+    // Friction in a joint that is bound by a constant has no impulse.
+    if (work_->contacts[i].rubs() && !motion_.bears(work_->contacts[i])) continue;
     Contact& contact = touching.emplace_back(work_->contacts[i]);
+    contact.pressed = 0.0;
     contact.friction = contact.law.friction_at(contact.sliding_speed(velocity));
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (jumped_ && closed_at_[i] != 0) {
@@ -73,7 +76,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   cluster.build(*assembly_, touching, velocity);
   motion_.couple(cluster);
   cluster.set_free_velocity(velocity);
-  const bool solved = cluster.solve(work_->chain).usable();
+  const bool solved = motion_.solve(cluster, touching, JointLevel::change, work_->chain);
   // Slower than the capture speed all that touches closes anyway.
   if (!solved && captured) cluster.forget_impulses();
   if (!solved && !captured) {
@@ -122,7 +125,7 @@ void IslandDriver::close_captured(DriverNews& news) {
   }
   const double rounding = std::sqrt(2.0 * 4.0 * gap_noise_ * fall);
   for (const Contact& contact : work_->touching) {
-    if (contact.velocity(0, velocity) > options_.capture_speed) continue;
+    if (contact.rubs() || contact.velocity(0, velocity) > options_.capture_speed) continue;
     ClosedContact& closed = list.emplace_back();
     const bool stops = contact.rows > 1 && contact.sliding_speed(velocity) <= rounding;
     closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
@@ -147,6 +150,15 @@ void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews&
       kind == EventKind::accumulation ? accumulation_time() : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
     const Contact& contact = cluster.contacts()[c];
+    if (contact.rubs()) {
+      const auto place = static_cast<std::size_t>(cluster.first_row(c) + 1);
+      const double before = cluster.before()[place], after = contact.velocity(1, work.trial.v.data());
+      const double gained = 0.5 * cluster.impulses()[place] * (before + after);
+      gain += gained;
+      scale += std::abs(cluster.impulses()[place]) * (std::abs(before) + std::abs(after));
+      news.flows[EnergyFlow::joint_friction] -= gained;
+      continue;
+    }
     EventRecord& event = tell(kind, contact, news);
     for (int row = 0; row < contact.rows; ++row) {
       const auto at = static_cast<std::size_t>(row);
@@ -211,6 +223,14 @@ void IslandDriver::tell_joints(DriverNews& news) {
           {assembly_->joint_id(k, joint), kind.reaction(at, joint, of_joint), time_});
     }
   }
+  for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {
+    const Contact& contact = work_->cluster.contacts()[c];
+    if (!contact.rubs()) continue;
+    JointReaction reaction;
+    reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c) + 1)];
+    const JointId friction{contact.key.of.serial, assembly_->system().token()};
+    news.joint_impulses.push_back({friction, reaction, time_});
+  }
 }
 
 /// The limit of an impact at vanishing speed: of its answers with impulses the one that takes most energy.
@@ -220,9 +240,13 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   std::vector<Contact>& touching = work_->touching;
   touching.clear();
   std::vector<std::string> names;
-  for (const Candidate& candidate : candidates) {
-    touching.push_back(candidate.at);
-    names.push_back(finder_->name(candidate.at.key));
+  std::vector<std::size_t> taking_part;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    // Friction in joints keeps nothing from jamming.
+    if (candidates[i].at.rubs()) continue;
+    taking_part.push_back(i);
+    touching.push_back(candidates[i].at);
+    names.push_back(finder_->name(candidates[i].at.key));
   }
   ContactCluster& cluster = work_->cluster;
   cluster.build(*assembly_, touching, velocity);
@@ -265,8 +289,9 @@ void IslandDriver::impact_without_collision(DriverNews& news) {
   const std::size_t told = news.events.size();
   book_impact(EventKind::impact_without_collision, energy_before, news);
   for (std::size_t i = told; i < news.events.size(); ++i) {
-    news.events[i].stiffness = candidates[i - told].stiffness;
-    news.events[i].free_acceleration = candidates[i - told].free_acceleration;
+    const Candidate& candidate = candidates[taking_part[i - told]];
+    news.events[i].stiffness = candidate.stiffness;
+    news.events[i].free_acceleration = candidate.free_acceleration;
   }
   stopped_ = {};
   motion_.evaluate(time_, y_.data(), false);

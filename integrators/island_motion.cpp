@@ -5,8 +5,34 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace carom {
+
+namespace {
+
+// Bounds of friction in joints and the forces in them are repeated until they change no more than by this
+// part; answers of contact problems are certified to 1e-12.
+constexpr double settled = 1e-13;
+// Where the changes do not shrink any more this is rounding.
+constexpr double nearly_settled = 1e-11;
+constexpr int most_repetitions = 200;
+
+/// Whether bounds have settled, from their changes one after the other.
+class Settling {
+public:
+  /// True if there is no need to go on.
+  bool take(double change) {
+    const bool stalls = change <= nearly_settled && change >= 0.5 * before_;
+    before_ = change;
+    return change <= settled || stalls;
+  }
+
+private:
+  double before_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
 
 MotionWorkspace::MotionWorkspace(const Assembly& assembly)
     : trial(assembly.layout()), evaluation(make_evaluation(assembly)), lengths(assembly.length_scales()) {
@@ -24,15 +50,19 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       finder_(&finder),
       work_(&work),
       island_(island),
+      work_count_(finder.rubs(island) ? work_lines : work_lines - 1),
       q_size_(assembly.islands()[island].q.size()),
       v_size_(assembly.islands()[island].v.size()),
       z_size_(assembly.islands()[island].z.size()),
-      size_(q_size_ + v_size_ + z_size_ + work_lines),
+      size_(q_size_ + v_size_ + z_size_ + work_count_),
       tolerances_(size_, options.absolute_tolerance),
       pairs_(finder.pairs(island)),
       joints_(assembly, island) {
   if (!joints_.empty()) {
     closed_.bind(assembly, joints_);
+    pressure_ = JointPressure(assembly, island, joints_);
+    const std::vector<ContactPair> rubbing = finder.rubbing(island);
+    pairs_.insert(pairs_.end(), rubbing.begin(), rubbing.end());
     // What answers together stands together.
     std::stable_sort(pairs_.begin(), pairs_.end(), [&](const ContactPair& a, const ContactPair& b) {
       return group(a.body) < group(b.body);
@@ -79,7 +109,7 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       }
     }
   });
-  for (Index i = 0; i < work_lines; ++i) tolerances_[size_ - 1 - i] = mass * options.absolute_tolerance;
+  for (Index i = 0; i < work_count_; ++i) tolerances_[size_ - 1 - i] = mass * options.absolute_tolerance;
 }
 
 void IslandMotion::contact(std::size_t pair, Contact& out) const {
@@ -132,7 +162,58 @@ bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
   }
   if (!with_reactions || closed_.list().empty()) return true;
   closed_.locate(*finder_, state, work.evaluation, work.places);
+  if (!pressure_.empty()) return add_pressed_reactions();
   return closed_.add_reactions(assembly, work.acceleration.data());
+}
+
+/// Forces of contacts, with friction in joints bound by the forces that follow.
+bool IslandMotion::add_pressed_reactions() {
+  MotionWorkspace& work = *work_;
+  const Range v = assembly_->islands()[island_].v;
+  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
+  work.free.resize(work.acceleration.size());
+  std::copy(work.acceleration.begin() + v.begin, work.acceleration.begin() + v.end,
+            work.free.begin() + v.begin);
+  Settling settling;
+  for (int i = 0; i < most_repetitions; ++i) {
+    std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
+    if (!closed_.add_reactions(*assembly_, work.acceleration.data())) return false;
+    const std::span<const double> multipliers = joint_multipliers();
+    double change = 0.0;
+    for (ClosedContact& contact : closed_.list()) {
+      change = std::max(change, pressure_.press(contact.at, at, multipliers.data(), 1.0));
+    }
+    if (settling.take(change)) return true;
+  }
+  return false;
+}
+
+bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
+                         SolverChain& chain) {
+  if (pressure_.empty()) return cluster.solve(chain).usable();
+  MotionWorkspace& work = *work_;
+  const Range v = assembly_->islands()[island_].v;
+  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
+  const bool impact = level == JointLevel::change;
+  std::vector<double>& answer = work.of_velocity;
+  work.multipliers.resize(joints_.size());
+  Settling settling;
+  for (int i = 0; i < most_repetitions; ++i) {
+    if (!cluster.solve(chain).usable()) return false;
+    for (Index k = v.begin; k < v.end; ++k) answer[k] = impact ? 0.0 : work.momentum[k];
+    cluster.add_loads(1.0, answer.data());
+    joints_.apply_inverse_mass(answer.data());
+    joints_.hold(level, answer.data(), work.multipliers.data());
+    double change = 0.0;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      if (!pressure_.bears(contacts[c])) continue;
+      change =
+          std::max(change, pressure_.press(contacts[c], at, work.multipliers.data(), impact ? 0.0 : 1.0));
+      cluster.press(c);
+    }
+    if (settling.take(change)) return true;
+  }
+  return false;
 }
 
 void IslandMotion::rates(double time, const double* y, double* rates) {
@@ -157,13 +238,14 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
     }
     std::copy_n(work.z_rates.begin() + all.z.begin, z_size_, rates + q_size_ + v_size_);
   }
-  double dashpot = inside, external = 0.0, sliding = 0.0;
+  double dashpot = inside, external = 0.0, sliding = 0.0, in_joints = 0.0;
   for (Index i = all.v.begin; i < all.v.end; ++i) {
     if (books_dissipative_) dashpot -= work.dissipative[i] * state.v[i];
     if (books_external_) external += work.external[i] * state.v[i];
   }
   for (const ClosedContact& contact : closed_.list()) {
-    sliding -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.velocity(1, state.v));
+    double& rubbed = contact.at.rubs() ? in_joints : sliding;
+    rubbed -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.velocity(1, state.v));
     external += contact.normal * contact.at.obstacle_velocity[0] +
                 contact.tangential * contact.at.obstacle_velocity[1];
   }
@@ -175,6 +257,7 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
   rates[work_place(WorkLine::dashpot)] = dashpot;
   rates[work_place(WorkLine::sliding)] = sliding;
   rates[work_place(WorkLine::external)] = external;
+  if (work_count_ == work_lines) rates[work_place(WorkLine::joint_friction)] = in_joints;
 }
 
 void IslandMotion::jacobian(double time, const double* y, double* jacobian) {

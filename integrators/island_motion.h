@@ -9,6 +9,8 @@
 #include <carom/contact/closed_contacts.h>
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
+#include <carom/contact/joint_pressure.h>
+#include <carom/contact/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
@@ -31,15 +33,16 @@ struct CAROM_API MotionWorkspace {
   std::vector<double> acceleration;           ///< with the reactions of closed contacts, if asked for
   std::vector<double> of_position, of_velocity, momentum;  ///< corrections; momentum: loads without reactions
   std::vector<double> multipliers;                         ///< of joints
+  std::vector<double> free;                                ///< accelerations without contacts
   std::vector<double> lengths;                             ///< Assembly::length_scales()
   std::vector<double> z_rates;
   ObstaclePlaces places;  ///< at the time of the state looked at
 };
 
 /// Works that are integrated along.
-enum class WorkLine : std::uint8_t { dashpot, sliding, external };
-/// Number of them.
-inline constexpr Index work_lines = 3;
+enum class WorkLine : std::uint8_t { dashpot, sliding, external, joint_friction };
+/// Number of them; the last is integrated where joints rub only.
+inline constexpr Index work_lines = 4;
 
 /// The unknowns of one island: q, v, z, then works.
 class CAROM_API IslandMotion final : public FlowProblem {
@@ -62,7 +65,7 @@ public:
   /// Contacts that are closed.
   [[nodiscard]] ClosedContacts& closed() { return closed_; }
   [[nodiscard]] const ClosedContacts& closed() const { return closed_; }
-  /// Everything that might touch.
+  /// Everything that might touch, and friction in joints, which always does.
   [[nodiscard]] const std::vector<ContactPair>& pairs() const { return pairs_; }
   /// Which island.
   [[nodiscard]] Index island() const { return island_; }
@@ -85,6 +88,8 @@ public:
 
   /// Place of the first velocity in y.
   [[nodiscard]] std::size_t v_begin() const { return q_size_; }
+  /// Works that are integrated: the first of the lines.
+  [[nodiscard]] Index work_count() const { return work_count_; }
   /// Place of a work in y.
   [[nodiscard]] std::size_t work_place(WorkLine line) const {
     return q_size_ + v_size_ + z_size_ + static_cast<std::size_t>(line);
@@ -96,6 +101,12 @@ public:
   [[nodiscard]] Index group(Index body) const { return assembly_->group(body); }
   /// Lets a problem of contacts know what joints bind the bodies; the workspace holds the configuration.
   void couple(ContactCluster& cluster);
+  /// True if the bound of friction in a joint follows from forces.
+  [[nodiscard]] bool bears(const Contact& contact) const { return pressure_.bears(contact); }
+  /// Solves a problem that was coupled, of accelerations, or of changes of velocity by an impact. Bounds of
+  /// friction in joints that follow from forces are found by repetition; it is not solved where they do not
+  /// settle. \param contacts those of the problem
+  bool solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level, SolverChain& chain);
   /// Adds what the impulses of a problem that was coupled do to the velocities.
   void apply(const ContactCluster& cluster, double* velocity) const;
   /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
@@ -121,14 +132,18 @@ public:
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
 
 private:
+  bool add_pressed_reactions();
+
   const Assembly* assembly_;
   const ContactFinder* finder_;
   MotionWorkspace* work_;
   Index island_;
+  Index work_count_;
   std::size_t q_size_, v_size_, z_size_, size_;
   std::vector<double> tolerances_;
   std::vector<ContactPair> pairs_;
   IslandJoints joints_;
+  JointPressure pressure_;
   ClosedContacts closed_;
   std::vector<LoadDerivative> derivatives_;
   std::vector<ElementId> kink_elements_;

@@ -70,12 +70,13 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
     if (sign != 0.0 && contacts_[c].rows > 1) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
-  const ContactReport& report = cluster_.solve(chain);
+  const bool solved = motion.solve(cluster_, contacts_, JointLevel::acceleration, chain);
+  const ContactReport& report = cluster_.report();
   if (report.outcome == Outcome::no_solution) {
     name_culprit(candidates);
     return Decision::impossible;
   }
-  if (!report.usable()) return Decision::failed;
+  if (!solved) return Decision::failed;
   Decision decision = Decision::made;
   read_modes(candidates, cluster_.impulses());
   if (report.outcome == Outcome::several_solutions) {
@@ -91,8 +92,14 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
-    const double normal = force[static_cast<std::size_t>(cluster_.first_row(c))];
     const ContactMode found = cluster_.modes()[c];
+    // Friction in a joint never opens.
+    const bool rubs = contacts_[c].rubs();
+    if (rubs && slides_[i].sign == 0.0) {
+      candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
+      continue;
+    }
+    const double normal = rubs ? 1.0 : force[static_cast<std::size_t>(cluster_.first_row(c))];
     if (slides_[i].sign != 0.0) {
       candidates[i].mode = !(normal > 0.0)         ? ContactMode::open
                            : slides_[i].sign > 0.0 ? ContactMode::slip_positive
@@ -134,6 +141,7 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
   const ContactProblem& problem = cluster_.problem();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
+    if (contacts_[c].rubs()) continue;
     const int row = cluster_.first_row(c);
     const double ratio = -slides_[i].sign * contacts_[c].friction;
     candidates[i].stiffness = problem.w(row, row);

@@ -31,7 +31,7 @@ struct Candidate {
   bool lifts = false;     ///< its force has come to an end: it opens, unless that cannot be
   double push = 0.0;      ///< the friction force that was exhausted [N]
   // Where the problem was Painleve's:
-  double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]
+  double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
 };
 

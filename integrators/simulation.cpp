@@ -343,7 +343,8 @@ JointReaction Simulation::reaction(JointId joint) const {
     throw ModelError("reaction of a joint: joint is " + system.name(joint) +
                      "; allowed: a joint of this model");
   }
-  if (system.joint_kinds().kind_of(joint.serial).rows() == 0) {
+  const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
+  if (kind.rows() == 0 && !kind.rubs()) {
     throw ModelError("reaction of a joint: " + system.name(joint) +
                      " only limits; allowed: a joint that binds (impacts of a stop are events)");
   }

@@ -9,6 +9,10 @@ namespace carom {
 
 namespace {
 
+// Bounds of friction in joints that follow from forces change no more than by this part: answers of contact
+// problems are certified to 1e-12.
+constexpr double settled_pressure = 1e-12;
+
 /// Where elements book. The conservative part goes into `total`, to which finish() adds the others; so do
 /// those that no element books, whose arrays are empty.
 Loads open(std::vector<double>& total, std::vector<double>& dissipative, std::vector<double>& external) {
@@ -84,6 +88,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   projected_ = 0.0;
   report_.contacts.clear();
   report_.joint_impulses.clear();
+  rubbing_modes_.clear();
   report_.time = end_time;
   report_.step = step;
   report_.iteration = options_.iteration;
@@ -189,6 +194,11 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
       }
       violation = left;
     }
+    if (with_joints && verdict == FixedPointJudge::Verdict::converged &&
+        joints_[island].pressure_change > settled_pressure) {
+      const bool more = judge.sweeps() < options_.max_sweeps;
+      verdict = more ? FixedPointJudge::Verdict::go_on : FixedPointJudge::Verdict::failed;
+    }
     if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
     if (verdict == FixedPointJudge::Verdict::converged) {
       if (!by_cause) evaluate_loads_by_cause(island, state, step);
@@ -211,6 +221,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   contacts_.clear();
   clusters_in_use_ = 0;
   finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_);
+  finder_.find_rubbing(island, state.view(), start_, contacts_);
   if (contacts_.empty()) return;
   if (finder_.has_static_friction()) {
     for (Contact& contact : contacts_) {

@@ -22,9 +22,13 @@
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
 /// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0.
+///
+/// Friction in joints is a row of the contact problem with |P| <= h times its bound. Its force acts halfway,
+/// against the rate that the coordinate has at the end.
 
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
+#include <carom/contact/joint_pressure.h>
 #include <carom/contact/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
@@ -40,6 +44,7 @@
 #include <carom/integrators/time_stepping.h>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -77,6 +82,9 @@ private:
   void sweep_joints(Index island, const State& state, const Companion& companion, double step);
   void correct_joint_impulses(Index island);
   void solve_joint_contacts(Index island, const State& state, double step);
+  void place_rubbing(Index island);
+  void press_rubbing(Index island, double step);
+  void add_contacts_to_joints(Index island);
   void return_to_joints(Index island);
   void move(Index island, const std::vector<double>& displacement, State& state) const;
   [[nodiscard]] SweepChange joint_change(Index island, double step) const;
@@ -104,6 +112,7 @@ private:
   void project(Index island, const State& state, double step);
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
+  void book_rubbing(const ContactCluster& cluster, std::size_t contact);
   void rate(Index island, const State& state, double step, double contraction);
 
   void demand_finite_loads(Index island, const StateView& at, const State& state, double step);
@@ -172,9 +181,10 @@ private:
   bool contacts_need_rotations_ = false;
   bool start_needs_rotations_ = false;          // the one or the other
   std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
-  std::vector<double> rounding_;      // what rounding cuts off v_{j+1}; velocities without contact before
-  std::vector<double> response_;      // changes of velocity by contact, empty until anything touches
-  std::vector<double> update_;        // changes of velocities, of the linearly implicit iteration
+  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
+  std::vector<double> response_;  // changes of velocity by contact, empty until anything touches
+  std::vector<double> update_;    // changes of velocities, of the linearly implicit iteration
+  std::vector<std::pair<ContactKey, ContactMode>> rubbing_modes_;  // of friction in joints
   std::vector<ContactKey> sticking_;  // in the last step, ordered; where static friction asks
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
@@ -187,6 +197,8 @@ private:
     std::vector<JointRow> mean_rows;       // halfway
     std::vector<double> impulse;           // L
     std::vector<double> total;             // L, and what contact adds
+    JointPressure pressure;                // of friction in them
+    double pressure_change = 0.0;          // by the last sweep, relative
     std::vector<double> left;              // of the constraints
   };
   std::vector<JointWork> joints_;  // by island; empty without joints

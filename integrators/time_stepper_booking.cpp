@@ -99,6 +99,10 @@ void TimeStepper::book_contacts(const State& state, double step) {
     double gain = 0.0;
     double scale = 0.0;
     for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
+      if (cluster.contacts()[contact].rubs()) {
+        book_rubbing(cluster, contact);
+        continue;
+      }
       record(cluster, contact);
       if (finder_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
       const ContactRecord& entry = report_.contacts.back();
@@ -121,6 +125,18 @@ void TimeStepper::book_contacts(const State& state, double step) {
     report_.energy_gain += gain;
     if (options_.refuse_energy_gain) refuse_gain(cluster, gain, state, step);
   }
+}
+
+/// Friction in a joint; the velocities halfway are at hand.
+void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact) {
+  const Contact& at = cluster.contacts()[contact];
+  JointReaction reaction;
+  reaction.moment = cluster.impulses()[static_cast<std::size_t>(cluster.first_row(contact) + 1)];
+  flows_[EnergyFlow::joint_friction] -= reaction.moment * at.times(1, middle_.v.data());
+  report_.joint_impulses.push_back(
+      {JointId{at.key.of.serial, assembly_->system().token()}, reaction, trial_.time});
+  const ContactMode mode = cluster.modes()[contact];
+  rubbing_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
 void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
@@ -172,7 +188,7 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   state.time = end_time;
   companion.ledger.book(flows_, stored_);
 
-  companion.modes.clear();
+  companion.modes = rubbing_modes_;
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
   statistics.sweeps += report_.sweeps;

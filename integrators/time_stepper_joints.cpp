@@ -42,6 +42,7 @@ void TimeStepper::prepare_joints() {
     work.impulse.resize(work.end.size());
     work.total.resize(work.end.size());
     work.left.resize(work.end.size());
+    work.pressure = JointPressure(assembly, island, work.end);
   }
   if (joints_.empty()) return;
   const std::size_t size = assembly.layout()->v_size();
@@ -59,6 +60,7 @@ void TimeStepper::start_joints(Index island, const State& state, double step) {
   const Range q = assembly_->islands()[island].q;
   const Range v = assembly_->islands()[island].v;
   std::fill(work.impulse.begin(), work.impulse.end(), 0.0);
+  for (Contact& contact : contacts_) contact.pressed *= step;
   for (std::vector<double>* const numbers : {&response_, &reaction_, &struck_, &displacement_}) {
     clear(*numbers, v);
   }
@@ -131,6 +133,7 @@ void TimeStepper::correct_joint_impulses(Index island) {
 void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
   IslandJoints& mean = joints_[island].mean;
   ContactCluster& cluster = clusters_.front();
+  place_rubbing(island);
   const Range v = assembly_->islands()[island].v;
   cluster.couple(v, [&mean, v](double* numbers) {
     double* const all = numbers - v.begin;
@@ -142,6 +145,48 @@ void TimeStepper::solve_joint_contacts(Index island, const State& state, double 
   if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
   clear(struck_, v);
   cluster.apply_coupled(struck_.data());
+  press_rubbing(island, step);
+}
+
+/// Bounds of friction in joints by the forces that the sweep led to.
+void TimeStepper::press_rubbing(Index island, double step) {
+  JointWork& work = joints_[island];
+  work.pressure_change = 0.0;
+  if (work.pressure.empty()) return;
+  add_contacts_to_joints(island);
+  const JointView halfway = view_of(middle_, middle_evaluation_);
+  for (Contact& contact : contacts_) {
+    const double change = work.pressure.press(contact, halfway, work.total.data(), step);
+    work.pressure_change = std::max(work.pressure_change, change);
+  }
+}
+
+/// Friction in joints acts halfway, against the rates that coordinates have at the end.
+void TimeStepper::place_rubbing(Index island) {
+  const Range v = assembly_->islands()[island].v;
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    if (!contact.rubs()) continue;
+    const JointView halfway = view_of(middle_, middle_evaluation_);
+    finder_.place_rubbing(view_of(trial_, evaluation_), contact);
+    const double at_end = contact.times(1, scratch_.data());
+    finder_.place_rubbing(halfway, contact);
+    contact.obstacle_velocity_after[1] = contact.times(1, scratch_.data()) - at_end;
+    clusters_.front().press(c);
+  }
+}
+
+/// Impulses of the joints, with those by which they answer to contact.
+void TimeStepper::add_contacts_to_joints(Index island) {
+  JointWork& work = joints_[island];
+  const Range v = assembly_->islands()[island].v;
+  work.total = work.impulse;
+  clear(scratch_, v);
+  clusters_.front().add_loads(1.0, scratch_.data());
+  work.mean.apply_inverse_mass(scratch_.data());
+  work.mean.hold(JointLevel::change, scratch_.data(), work.left.data());
+  for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before.
@@ -216,13 +261,7 @@ void TimeStepper::book_joints(Index island, const State& state, double step) {
   JointWork& work = joints_[island];
   const Range v = assembly.islands()[island].v;
   work.total = work.impulse;
-  if (clusters_in_use_ > 0) {
-    clear(scratch_, v);
-    clusters_.front().add_loads(1.0, scratch_.data());
-    work.mean.apply_inverse_mass(scratch_.data());
-    work.mean.hold(JointLevel::change, scratch_.data(), work.left.data());
-    for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
-  }
+  if (clusters_in_use_ > 0) add_contacts_to_joints(island);
   place_middle(island, state, step);
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step.
   for (std::size_t row = 0; row < work.total.size(); ++row) {
@@ -231,13 +270,17 @@ void TimeStepper::book_joints(Index island, const State& state, double step) {
     flows_[EnergyFlow::external] -= work.total[row] * rate;
     coupling_work_.add(work.total[row] * (work.mean_rows[row].times(middle_.v.data()) + rate));
   }
-  // Work of the conservative loads along the displacement.
+  // Work of the conservative loads along the displacement, where that is not below the last digit of the
+  // coordinates: at rest it would add up, although nothing moves.
   double taken = 0.0;
+  const Range q = assembly.islands()[island].q;
   for (Index i = v.begin; i < v.end; ++i) {
     double load = evaluated_[i];
     if (!dissipative_.empty()) load -= dissipative_[i];
     if (!external_.empty()) load -= external_[i];
-    taken += load * displacement_[i];
+    // Coordinates and velocities of the plane correspond one to one.
+    const double at = trial_.q[q.begin + (i - v.begin)];
+    taken += load * (at - (at - displacement_[i]));
   }
   projected_ += taken;
 

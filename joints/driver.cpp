@@ -21,14 +21,14 @@ JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at
   return row;
 }
 
-std::vector<BodyId> ends_of(const System& system, JointId joint) {
+}  // namespace
+
+std::vector<BodyId> bodies_of(const System& system, JointId joint) {
   std::vector<BodyId> ends;
   const auto place = system.joint_kinds().place(joint.serial);
   system.joint_kinds().entries()[place.entry].kind->ends(place.slot, ends);
   return ends;
 }
-
-}  // namespace
 
 void check_coordinate(const PartCheck& check, JointId joint) {
   const System& system = check.system();
@@ -40,7 +40,7 @@ void check_coordinate(const PartCheck& check, JointId joint) {
   if (!kind.has_coordinate()) check.refuse("joint", system.name(joint), allowed);
   // Nothing that turns, nothing to push.
   if (dynamic_cast<const planar::BindingKind<planar::Revolute>*>(&kind) == nullptr) return;
-  const std::vector<BodyId> ends = ends_of(system, joint);
+  const std::vector<BodyId> ends = bodies_of(system, joint);
   if (std::none_of(ends.begin(), ends.end(), [&](BodyId body) { return system.has_orientation(body); })) {
     check.refuse("joint", system.name(joint) + ", of particles, which do not turn", allowed);
   }
@@ -56,7 +56,8 @@ void DriverKind::add(const Driver& part, const PartCheck& check) {
   const System& system = check.system();
   for (const JointId other : system.joints()) {
     const auto place = system.joint_kinds().place(other.serial);
-    if (system.joint_kinds().entries()[place.entry].kind->on_joint(place.slot) != part.joint) continue;
+    const JointKind& kind = *system.joint_kinds().entries()[place.entry].kind;
+    if (kind.rows() == 0 || kind.on_joint(place.slot) != part.joint) continue;
     check.refuse("joint", system.name(part.joint) + ", which " + system.name(other) + " drives",
                  "a joint without a driver");
   }
@@ -64,7 +65,7 @@ void DriverKind::add(const Driver& part, const PartCheck& check) {
   check.finite(start.value, "position at time 0", "");
   check.finite(start.rate, "velocity at time 0", "");
   check.finite(start.second, "acceleration at time 0", "");
-  parts_.push_back({part, ends_of(system, part.joint), check.part()});
+  parts_.push_back({part, bodies_of(system, part.joint), check.part()});
 }
 
 std::unique_ptr<JointKind> DriverKind::clone() const { return std::make_unique<DriverKind>(*this); }
@@ -129,7 +130,7 @@ void MotorKind::add(const Motor& part, const PartCheck& check) {
   check_coordinate(check, part.joint);
   if (!part.torque) check.refuse("torque", "not given", "a function of time, coordinate and rate");
   check.breaks(part.breaks, "breaks");
-  parts_.push_back({part, ends_of(check.system(), part.joint)});
+  parts_.push_back({part, bodies_of(check.system(), part.joint)});
 }
 
 std::unique_ptr<ForceKind> MotorKind::clone() const { return std::make_unique<MotorKind>(*this); }
@@ -181,7 +182,7 @@ void StopKind::add(const Stop& part, const PartCheck& check) {
     check.refuse("lower", to_text(part.lower), "less than upper, " + to_text(part.upper));
   }
   check.between(part.restitution, 0.0, 1.0, "restitution");
-  parts_.push_back({part, ends_of(check.system(), part.joint)});
+  parts_.push_back({part, bodies_of(check.system(), part.joint)});
 }
 
 std::unique_ptr<JointKind> StopKind::clone() const { return std::make_unique<StopKind>(*this); }

@@ -25,6 +25,9 @@ class StopKind;
 /// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
 CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
 
+/// Bodies that a joint of the system binds.
+[[nodiscard]] CAROM_API std::vector<BodyId> bodies_of(const System& system, JointId joint);
+
 /// Prescribes the coordinate of a joint as a function of time. Its work is external work. Rates that are not
 /// given are found by differences (core/time_difference.h); they must then be smooth between breaks.
 struct Driver {

@@ -96,6 +96,17 @@ System buffer() {
   return system;
 }
 
+System swing_door() {
+  System system;
+  const BodyId door =
+      system.add(RigidBody{.mass = box(20.0, 0.9, 0.04), .position = {0.45, 0.0}, .spin = 1.0}, "door");
+  const JointId hinge = system.add(Revolute{.from = ground, .to = {door, {-0.45, 0.0}}}, "hinge");
+  // 2 N m, half as much again to get it going, and mu r |R| of a pin of 8 mm with mu = 0.2.
+  system.add(JointFriction{.joint = hinge, .bound = 2.0, .coefficient = 0.2 * 0.008, .static_factor = 1.5},
+             "rust");
+  return system;
+}
+
 using carom_test::JointModel;
 using carom_test::text_of;
 
@@ -103,20 +114,20 @@ TEST(JointsPage, ShowsWhatIsTestedHere) {
   const std::string source = text_of("tests/joints/joints_page_test.cpp");
   const auto blocks = carom_test::code_blocks("docs/joints.md", "cpp");
   for (const std::string& block : blocks) EXPECT_NE(source.find(block), std::string::npos) << block;
-  EXPECT_EQ(blocks.size(), 8u);
+  EXPECT_EQ(blocks.size(), 9u);
 }
 
 TEST(JointsPage, NamesEveryJoint) {
   const std::string page = text_of("docs/joints.md");
   for (const char* name : {"Revolute", "Weld", "Prismatic", "PointOnLine", "Rolling", "Rod", "Gear", "Driver",
-                           "Motor", "Stop", "JointReaction"}) {
+                           "Motor", "Stop", "JointFriction", "JointReaction"}) {
     EXPECT_NE(page.find("`" + std::string(name) + "`"), std::string::npos) << name;
   }
 }
 
 TEST(JointsPage, ItsSystemsHangTogetherAsDescribed) {
-  const std::vector<System> systems{pendulum(), gallows(),         lift(),        yoke(),
-                                    wheel(),    double_pendulum(), planet_gear(), buffer()};
+  const std::vector<System> systems{pendulum(),        gallows(),     lift(),   yoke(),      wheel(),
+                                    double_pendulum(), planet_gear(), buffer(), swing_door()};
   for (const System& system : systems) {
     const JointModel model(system);
     for (const JointId joint : system.joints()) {

@@ -1,0 +1,46 @@
+#pragma once
+
+/// \file
+/// What presses surfaces that rub in joints: a constant, and the force between the bodies of the joint, which
+/// follows from the multipliers of its rows.
+
+#include <carom/contact/contact.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/island_joints.h>
+#include <carom/core/joint_kind.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Friction in the joints of one island that is bound by forces of joints.
+class CAROM_API JointPressure {
+public:
+  /// Of no island: empty.
+  JointPressure() = default;
+  /// All but `joints` must outlive it.
+  JointPressure(const Assembly& assembly, Index island, const IslandJoints& joints);
+
+  /// True if no friction is bound by the force of a joint.
+  [[nodiscard]] bool empty() const { return bearings_.empty(); }
+  /// True if that of a contact is.
+  [[nodiscard]] bool bears(const Contact& contact) const { return find(contact) != nullptr; }
+  /// Sets `pressed` of friction in a joint. \param multipliers of all rows of the island's joints: forces, or
+  /// impulses over a duration [s] (0: of an impact; 1 for forces). Returns the change against the larger of
+  /// the old and new number; does nothing and returns 0 for what is bound by a constant only.
+  double press(Contact& contact, const JointView& at, const double* multipliers, double duration) const;
+
+private:
+  struct Bearing {
+    Index serial;            // of the friction
+    const JointKind* joint;  // that presses
+    Index slot;
+    std::size_t row;  // its first among those of the island
+    double bound, coefficient;
+  };
+  [[nodiscard]] const Bearing* find(const Contact& contact) const;
+  std::vector<Bearing> bearings_;
+};
+
+}  // namespace carom

@@ -1,0 +1,64 @@
+#include <carom/core/system.h>
+#include <carom/joints/driver.h>
+#include <carom/joints/joint_friction.h>
+
+#include <cmath>
+
+namespace carom {
+
+void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
+  check_coordinate(check, part.joint);
+  check.non_negative(part.bound, "bound", "N m or N");
+  check.non_negative(part.coefficient, "coefficient", "");
+  if (part.bound == 0.0 && part.coefficient == 0.0) {
+    check.refuse("bound", "0, and coefficient too", "one of them > 0");
+  }
+  if (!(part.static_factor >= 1.0) || !std::isfinite(part.static_factor)) {
+    check.refuse("static_factor", to_text(part.static_factor), "a finite number >= 1");
+  }
+  const System& system = check.system();
+  for (const JointId other : system.joints()) {
+    const auto place = system.joint_kinds().place(other.serial);
+    const JointKind& kind = *system.joint_kinds().entries()[place.entry].kind;
+    if (!kind.rubs() || kind.on_joint(place.slot) != part.joint) continue;
+    check.refuse("joint", system.name(part.joint) + ", in which " + system.name(other) + " rubs",
+                 "a joint without friction");
+  }
+  parts_.push_back({part, bodies_of(system, part.joint)});
+}
+
+std::unique_ptr<JointKind> JointFrictionKind::clone() const {
+  return std::make_unique<JointFrictionKind>(*this);
+}
+
+std::unique_ptr<JointKind> JointFrictionKind::arranged(std::span<const Index> order, const Layout&) const {
+  auto copy = std::make_unique<JointFrictionKind>();
+  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+  return copy;
+}
+
+void JointFrictionKind::ends(Index joint, std::vector<BodyId>& out) const {
+  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+}
+
+JointRub JointFrictionKind::rub(Index joint) const {
+  const JointFriction& friction = parts_[joint].friction;
+  return {friction.bound, friction.static_factor, friction.coefficient};
+}
+
+JointReaction JointFrictionKind::reaction(const JointView&, Index, const double* multipliers) const {
+  JointReaction reaction;
+  reaction.moment = multipliers[0];
+  return reaction;
+}
+
+void JointFrictionKind::fingerprint(Fingerprint& print) const {
+  for (const Part& part : parts_) {
+    print.add(std::uint64_t{part.friction.joint.serial});
+    print.add(part.friction.bound);
+    print.add(part.friction.coefficient);
+    print.add(part.friction.static_factor);
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,123 @@
+#include <carom/joints/joint_friction.h>
+
+#include <carom/joints/driver.h>
+#include <carom/joints/gravity.h>
+#include <carom/joints/prismatic.h>
+#include <carom/joints/revolute.h>
+#include <carom/joints/rod.h>
+
+#include "tests/joints/element_pairs.h"
+#include "tests/joints/joint_model.h"
+#include "tests/model_error.h"
+
+#include <limits>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using namespace carom_test;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Wheel {
+  System system;
+  BodyId wheel = system.add(RigidBody{.mass = disc(2.0, 1.0)}, "wheel");
+  BodyId dot = system.add(Particle{.mass = 1.0, .position = {3, 4}}, "dot");
+  JointId pin = system.add(Revolute{.from = ground, .to = wheel}, "pin");
+  JointId rod = system.add(Rod{.from = wheel, .to = dot}, "rod");
+  JointId nail = system.add(Revolute{.from = {ground, {3, 4}}, .to = dot}, "nail");
+};
+
+TEST(JointFriction, BindsNothing) {
+  Wheel wheel;
+  const JointId friction = wheel.system.add(JointFriction{.joint = wheel.pin, .bound = 0.5}, "rubbing");
+  const JointKind& kind = wheel.system.joint_kinds().kind_of(friction.serial);
+  EXPECT_EQ(kind.rows(), 0u);
+  EXPECT_EQ(kind.limits(), 0u);
+  EXPECT_TRUE(kind.rubs());
+  EXPECT_FALSE(wheel.system.joint_kinds().kind_of(wheel.pin.serial).rubs());
+  const double force = -0.3;
+  EXPECT_EQ(kind.reaction({}, 0, &force).moment, -0.3);
+}
+
+TEST(JointFriction, ContactsHaveItsCoordinate) {
+  Wheel wheel;
+  const BodyId block =
+      wheel.system.add(RigidBody{.mass = disc(1.0, 0.3), .position = {0.6, 0.0}, .velocity = {1.0, 2.0}});
+  const JointId slide = wheel.system.add(Prismatic{.from = wheel.wheel, .to = block, .axis = {1, 0}});
+  const JointId friction =
+      wheel.system.add(JointFriction{.joint = slide, .bound = 0.5, .static_factor = 1.5}, "rubbing");
+  JointModel model(wheel.system);
+  const ContactFinder finder(model.assembly);
+  const Index island = 0;  // all hang together
+  ASSERT_TRUE(finder.rubs(island));
+  std::vector<Contact> found;
+  finder.find_rubbing(island, model.state.view(), model.evaluation, found);
+  ASSERT_EQ(found.size(), 1u);
+  const Contact& contact = found[0];
+  EXPECT_TRUE(contact.rubs());
+  EXPECT_EQ(contact.begin_row(), 1);
+  EXPECT_EQ(contact.pressed, 0.5);
+  EXPECT_EQ(contact.law.sticking_friction(), 1.5);
+  EXPECT_EQ(contact.gap, 0.0);
+  EXPECT_EQ(finder.name(contact.key), wheel.system.name(friction));
+  EXPECT_EQ(contact.velocity(0, model.state.v.data()), 0.0);
+  EXPECT_DOUBLE_EQ(contact.velocity(1, model.state.v.data()), model.state.rate(slide));
+  EXPECT_TRUE(finder.pairs(island).empty());
+  EXPECT_EQ(finder.rubbing(island).size(), 1u);
+}
+
+TEST(JointFriction, RefusesWhatCannotBe) {
+  Wheel wheel;
+  System& system = wheel.system;
+  EXPECT_MODEL_ERROR(system.add(JointFriction{}), "joint friction", "joint is not given");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.rod, .bound = 1.0}), "rod",
+                     "a joint with a coordinate");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.nail, .bound = 1.0}), "nail", "particles");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin}), "bound is 0", "one of them > 0");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = -1.0}), "bound is -1");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = nan}), "bound is nan");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .coefficient = infinity}),
+                     "coefficient is inf");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = 1.0, .static_factor = 0.9}),
+                     "static_factor is 0.9", ">= 1");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = 1.0, .static_factor = nan}),
+                     "static_factor is nan");
+  System other;
+  EXPECT_MODEL_ERROR(other.add(JointFriction{.joint = wheel.pin, .bound = 1.0}), "a joint of this system");
+  const JointId friction = system.add(JointFriction{.joint = wheel.pin, .bound = 1.0}, "rubbing");
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = 1.0}), "in which", "rubbing",
+                     "a joint without friction");
+  EXPECT_MODEL_ERROR(system.remove(wheel.pin), "rubbing");
+  EXPECT_MODEL_ERROR(system.add(Stop{.joint = friction, .lower = 0.0}), "a joint with a coordinate");
+  system.remove(friction);
+  EXPECT_NO_THROW(system.add(JointFriction{.joint = wheel.pin, .bound = 2.0}));
+}
+
+TEST(JointFriction, GoesWithStopsAndDriversInAnyOrder) {
+  Wheel wheel;
+  wheel.system.add(Stop{.joint = wheel.pin, .lower = -1.0});
+  wheel.system.add(JointFriction{.joint = wheel.pin, .bound = 1.0});
+  EXPECT_NO_THROW(wheel.system.add(Driver{.joint = wheel.pin, .position = [](double t) { return t; }}));
+}
+
+TEST(JointFriction, ChangesTheFingerprint) {
+  const auto print = [](const JointFriction& law) {
+    Wheel wheel;
+    JointFriction part = law;
+    part.joint = wheel.pin;
+    wheel.system.add(part);
+    Fingerprint out;
+    wheel.system.joint_kinds().kind_of(3).fingerprint(out);
+    return out.value();
+  };
+  const auto plain = print({.bound = 1.0});
+  EXPECT_EQ(print({.bound = 1.0}), plain);
+  EXPECT_NE(print({.bound = 2.0}), plain);
+  EXPECT_NE(print({.bound = 1.0, .coefficient = 0.1}), plain);
+  EXPECT_NE(print({.bound = 1.0, .static_factor = 1.1}), plain);
+}
+
+}  // namespace
