@@ -135,6 +135,11 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
   problem_.group();
 }
 
+void ContactCluster::couple(IslandJoints& joints) {
+  // Joints count velocities from the first of all. Little is captured, so that nothing is allocated.
+  couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
+}
+
 void ContactCluster::apply_coupled(double* velocity) const {
   for (std::size_t row = 0; row < impulse_.size(); ++row) {
     const double* const response = coupled_.data() + row * coupled_range_.size();

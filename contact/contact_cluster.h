@@ -11,6 +11,7 @@
 #include <carom/contact/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/island_joints.h>
 
 #include <algorithm>
 #include <functional>
@@ -27,6 +28,8 @@ public:
   /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is symmetric and positive
   /// definite over the velocities `v`, `solve` overwrites numbers over them by A^-1 times them.
   void couple(Range v, const std::function<void(double*)>& solve);
+  /// Likewise where joints bind the bodies, which must have been located.
+  void couple(IslandJoints& joints);
   /// Takes note of another Contact::pressed of friction in a joint.
   void press(std::size_t contact);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.

@@ -196,6 +196,10 @@ CAROM_API void add_potentials(const Assembly& assembly, Index island, const Stat
 CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
                                    const Evaluation& evaluation, StoredEnergies& out);
 
+/// Stored energies of all islands. \param evaluation a workspace, whose position group is brought up to date
+[[nodiscard]] CAROM_API StoredEnergies stored_energies(const Assembly& assembly, const StateView& state,
+                                                       Evaluation& evaluation);
+
 /// Sizes a workspace for an assembly.
 [[nodiscard]] CAROM_API Evaluation make_evaluation(const Assembly& assembly);
 

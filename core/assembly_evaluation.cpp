@@ -145,6 +145,15 @@ void add_stored_energies(const Assembly& assembly, Index island, const StateView
   add_potentials(assembly, island, state, evaluation, out);
 }
 
+StoredEnergies stored_energies(const Assembly& assembly, const StateView& state, Evaluation& evaluation) {
+  StoredEnergies stored;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    evaluate_positions(assembly, island, state, evaluation);
+    add_stored_energies(assembly, island, state, evaluation, stored);
+  }
+  return stored;
+}
+
 void add_potentials(const Assembly& assembly, Index island, const StateView& state,
                     const Evaluation& evaluation, StoredEnergies& out) {
   const EvaluationContext at{assembly, state, evaluation, island};

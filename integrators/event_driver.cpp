@@ -67,11 +67,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   trial_.time = target;
   modes_.clear();
   for (auto& island : islands_) island->write(trial_, modes_);
-  StoredEnergies stored;
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-    add_stored_energies(*assembly_, island, trial_.view(), evaluation_, stored);
-  }
+  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   order_events();
   std::vector<ContactRecord> contacts = std::move(report.contacts);
   contacts.clear();

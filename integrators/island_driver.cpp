@@ -234,7 +234,11 @@ void IslandDriver::go_to_event(DriverNews& news) {
   // Slower jumps count as none, as impacts do.
   jumped_ = next_.guard == Guard::law &&
             motion_.follow_jump(y_, options_.capture_speed, news.flows[EnergyFlow::external]);
-  if (!jumped_) settle(news);
+  if (jumped_) {
+    list_impulses(news);
+  } else {
+    settle(news);
+  }
   begin_phase(news);
   jumped_ = false;
 }

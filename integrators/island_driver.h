@@ -142,6 +142,7 @@ private:
   [[nodiscard]] double speed_noise() const;
   void count_event();
   void tell_joints(DriverNews& news);
+  void list_impulses(DriverNews& news);
   void remember_impact(const ContactKey& contact);
   [[nodiscard]] double accumulation_time() const;
 

@@ -84,7 +84,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
     names.reserve(touching.size());
     for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
     fail("the contact problem of an impact is not solved (" +
-             std::string(to_string(cluster.report().outcome)) + ")",
+             std::string(to_string(cluster.report().outcome)) + motion_.driven_by() + ")",
          std::move(names), &cluster);
   }
   motion_.apply(cluster, velocity);
@@ -210,6 +210,20 @@ void IslandDriver::tell_joints(DriverNews& news) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     news.flows[EnergyFlow::external] -= work.multipliers[i] * joints.rows()[i].rate;
   }
+  list_impulses(news);
+  for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {
+    const Contact& contact = work_->cluster.contacts()[c];
+    if (!contact.rubs()) continue;
+    JointReaction reaction;
+    reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c) + 1)];
+    const JointId friction{contact.key.of.serial, assembly_->system().token()};
+    news.joint_impulses.push_back({friction, reaction, time_});
+  }
+}
+
+/// Impulses of joints by the multipliers in the workspace.
+void IslandDriver::list_impulses(DriverNews& news) {
+  const MotionWorkspace& work = work_->motion;
   const JointView at{work.trial.view(), work.evaluation.rotation.data()};
   std::size_t row = 0;
   for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {
@@ -222,14 +236,6 @@ void IslandDriver::tell_joints(DriverNews& news) {
       news.joint_impulses.push_back(
           {assembly_->joint_id(k, joint), kind.reaction(at, joint, of_joint), time_});
     }
-  }
-  for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {
-    const Contact& contact = work_->cluster.contacts()[c];
-    if (!contact.rubs()) continue;
-    JointReaction reaction;
-    reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c) + 1)];
-    const JointId friction{contact.key.of.serial, assembly_->system().token()};
-    news.joint_impulses.push_back({friction, reaction, time_});
   }
 }
 

@@ -4,35 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 namespace carom {
-
-namespace {
-
-// Bounds of friction in joints and the forces in them are repeated until they change no more than by this
-// part; answers of contact problems are certified to 1e-12.
-constexpr double settled = 1e-13;
-// Where the changes do not shrink any more this is rounding.
-constexpr double nearly_settled = 1e-11;
-constexpr int most_repetitions = 200;
-
-/// Whether bounds have settled, from their changes one after the other.
-class Settling {
-public:
-  /// True if there is no need to go on.
-  bool take(double change) {
-    const bool stalls = change <= nearly_settled && change >= 0.5 * before_;
-    before_ = change;
-    return change <= settled || stalls;
-  }
-
-private:
-  double before_ = std::numeric_limits<double>::infinity();
-};
-
-}  // namespace
 
 MotionWorkspace::MotionWorkspace(const Assembly& assembly)
     : trial(assembly.layout()), evaluation(make_evaluation(assembly)), lengths(assembly.length_scales()) {
@@ -166,56 +139,6 @@ bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
   return closed_.add_reactions(assembly, work.acceleration.data());
 }
 
-/// Forces of contacts, with friction in joints bound by the forces that follow.
-bool IslandMotion::add_pressed_reactions() {
-  MotionWorkspace& work = *work_;
-  const Range v = assembly_->islands()[island_].v;
-  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
-  work.free.resize(work.acceleration.size());
-  std::copy(work.acceleration.begin() + v.begin, work.acceleration.begin() + v.end,
-            work.free.begin() + v.begin);
-  Settling settling;
-  for (int i = 0; i < most_repetitions; ++i) {
-    std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
-    if (!closed_.add_reactions(*assembly_, work.acceleration.data())) return false;
-    const std::span<const double> multipliers = joint_multipliers();
-    double change = 0.0;
-    for (ClosedContact& contact : closed_.list()) {
-      change = std::max(change, pressure_.press(contact.at, at, multipliers.data(), 1.0));
-    }
-    if (settling.take(change)) return true;
-  }
-  return false;
-}
-
-bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
-                         SolverChain& chain) {
-  if (pressure_.empty()) return cluster.solve(chain).usable();
-  MotionWorkspace& work = *work_;
-  const Range v = assembly_->islands()[island_].v;
-  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
-  const bool impact = level == JointLevel::change;
-  std::vector<double>& answer = work.of_velocity;
-  work.multipliers.resize(joints_.size());
-  Settling settling;
-  for (int i = 0; i < most_repetitions; ++i) {
-    if (!cluster.solve(chain).usable()) return false;
-    for (Index k = v.begin; k < v.end; ++k) answer[k] = impact ? 0.0 : work.momentum[k];
-    cluster.add_loads(1.0, answer.data());
-    joints_.apply_inverse_mass(answer.data());
-    joints_.hold(level, answer.data(), work.multipliers.data());
-    double change = 0.0;
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-      if (!pressure_.bears(contacts[c])) continue;
-      change =
-          std::max(change, pressure_.press(contacts[c], at, work.multipliers.data(), impact ? 0.0 : 1.0));
-      cluster.press(c);
-    }
-    if (settling.take(change)) return true;
-  }
-  return false;
-}
-
 void IslandMotion::rates(double time, const double* y, double* rates) {
   MotionWorkspace& work = *work_;
   const Assembly& assembly = *assembly_;
@@ -292,43 +215,6 @@ void IslandMotion::jacobian(double time, const double* y, double* jacobian) {
   }
 }
 
-std::span<const double> IslandMotion::joint_multipliers() {
-  MotionWorkspace& work = *work_;
-  std::vector<double>& answer = work.of_velocity;
-  const Range v = assembly_->islands()[island_].v;
-  std::copy(work.momentum.begin() + v.begin, work.momentum.begin() + v.end, answer.begin() + v.begin);
-  for (const ClosedContact& contact : closed_.list()) {
-    contact.at.add_transposed(0, contact.normal, answer.data());
-    contact.at.add_transposed(1, contact.tangential, answer.data());
-  }
-  assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
-    kind.apply_inverse_mass(slots, answer.data() + at, answer.data() + at);
-  });
-  work.multipliers.resize(joints_.size());
-  joints_.hold(JointLevel::acceleration, answer.data(), work.multipliers.data());
-  return work.multipliers;
-}
-
-void IslandMotion::couple(ContactCluster& cluster) {
-  if (joints_.empty()) return;
-  const Range v = assembly_->islands()[island_].v;
-  std::vector<double>& answer = work_->of_velocity;
-  const auto solve = [&](double* x) {
-    std::copy(x, x + v.size(), answer.begin() + v.begin);
-    joints_.respond(answer.data());
-    std::copy(answer.begin() + v.begin, answer.begin() + v.end, x);
-  };
-  cluster.couple(v, std::ref(solve));  // no copy, which would allocate
-}
-
-void IslandMotion::apply(const ContactCluster& cluster, double* velocity) const {
-  if (joints_.empty()) {
-    cluster.apply(velocity);
-  } else {
-    cluster.apply_coupled(velocity);
-  }
-}
-
 double IslandMotion::project(std::span<double> y, bool& changed, double& shift) {
   changed = false;
   if (closed_.list().empty() && joints_.empty()) return 0.0;
@@ -367,29 +253,6 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
     y[q_size_ + (i - all.v.begin)] += work.of_velocity[i];
   }
   return lost;
-}
-
-bool IslandMotion::follow_jump(std::span<double> y, double noise, double& work) {
-  if (!joints_.depends_on_time()) return false;
-  MotionWorkspace& space = *work_;
-  const Range v = assembly_->islands()[island_].v;
-  std::vector<double>& change = space.of_velocity;
-  std::copy(space.trial.v.begin() + v.begin, space.trial.v.begin() + v.end, change.begin() + v.begin);
-  joints_.hold(JointLevel::velocity, change.data());
-  double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    change[i] -= space.trial.v[i];
-    largest = std::max(largest, std::abs(change[i]) * space.lengths[i]);
-  }
-  if (!(largest > noise)) return false;
-  assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
-    kind.apply_mass(slots, change.data() + at, space.momentum.data() + at);
-  });
-  for (Index i = v.begin; i < v.end; ++i) {
-    work += (space.trial.v[i] + 0.5 * change[i]) * space.momentum[i];
-    y[q_size_ + (i - v.begin)] += change[i];
-  }
-  return true;
 }
 
 void IslandMotion::kinks(std::vector<double>& out) const {

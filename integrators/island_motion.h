@@ -19,6 +19,7 @@
 #include <carom/integrators/flow.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -83,7 +84,8 @@ public:
   double project(std::span<double> y, bool& changed, double& shift);
   /// Where a law of time of joints jumps in its rate: the impulse that makes joints follow, contacts aside.
   /// The workspace holds an evaluation of y, and is out of date afterwards if y was changed: where a velocity
-  /// is off by more than `noise`. Adds the work of the impulse [J].
+  /// is off by more than `noise`. Adds the work of the impulse [J]; its multipliers are left in the
+  /// workspace.
   bool follow_jump(std::span<double> y, double noise, double& work);
 
   /// Place of the first velocity in y.
@@ -112,6 +114,8 @@ public:
   /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
   /// evaluation with reactions.
   [[nodiscard]] std::span<const double> joint_multipliers();
+  /// "; bodies are driven by driver 'hoist'", for messages; empty where they are not.
+  [[nodiscard]] std::string driven_by() const;
   /// Kinetic energy of the group of a body in the workspace's state [J].
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.

@@ -13,15 +13,6 @@ namespace carom {
 
 namespace {
 
-StoredEnergies stored_energies(const Assembly& assembly, const State& state, Evaluation& evaluation) {
-  StoredEnergies stored;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    add_stored_energies(assembly, island, state.view(), evaluation, stored);
-  }
-  return stored;
-}
-
 [[noreturn]] void fail(const ContactFinder& finder, const Contact& contact, double time, const char* what) {
   SolverFailure failure;
   failure.time = time;
@@ -29,18 +20,6 @@ StoredEnergies stored_energies(const Assembly& assembly, const State& state, Eva
   const std::string message = "change to the event-driven mode at t = " + to_text(time) + " s: " + what +
                               " of " + failure.parts.front();
   throw SolverError(message, std::move(failure));
-}
-
-/// Lets a problem of contacts know what joints bind the bodies.
-void couple(const Assembly& assembly, Index island, IslandJoints& joints, ContactCluster& cluster) {
-  if (joints.empty()) return;
-  const Range v = assembly.islands()[island].v;
-  std::vector<double> answer(assembly.layout()->v_size(), 0.0);
-  cluster.couple(v, [&](double* x) {
-    std::copy(x, x + v.size(), answer.begin() + v.begin);
-    joints.respond(answer.data());
-    std::copy(answer.begin() + v.begin, answer.begin() + v.end, x);
-  });
 }
 
 }  // namespace
@@ -77,7 +56,7 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
       });
       if (!approaches) continue;
       cluster.build(assembly, of_body, trial.v.data());
-      couple(assembly, island, joints, cluster);
+      if (!joints.empty()) cluster.couple(joints);
       cluster.set_free_velocity(trial.v.data());
       if (!cluster.solve(chain).usable()) fail(finder, of_body.front(), state.time, "no impact is found");
       if (joints.empty()) {
@@ -114,7 +93,7 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
   }
   // Where bodies were moved their joints stand elsewhere.
   shift = std::max(shift, close_joints(assembly, trial).shift);
-  const StoredEnergies stored = stored_energies(assembly, trial, evaluation);
+  const StoredEnergies stored = stored_energies(assembly, trial.view(), evaluation);
   EnergyFlows flows;
   flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
   companion.ledger.book(flows, stored);

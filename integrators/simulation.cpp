@@ -25,12 +25,7 @@ constexpr double snap = 1e-9;
 
 StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
   Evaluation evaluation = make_evaluation(assembly);
-  StoredEnergies stored;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    add_stored_energies(assembly, island, state.view(), evaluation, stored);
-  }
-  return stored;
+  return stored_energies(assembly, state.view(), evaluation);
 }
 
 }  // namespace

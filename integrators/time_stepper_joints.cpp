@@ -131,15 +131,10 @@ void TimeStepper::correct_joint_impulses(Index island) {
 
 /// Contacts against bodies that the joints make answer together.
 void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
-  IslandJoints& mean = joints_[island].mean;
   ContactCluster& cluster = clusters_.front();
   place_rubbing(island);
   const Range v = assembly_->islands()[island].v;
-  cluster.couple(v, [&mean, v](double* numbers) {
-    double* const all = numbers - v.begin;
-    mean.apply_inverse_mass(all);
-    mean.hold(JointLevel::change, all);
-  });
+  cluster.couple(joints_[island].mean);
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
   cluster.set_free_velocity(scratch_.data());
   if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);

@@ -3,6 +3,8 @@
 
 #include "tests/integrators/joint_run.h"
 
+#include "tests/integrators/throws.h"
+
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
@@ -119,9 +121,17 @@ TEST(DriversEventDriven, AJumpOfTheRateIsAnImpulseOfTheDriver) {
   Scene scene = rod_pendulum(1);
   const JointId pin = scene.system.joints()[0];
   const double t1 = 0.3, rate = 2.0;
-  scene.system.add(Driver{
+  const JointId driver = scene.system.add(Driver{
       .joint = pin, .position = [=](double t) { return t < t1 ? 0.0 : rate * (t - t1); }, .breaks = {t1}});
   WatchedRun run(scene);
+  run.simulation.run_until(t1);
+  bool told = false;
+  for (const JointImpulse& entry : run.simulation.report().joint_impulses) {
+    if (entry.joint != driver) continue;
+    told = true;
+    EXPECT_NEAR(entry.impulse.moment, rate / 3.0, 1e-12);
+  }
+  EXPECT_TRUE(told);
   const double end = 0.5, angle = rate * (end - t1);
   run.simulation.run_until(end);
   EXPECT_NEAR(run.simulation.state().coordinate(pin), angle, 1e-13);
@@ -200,6 +210,19 @@ TEST(DriversEventDriven, WorksInAnImpact) {
   WatchedRun run(scene);
   run.simulation.run_until(0.7);
   EXPECT_GE(run.simulation.statistics().impacts, 1);
+}
+
+TEST(DriversEventDriven, IsNamedWhereItPressesAgainstAFloor) {
+  Scene scene;
+  const BodyId block = scene.system.add(RigidBody{.mass = box(1.0, 0.1, 0.1), .velocity = {0.0, -1.0}});
+  const JointId slide = scene.system.add(Prismatic{.from = ground, .to = block, .axis = {0.0, 1.0}});
+  scene.system.add(Driver{.joint = slide, .position = [](double t) { return -t; }}, "ram");
+  scene.system.add(Point{.body = block, .position = {0.0, -0.05}}, "foot");
+  scene.system.add(HalfPlane{.point = {0.0, -0.5}, .normal = {0.0, 1.0}},
+                   Surface{.friction = 0.3, .normal_restitution = 0.5});
+  Simulation simulation(scene.system, fine());
+  EXPECT_THROWS(SolverError, simulation.run_until(1.0), "no solution", "driven by", "ram", "foot");
+  EXPECT_LT(simulation.time(), 0.46);
 }
 
 Scene driven_slider_crank() {

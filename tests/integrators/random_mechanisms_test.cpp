@@ -60,7 +60,7 @@ void both_modes(const Scene& scene, const std::string& name) {
     // Errors are a series in h^2: their ratio is 4 but for the second term, which seldom matters at once, and
     // for the exact run's error.
     double error = 0.0, ratio = 0.0, step = 5e-4;
-    for (int halving = 0; halving < 6; ++halving, step *= 0.5) {
+    for (int halving = 0; halving < 8; ++halving, step *= 0.5) {
       Simulation stepping(scene.system, TimeStepping{.step = step});
       stepping.run_until(compared);
       const double before = error;
