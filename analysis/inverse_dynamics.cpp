@@ -96,7 +96,7 @@ DriverForces driver_forces(const Assembly& assembly, const State& state) {
     joints.hold(JointLevel::acceleration, result.accelerations.data(), multipliers.data());
     for_drivers(assembly, island, [&](JointId, Index row) {
       result.forces.push_back(multipliers[row]);
-      result.powers.push_back(multipliers[row] * joints.rows()[row].times(state.v.data()));
+      result.powers.push_back(multipliers[row] * joints.row(row).times(state.v.data()));
     });
   }
   return result;

@@ -14,6 +14,7 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/sparse_factors.h>
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,7 @@ enum class JointLevel : std::uint8_t {
   change         ///< c zero: changes of velocities or accelerations
 };
 
-/// Constraints of one island. Owns workspaces and multipliers.
+/// Constraints of one island. Owns workspaces and multipliers. Copies share what does not change.
 class CAROM_API IslandJoints {
 public:
   /// Of no island: empty.
@@ -35,23 +36,34 @@ public:
   /// Analyses the pattern.
   IslandJoints(const Assembly& assembly, Index island);
 
-  [[nodiscard]] bool empty() const { return rows_.empty(); }  ///< true if there are no joints
+  [[nodiscard]] bool empty() const { return gap_.empty(); }  ///< true if there are no joints
   /// Number of rows.
-  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  [[nodiscard]] std::size_t size() const { return gap_.size(); }
   /// True if a row depends on time.
-  [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }
+  [[nodiscard]] bool depends_on_time() const { return !rate_.empty(); }
 
-  /// Writes the rows at a configuration. Sized as rows().
-  void evaluate(const JointView& at, std::vector<JointRow>& out) const;
   /// Takes the body with these velocities as too heavy to move.
   void hold_still(Range velocities);
-  /// Brings rows() to a configuration and factorises.
+  /// Brings the rows to a configuration and factorises.
   void locate(const JointView& at);
-  /// Rows at the configuration last located.
-  [[nodiscard]] const std::vector<JointRow>& rows() const { return rows_; }
+  /// Brings the rows alone to a configuration: until locate(), the factors are those of another one.
+  void place(const JointView& at);
+  /// Brings gap() alone to a configuration.
+  void place_gaps(const JointView& at);
+
+  /// A row at the configuration where it was brought last.
+  [[nodiscard]] JointRow row(std::size_t row) const;
+  /// Gap of a row.
+  [[nodiscard]] double gap(std::size_t row) const { return gap_[row]; }
+  /// Rate of a row.
+  [[nodiscard]] double rate(std::size_t row) const { return rate_.empty() ? 0.0 : rate_[row]; }
+  /// Writes G x + c of all rows.
+  void residuals(JointLevel level, const double* x, double* out) const;
+  /// x += G^T l.
+  void add_transposed(const double* multipliers, double* x) const;
 
   /// Makes x obey the constraints. \param x an array over all velocities \param multipliers out: l, sized as
-  /// rows(); may be null
+  /// the rows; may be null
   void hold(JointLevel level, double* x, double* multipliers = nullptr);
   /// r becomes -(G M^-1 G^T)^-1 r, zero in rows that follow from others.
   void solve(double* r);
@@ -80,31 +92,62 @@ public:
     return sum;
   }
 
+  /// Joints with rows.
+  [[nodiscard]] std::size_t joints() const { return empty() ? 0 : pattern_->joints.size() - 1; }
+  /// First of the rows of a joint; their number behind the last joint.
+  [[nodiscard]] Index first_row(std::size_t joint) const { return pattern_->joints[joint].row; }
   /// The joint of a row.
-  [[nodiscard]] JointId joint(std::size_t row) const { return joints_[row]; }
-  /// First of the rows of each joint, in order; behind the last the number of rows.
-  [[nodiscard]] std::span<const Index> first_rows() const { return first_row_; }
+  [[nodiscard]] JointId joint(std::size_t row) const;
   /// The factors of G M^-1 G^T.
   [[nodiscard]] const SparseFactors& factors() const { return factors_; }
   [[nodiscard]] SparseFactors& factors() { return factors_; }
 
 private:
-  // A product of two blocks that belongs to an entry of the matrix.
-  struct Product {
-    Index row, other;             // rows
-    std::uint8_t block, against;  // blocks in them
-    Index entry;                  // place in the matrix's numbers
+  // Velocities of a body.
+  struct Block {
+    Index v, columns;
   };
+  // Where what belongs to a joint begins.
+  struct Joint {
+    Index row;     // of its rows
+    Index number;  // of its numbers of G
+    Index block;   // of its blocks
+  };
+  // Joints of a kind.
+  struct OfKind {
+    Index kind;
+    Range joints;
+    Index first;  // the first one's place in Pattern::joints
+  };
+  // A product of two blocks that belongs to a block of the matrix: numbers of the two in G, of the result in
+  // the matrix; the velocities they share.
+  struct Product {
+    Index number, other, value, v;
+    std::uint8_t rows, other_rows, stride, other_stride, columns;
+    bool first;  // of those that belong to the block
+  };
+  // What does not change.
+  struct Pattern {
+    std::vector<OfKind> kinds;
+    std::vector<Joint> joints;  // and an end
+    std::vector<Block> blocks;
+    std::vector<Product> products;
+
+    void add(const JointKind& kind, Index joint);
+    void multiply(SparseFactors& factors);
+    [[nodiscard]] Index stride(std::size_t joint) const;
+  };
+  void evaluate(const JointView& at, JointNumbers out) const;
+  [[nodiscard]] std::size_t joint_of(std::size_t row) const;
+  template <class F>
+  void for_blocks(F&& f) const;
 
   const Assembly* assembly_ = nullptr;
-  Index island_ = 0;
   Range v_;
-  bool depends_on_time_ = false;
-  std::vector<JointRow> rows_;
-  std::vector<JointId> joints_;  // by row
-  std::vector<Index> first_row_;
-  std::vector<double> inverse_mass_;  // over v_: masses are diagonal
-  std::vector<Product> products_;
+  std::shared_ptr<const Pattern> pattern_;
+  std::vector<double> jacobian_;            // row by row
+  std::vector<double> gap_, rate_, drift_;  // by row; rate_ is empty if nothing depends on time
+  std::vector<double> inverse_mass_;        // over v_: masses are diagonal
   SparseFactors factors_;
   std::vector<double> right_;
 };

@@ -91,11 +91,10 @@ void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints
 }
 
 /// The row that is furthest off.
-template <class F>
-std::size_t worst_row(const IslandJoints& joints, F&& off) {
+std::size_t worst_row(std::span<const double> off) {
   std::size_t worst = 0;
-  for (std::size_t i = 1; i < joints.size(); ++i) {
-    if (!(std::abs(off(joints.rows()[i])) <= std::abs(off(joints.rows()[worst])))) worst = i;
+  for (std::size_t i = 1; i < off.size(); ++i) {
+    if (!(std::abs(off[i]) <= std::abs(off[worst]))) worst = i;
   }
   return worst;
 }
@@ -115,19 +114,20 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
     evaluate_positions(assembly, island, state.view(), evaluation);
     joints.locate({state.view(), evaluation.rotation.data()});
   };
-  const auto gap = [](const JointRow& row) { return row.gap; };
+  std::vector<double> off(joints.size());
   const std::vector<double> start = state.q;
   std::vector<double> change(state.v.size(), 0.0), moved(state.q.size(), 0.0);
   double best = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
     locate();
-    const std::size_t worst = worst_row(joints, gap);
-    const double left = std::abs(joints.rows()[worst].gap), size = largest(state.q, range.q, 1.0);
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gap(i);
+    const std::size_t worst = worst_row(off);
+    const double left = std::abs(off[worst]), size = largest(state.q, range.q, 1.0);
     if (left <= rounding * size) break;
     const bool stalls = !(left < 0.5 * best) && left <= accepted * size;
     if (stalls) break;
     if (step == most_steps || !std::isfinite(left)) {
-      refuse(assembly, joints, worst, joints.rows()[worst].gap, "cannot be closed", "m or rad");
+      refuse(assembly, joints, worst, off[worst], "cannot be closed", "m or rad");
     }
     best = std::min(best, left);
     std::fill(change.begin() + range.v.begin, change.begin() + range.v.end, 0.0);
@@ -147,17 +147,17 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
     }
   }
 
-  const auto off = [&](const JointRow& row) {
-    return IslandJoints::residual(JointLevel::velocity, row, state.v.data());
-  };
+  const auto find_off = [&] { joints.residuals(JointLevel::velocity, state.v.data(), off.data()); };
   double speed = largest(state.v, range.v, 0.0);
-  for (const JointRow& row : joints.rows()) speed = std::max(speed, std::abs(row.rate));
-  if (std::abs(off(joints.rows()[worst_row(joints, off)])) <= rounding * speed) return;
+  for (std::size_t i = 0; i < off.size(); ++i) speed = std::max(speed, std::abs(joints.rate(i)));
+  find_off();
+  if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
   const std::vector<double> before = state.v;
   joints.hold(JointLevel::velocity, state.v.data());
   joints.hold(JointLevel::velocity, state.v.data());  // what rounding left
-  const std::size_t worst = worst_row(joints, off);
-  const double left = off(joints.rows()[worst]);
+  find_off();
+  const std::size_t worst = worst_row(off);
+  const double left = off[worst];
   if (!(std::abs(left) <= 1e-9 * std::max(speed, 1.0))) {
     refuse(assembly, joints, worst, left, "cannot be kept closed", "m/s or rad/s");
   }

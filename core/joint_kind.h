@@ -62,6 +62,14 @@ struct JointRow {
   }
 };
 
+/// Where the rows of many joints are written, numbers of one sort together. What is null is not wanted.
+struct JointNumbers {
+  double* jacobian = nullptr;  ///< G: row by row, the blocks of a row one behind the other
+  double* gap = nullptr;       ///< by row, never null
+  double* rate = nullptr;      ///< by row; wanted where rows depend on time
+  double* drift = nullptr;     ///< by row
+};
+
 /// A unilateral row of a joint: gap >= 0, impulses that open it.
 struct JointLimit {
   JointRow row;              ///< the gap and its derivatives
@@ -84,6 +92,8 @@ struct JointReaction {
 /// All joints of one kind.
 class CAROM_API JointKind {
 public:
+  static constexpr Index most_rows = 6;  ///< of a joint: no more freedoms are between two bodies
+
   virtual ~JointKind() = default;
 
   /// A copy.
@@ -98,17 +108,20 @@ public:
   [[nodiscard]] virtual std::string_view label() const = 0;  ///< name used in messages, e.g. "revolute joint"
   [[nodiscard]] virtual int dimension() const = 0;           ///< 2 or 3
   [[nodiscard]] virtual Index size() const = 0;              ///< number of joints
-  /// Rows of each joint; they count as constraints.
+  /// Rows of each joint, at most most_rows; they count as constraints.
   [[nodiscard]] virtual Index rows() const = 0;
   /// Appends the bodies a joint binds (ground included).
   virtual void ends(Index joint, std::vector<BodyId>& out) const = 0;
   /// The joint on whose coordinate this one acts (a driver), or an invalid identity.
   [[nodiscard]] virtual JointId on_joint(Index /*joint*/) const { return {}; }
 
-  /// Writes which velocities the rows of a joint have blocks for. Values are not looked at.
+  /// Writes which velocities the rows of a joint have blocks for, all of them the same. Values are not looked
+  /// at.
   virtual void pattern(Index joint, JointRow* out) const = 0;
   /// Writes the rows of a joint.
   virtual void evaluate(const JointView& at, Index joint, JointRow* out) const = 0;
+  /// Writes the rows of several joints, in order. Unless overridden, one after the other by evaluate().
+  virtual void evaluate_all(const JointView& at, Range joints, JointNumbers out) const;
   /// True if rows depend on time.
   [[nodiscard]] virtual bool depends_on_time() const { return false; }
   /// Appends the times at which a joint's law of time has a kink or a jump [s].

@@ -4,34 +4,58 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <numeric>
+#include <type_traits>
 
 namespace carom {
 
-void SparseFactors::analyse(Index size, std::span<const std::pair<Index, Index>> entries) {
-  size_ = size;
-  // Order of elimination: by minimum degree.
-  std::vector<Index> position(size);
-  order_.resize(size);
-  {
-    using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-    std::vector<Eigen::Triplet<double>> triplets;
-    triplets.reserve(2 * entries.size());
-    for (const auto& [row, column] : entries) {
-      triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), 1.0);
-      if (row != column) triplets.emplace_back(static_cast<int>(column), static_cast<int>(row), 1.0);
-    }
-    Matrix matrix(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
-    matrix.setFromTriplets(triplets.begin(), triplets.end());
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-    Eigen::AMDOrdering<int> ordering;
-    ordering(matrix, permutation);
-    for (Index i = 0; i < size; ++i) {
-      // The ordering tells the row that comes i-th.
-      order_[i] = static_cast<Index>(permutation.indices()[static_cast<Eigen::Index>(i)]);
-      position[order_[i]] = i;
-    }
+namespace {
+
+/// Blocks in the order of their elimination, by minimum degree.
+std::vector<Index> elimination_order(Index blocks, std::span<const std::pair<Index, Index>> entries) {
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+  std::vector<Eigen::Triplet<double>> triplets;
+  triplets.reserve(2 * entries.size());
+  for (const auto& [row, column] : entries) {
+    triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), 1.0);
+    if (row != column) triplets.emplace_back(static_cast<int>(column), static_cast<int>(row), 1.0);
   }
+  Matrix matrix(static_cast<Eigen::Index>(blocks), static_cast<Eigen::Index>(blocks));
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int> ordering;
+  ordering(matrix, permutation);
+  std::vector<Index> order(blocks);
+  // The ordering tells the block that comes i-th.
+  for (Index i = 0; i < blocks; ++i) {
+    order[i] = static_cast<Index>(permutation.indices()[static_cast<Eigen::Index>(i)]);
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<SparseFactors::Place> SparseFactors::analyse(std::span<const Index> sizes,
+                                                         std::span<const std::pair<Index, Index>> entries) {
+  const auto blocks = static_cast<Index>(sizes.size());
+  auto pattern = std::make_shared<Pattern>();
+  const std::vector<Index> order = elimination_order(blocks, entries);
+  std::vector<Index> position(blocks), first_row(blocks);
+  std::exclusive_scan(sizes.begin(), sizes.end(), first_row.begin(), Index{0});
+  pattern->row_begin.assign(1, 0);
+  pattern->own_begin.assign(1, 0);
+  for (Index i = 0; i < blocks; ++i) {
+    const Index size = sizes[order[i]];
+    position[order[i]] = i;
+    pattern->given_row.push_back(first_row[order[i]]);
+    pattern->row_begin.push_back(pattern->row_begin.back() + size);
+    pattern->own_begin.push_back(pattern->own_begin.back() + size * (size - 1) / 2);
+    pattern->most = std::max(pattern->most, size);
+  }
+  pattern->own_size = pattern->own_begin.back();
+  pattern->uniform = pattern->row_begin.back() == pattern->most * blocks;
 
   // The permuted lower triangle by rows.
   struct Entry {
@@ -39,119 +63,257 @@ void SparseFactors::analyse(Index size, std::span<const std::pair<Index, Index>>
   };
   std::vector<Entry> sorted;
   sorted.reserve(entries.size());
+  std::vector<Place> places(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Index a = position[entries[i].first], b = position[entries[i].second];
+    places[i].transposed = a < b;
     sorted.push_back({std::max(a, b), std::min(a, b), static_cast<Index>(i)});
   }
   std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
     return a.row < b.row || (a.row == b.row && a.column < b.column);
   });
-  row_begin_.assign(size + 1, 0);
-  column_.clear();
-  places_.assign(entries.size(), 0);
+  pattern->entry_begin.assign(blocks + 1, 0);
+  pattern->entry_column.reserve(sorted.size());
   for (const Entry& entry : sorted) {
-    places_[entry.given] = static_cast<Index>(column_.size());
-    column_.push_back(entry.column);
-    ++row_begin_[entry.row + 1];
+    places[entry.given].first = static_cast<Index>(pattern->values_size);
+    pattern->values_size += std::size_t{pattern->rows(entry.row)} * pattern->rows(entry.column);
+    pattern->entry_column.push_back(entry.column);
+    ++pattern->entry_begin[entry.row + 1];
   }
-  for (Index i = 0; i < size; ++i) row_begin_[i + 1] += row_begin_[i];
-  values_.assign(column_.size(), 0.0);
+  for (Index i = 0; i < blocks; ++i) pattern->entry_begin[i + 1] += pattern->entry_begin[i];
+  pattern->find_fill();
+  pattern_ = std::move(pattern);
+  for (std::vector<double>* const numbers : {&values_, &lower_, &own_, &pivot_, &relative_pivot_, &work_}) {
+    numbers->clear();
+  }
+  return places;
+}
 
-  // Rows of L: by the elimination tree.
-  std::vector<Index> parent(size, none), mark(size, none);
-  std::vector<Index> counts(size, 0);
-  pattern_begin_.assign(1, 0);
-  pattern_column_.clear();
+/// Rows of L by the elimination tree, and its columns.
+void SparseFactors::Pattern::find_fill() {
+  std::vector<Index> parent(blocks(), none), mark(blocks(), none), counts(blocks(), 0);
+  left_begin.assign(1, 0);
   std::vector<Index> row;
-  for (Index i = 0; i < size; ++i) {
+  for (Index i = 0; i < blocks(); ++i) {
     row.clear();
     mark[i] = i;
-    for (Index p = row_begin_[i]; p < row_begin_[i + 1]; ++p) {
-      for (Index j = column_[p]; mark[j] != i; j = parent[j]) {
+    for (Index p = entry_begin[i]; p < entry_begin[i + 1]; ++p) {
+      for (Index j = entry_column[p]; mark[j] != i; j = parent[j]) {
         mark[j] = i;
         row.push_back(j);
         if (parent[j] == none) parent[j] = i;
       }
     }
     std::sort(row.begin(), row.end());
-    for (const Index j : row) {
-      pattern_column_.push_back(j);
-      ++counts[j];
-    }
-    pattern_begin_.push_back(static_cast<Index>(pattern_column_.size()));
+    for (const Index j : row) ++counts[j];
+    left_column.insert(left_column.end(), row.begin(), row.end());
+    left_begin.push_back(static_cast<Index>(left_column.size()));
   }
-  column_begin_.assign(size + 1, 0);
-  for (Index j = 0; j < size; ++j) column_begin_[j + 1] = column_begin_[j] + counts[j];
-  lower_row_.assign(pattern_column_.size(), 0);
-  lower_.assign(pattern_column_.size(), 0.0);
-  pattern_place_.assign(pattern_column_.size(), 0);
-  std::vector<Index> next(column_begin_.begin(), column_begin_.end() - 1);
-  for (Index i = 0; i < size; ++i) {
-    for (Index p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p) {
-      const Index place = next[pattern_column_[p]]++;
-      lower_row_[place] = i;
-      pattern_place_[p] = place;
+  left_column.shrink_to_fit();
+  below_begin.assign(blocks() + 1, 0);
+  for (Index j = 0; j < blocks(); ++j) below_begin[j + 1] = below_begin[j] + counts[j];
+  below_row.assign(left_column.size(), 0);
+  below_number.assign(left_column.size(), 0);
+  left_place.assign(left_column.size(), 0);
+  std::vector<Index> next(below_begin.begin(), below_begin.end() - 1);
+  for (Index i = 0; i < blocks(); ++i) {
+    for (Index p = left_begin[i]; p < left_begin[i + 1]; ++p) {
+      const Index place = next[left_column[p]]++;
+      below_row[place] = i;
+      left_place[p] = place;
     }
   }
-  pivot_.assign(size, 1.0);
-  relative_pivot_.assign(size, 1.0);
-  work_.assign(size, 0.0);
-  answer_.assign(size, 0.0);
+  for (Index j = 0; j < blocks(); ++j) {
+    for (Index k = below_begin[j]; k < below_begin[j + 1]; ++k) {
+      below_number[k] = static_cast<Index>(lower_size);
+      lower_size += std::size_t{rows(j)} * rows(below_row[k]);
+    }
+  }
+}
+
+std::vector<double>& SparseFactors::values() {
+  if (pattern_ && work_.empty()) {
+    values_.assign(pattern_->values_size, 0.0);
+    lower_.assign(pattern_->lower_size, 0.0);
+    own_.assign(pattern_->own_size, 0.0);
+    pivot_.assign(size(), 1.0);
+    relative_pivot_.assign(size(), 1.0);
+    work_.assign(std::size_t{pattern_->most} * size(), 0.0);
+  }
+  return values_;
+}
+
+/// Calls f with the number of rows of all blocks if that is one of the usual ones, or with 0.
+template <class F>
+void SparseFactors::with_rows(F&& f) const {
+  if (pattern_->uniform && pattern_->most == 1) {
+    f(std::integral_constant<Index, 1>());
+  } else if (pattern_->uniform && pattern_->most == 2) {
+    f(std::integral_constant<Index, 2>());
+  } else {
+    f(std::integral_constant<Index, 0>());
+  }
+}
+
+/// Row of blocks by row of blocks. \tparam Rows of all blocks; 0 where they differ
+template <Index Rows>
+void SparseFactors::factor_blocks() {
+  const Pattern& at = *pattern_;
+  constexpr Index room = Rows == 0 ? most_rows : Rows;
+  const Index most = Rows == 0 ? at.most : Rows;
+  const auto rows_of = [&](Index block) { return Rows == 0 ? at.rows(block) : Rows; };
+  const auto row_of = [&](Index block) { return Rows == 0 ? at.row_begin[block] : Rows * block; };
+  const auto number_of = [&](Index k) { return Rows == 0 ? at.below_number[k] : Rows * Rows * k; };
+  const double* value = values_.data();
+  double* const work = work_.data();
+  std::array<double, std::size_t{room} * room> y{}, d{};
+  for (Index i = 0; i < at.blocks(); ++i) {
+    const Index n = rows_of(i), first = row_of(i), last = at.entry_begin[i + 1] - 1;
+    for (Index p = at.entry_begin[i]; p < last; ++p) {
+      const Index j = at.entry_column[p], numbers = n * rows_of(j);
+      std::copy_n(value, numbers, work + std::size_t{most} * row_of(j));
+      value += numbers;
+    }
+    const double* const diagonal = value;
+    std::copy_n(diagonal, n * n, d.begin());
+    value += n * n;
+    for (Index p = at.left_begin[i]; p < at.left_begin[i + 1]; ++p) {
+      const Index j = at.left_column[p], place = at.left_place[p], columns = rows_of(j);
+      double* const from = work + std::size_t{most} * row_of(j);
+      std::copy_n(from, n * columns, y.begin());
+      std::fill_n(from, n * columns, 0.0);
+      const double* own = own_.data() + at.own_begin[j];
+      for (Index c = 1; c < columns; ++c) {
+        for (Index m = 0; m < c; ++m, ++own) {
+          for (Index r = 0; r < n; ++r) y[r * columns + c] -= *own * y[r * columns + m];
+        }
+      }
+      for (Index k = at.below_begin[j]; k < place; ++k) {
+        const Index others = rows_of(at.below_row[k]);
+        const double* const l = lower_.data() + number_of(k);
+        double* const to = work + std::size_t{most} * row_of(at.below_row[k]);
+        for (Index r = 0; r < n; ++r) {
+          for (Index o = 0; o < others; ++o) {
+            double sum = 0.0;
+            for (Index c = 0; c < columns; ++c) sum += y[r * columns + c] * l[o * columns + c];
+            to[r * others + o] -= sum;
+          }
+        }
+      }
+      double* const l = lower_.data() + number_of(place);
+      const double* const pivots = pivot_.data() + row_of(j);
+      for (Index r = 0; r < n; ++r) {
+        for (Index c = 0; c < columns; ++c) l[r * columns + c] = y[r * columns + c] / pivots[c];
+        for (Index o = 0; o <= r; ++o) {
+          for (Index c = 0; c < columns; ++c) d[r * n + o] -= l[r * columns + c] * y[o * columns + c];
+        }
+      }
+    }
+    double* own = own_.data() + at.own_begin[i];
+    double* const pivots = pivot_.data() + first;
+    for (Index r = 0; r < n; ++r) {
+      // Of the row: L times D behind the diagonal's block, its own numbers of L there.
+      double pivot = d[r * n + r];
+      const double* before = own_.data() + at.own_begin[i];
+      for (Index c = 0; c < r; ++c) {
+        double product = d[r * n + c];
+        for (Index m = 0; m < c; ++m) product -= *before++ * d[r * n + m];
+        d[r * n + c] = product;
+        own[c] = product / pivots[c];
+        pivot -= own[c] * product;
+      }
+      own += r;
+      const double whole = diagonal[r * n + r];
+      relative_pivot_[at.given_row[i] + r] = whole > 0.0 ? pivot / whole : 0.0;
+      // With an infinite pivot nothing comes from the row and nothing goes to it.
+      pivots[r] = pivot > dependent_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
+    }
+  }
 }
 
 void SparseFactors::factor() {
-  double* const y = work_.data();
-  for (Index i = 0; i < size_; ++i) {
-    const Index last = row_begin_[i + 1] - 1;
-    for (Index p = row_begin_[i]; p < last; ++p) y[column_[p]] = values_[p];
-    const double diagonal = values_[last];
-    double pivot = diagonal;
-    for (Index p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p) {
-      const Index j = pattern_column_[p], place = pattern_place_[p];
-      const double value = y[j];
-      y[j] = 0.0;
-      for (Index k = column_begin_[j]; k < place; ++k) y[lower_row_[k]] -= lower_[k] * value;
-      const double factor = value / pivot_[j];
-      pivot -= factor * value;
-      lower_[place] = factor;
-    }
-    relative_pivot_[order_[i]] = diagonal > 0.0 ? pivot / diagonal : 0.0;
-    // With an infinite pivot nothing comes from the row and nothing goes to it.
-    pivot_[i] = pivot > dependent_pivot * diagonal ? pivot : std::numeric_limits<double>::infinity();
-  }
+  if (values().empty()) return;
+  with_rows([&](auto rows) { factor_blocks<decltype(rows)::value>(); });
 }
 
-void SparseFactors::substitute(double* x) const {
-  for (Index j = 0; j < size_; ++j) {
-    const double value = x[j];
-    for (Index p = column_begin_[j]; p < column_begin_[j + 1]; ++p) x[lower_row_[p]] -= lower_[p] * value;
+template <Index Rows>
+void SparseFactors::substitute(double* given) {
+  const Pattern& at = *pattern_;
+  const auto rows_of = [&](Index block) { return Rows == 0 ? at.rows(block) : Rows; };
+  const auto row_of = [&](Index block) { return Rows == 0 ? at.row_begin[block] : Rows * block; };
+  double* const x = work_.data();
+  for (Index j = 0; j < at.blocks(); ++j) {
+    for (Index r = 0; r < rows_of(j); ++r) x[row_of(j) + r] = given[at.given_row[j] + r];
   }
-  for (Index j = size_; j-- > 0;) {
-    double value = x[j] / pivot_[j];
-    for (Index p = column_begin_[j]; p < column_begin_[j + 1]; ++p) value -= lower_[p] * x[lower_row_[p]];
-    x[j] = value;
+  const double* l = lower_.data();
+  for (Index j = 0; j < at.blocks(); ++j) {
+    const Index n = rows_of(j);
+    double* const own_x = x + row_of(j);
+    const double* own = own_.data() + at.own_begin[j];
+    for (Index r = 1; r < n; ++r) {
+      for (Index c = 0; c < r; ++c) own_x[r] -= *own++ * own_x[c];
+    }
+    for (Index k = at.below_begin[j]; k < at.below_begin[j + 1]; ++k) {
+      const Index others = rows_of(at.below_row[k]);
+      double* const to = x + row_of(at.below_row[k]);
+      for (Index o = 0; o < others; ++o) {
+        double sum = 0.0;
+        for (Index c = 0; c < n; ++c) sum += *l++ * own_x[c];
+        to[o] -= sum;
+      }
+    }
+  }
+  for (Index j = at.blocks(); j-- > 0;) {
+    const Index n = rows_of(j);
+    double* const own_x = x + row_of(j);
+    for (Index r = 0; r < n; ++r) own_x[r] /= pivot_[row_of(j) + r];
+    for (Index k = at.below_begin[j + 1]; k-- > at.below_begin[j];) {
+      const Index others = rows_of(at.below_row[k]);
+      const double* const from = x + row_of(at.below_row[k]);
+      l -= others * n;
+      for (Index o = 0; o < others; ++o) {
+        for (Index c = 0; c < n; ++c) own_x[c] -= l[o * n + c] * from[o];
+      }
+    }
+    const double* own = own_.data() + at.own_begin[j + 1];
+    for (Index r = n; r-- > 1;) {
+      own -= r;
+      for (Index c = 0; c < r; ++c) own_x[c] -= own[c] * own_x[r];
+    }
+  }
+  for (Index j = 0; j < at.blocks(); ++j) {
+    for (Index r = 0; r < rows_of(j); ++r) {
+      given[at.given_row[j] + r] = x[row_of(j) + r];
+      x[row_of(j) + r] = 0.0;
+    }
   }
 }
 
 void SparseFactors::solve(double* x) {
-  for (Index i = 0; i < size_; ++i) answer_[i] = x[order_[i]];
-  substitute(answer_.data());
-  for (Index i = 0; i < size_; ++i) x[order_[i]] = answer_[i];
+  if (pattern_) with_rows([&](auto rows) { substitute<decltype(rows)::value>(x); });
 }
 
 void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
-  Index at = 0;
-  while (order_[at] != row) ++at;
-  std::fill(answer_.begin(), answer_.end(), 0.0);
-  for (Index i = 0; i < size_; ++i) {
-    for (Index p = row_begin_[i]; p < row_begin_[i + 1]; ++p) {
-      if (i == at) answer_[column_[p]] = values_[p];
-      if (column_[p] == at) answer_[i] = values_[p];
+  const Pattern& at = *pattern_;
+  const auto given = [&](Index block) { return at.given_row[block]; };
+  out.assign(size(), 0.0);
+  // The row of the matrix, as it was given.
+  const double* value = values_.data();
+  for (Index i = 0; i < at.blocks(); ++i) {
+    for (Index p = at.entry_begin[i]; p < at.entry_begin[i + 1]; ++p) {
+      const Index j = at.entry_column[p];
+      for (Index r = 0; r < at.rows(i); ++r) {
+        for (Index c = 0; c < at.rows(j); ++c, ++value) {
+          if (i == j && c > r) continue;
+          if (given(i) + r == row) out[given(j) + c] = *value;
+          if (given(j) + c == row) out[given(i) + r] = *value;
+        }
+      }
     }
   }
-  substitute(answer_.data());
-  out.assign(size_, 0.0);
-  for (Index i = 0; i < size_; ++i) out[order_[i]] = i == at ? 1.0 : -answer_[i];
+  solve(out.data());
+  for (double& number : out) number = -number;
+  out[row] = 1.0;
 }
 
 }  // namespace carom

@@ -2,12 +2,13 @@
 
 /// \file
 /// L D L^T of a sparse symmetric matrix whose pattern does not change: analysed once, factorised often,
-/// without allocation.
+/// without allocation. Rows with the same pattern are given as blocks, which are dense.
 
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,17 +21,25 @@ namespace carom {
 inline constexpr double dependent_pivot = 1e-9;
 
 /// Factors of a symmetric positive semidefinite matrix A. A row that follows from those eliminated before it
-/// is left out: for a right side in the range of A the answer is a solution, with zero there.
+/// is left out: for a right side in the range of A the answer is a solution, with zero there. Copies share
+/// the pattern.
 class CAROM_API SparseFactors {
 public:
-  /// \param size rows
-  /// \param entries places (row, column) of the lower triangle that are not zero, in any order, each once;
-  /// the diagonal must be among them
-  void analyse(Index size, std::span<const std::pair<Index, Index>> entries);
-  /// Place of the number of an entry in values(), by its place in `entries`.
-  [[nodiscard]] Index place(std::size_t entry) const { return places_[entry]; }
-  /// The numbers of the matrix.
-  [[nodiscard]] std::vector<double>& values() { return values_; }
+  static constexpr Index most_rows = 6;  ///< of a block
+
+  /// Where the numbers of a given block stand in values(), row by row.
+  struct Place {
+    Index first = 0;
+    bool transposed = false;  ///< its transpose stands there
+  };
+
+  /// Returns the places of the entries.
+  /// \param sizes rows of each block, 1 to most_rows
+  /// \param entries blocks (row, column) of the lower triangle that are not zero, in any order, each once;
+  /// those on the diagonal must be among them, of which the lower triangle is read
+  std::vector<Place> analyse(std::span<const Index> sizes, std::span<const std::pair<Index, Index>> entries);
+  /// The numbers of the matrix. Memory for numbers is taken when they are first asked for.
+  [[nodiscard]] std::vector<double>& values();
   /// Factorises the numbers.
   void factor();
   /// x becomes a solution of A x = x.
@@ -41,25 +50,47 @@ public:
   /// follows from others.
   [[nodiscard]] double pivot(std::size_t row) const { return relative_pivot_[row]; }
 
-  [[nodiscard]] Index size() const { return size_; }  ///< rows
+  /// Rows.
+  [[nodiscard]] Index size() const { return pattern_ ? pattern_->row_begin.back() : 0; }
   /// Numbers in the factor below its diagonal.
-  [[nodiscard]] std::size_t fill() const { return lower_.size(); }
+  [[nodiscard]] std::size_t fill() const { return pattern_ ? pattern_->lower_size + pattern_->own_size : 0; }
 
 private:
-  void substitute(double* x) const;
+  // Places of blocks are those in the factor: in the order of elimination.
+  struct Pattern {
+    std::vector<Index> row_begin;  // first row in the factor, by block
+    std::vector<Index> given_row;  // first row in the matrix, by block
+    // The matrix by rows of blocks of the permuted lower triangle, diagonal last.
+    std::vector<Index> entry_begin, entry_column;
+    std::size_t values_size = 0;
+    // Blocks of the rows of L, columns ascending, with their places in the list below.
+    std::vector<Index> left_begin, left_column, left_place;
+    // Blocks of L by columns, rows ascending, and where their numbers begin.
+    std::vector<Index> below_begin, below_row, below_number;
+    std::size_t lower_size = 0;
+    // Numbers of L within the blocks on the diagonal.
+    std::vector<Index> own_begin;
+    std::size_t own_size = 0;
+    Index most = 1;        // rows of the largest block
+    bool uniform = false;  // all have that many
 
-  Index size_ = 0;
-  std::vector<Index> order_;   // row of the matrix by place in the factor
-  std::vector<Index> places_;  // by given entry
-  // The matrix, by rows of the permuted lower triangle, diagonal last.
-  std::vector<Index> row_begin_, column_;
+    [[nodiscard]] Index blocks() const { return static_cast<Index>(given_row.size()); }
+    [[nodiscard]] Index rows(Index block) const { return row_begin[block + 1] - row_begin[block]; }
+    void find_fill();
+  };
+  template <Index Rows>
+  void factor_blocks();
+  template <Index Rows>
+  void substitute(double* given);
+  template <class F>
+  void with_rows(F&& f) const;
+
+  std::shared_ptr<const Pattern> pattern_;
   std::vector<double> values_;
-  // Pattern of the rows of L, columns ascending, with their places in lower_; L itself by columns.
-  std::vector<Index> pattern_begin_, pattern_column_, pattern_place_;
-  std::vector<Index> column_begin_, lower_row_;
-  std::vector<double> lower_, pivot_;
+  std::vector<double> lower_, own_;     // L, off and in the blocks of the diagonal
+  std::vector<double> pivot_;           // by row in the factor; infinite of a row that is left out
   std::vector<double> relative_pivot_;  // by row of the matrix
-  std::vector<double> work_, answer_;
+  std::vector<double> work_;            // zero between calls
 };
 
 }  // namespace carom

@@ -144,9 +144,8 @@ bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span
   const auto rows = static_cast<int>(contacts.size());
   joints.locate({state.view(), evaluation.rotation.data()});
   of_joints_.resize(joints.size());
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    of_joints_[i] = joints.rows()[i].gap - joints.rows()[i].times(displacement_.data());
-  }
+  joints.residuals(JointLevel::change, displacement_.data(), of_joints_.data());
+  for (std::size_t i = 0; i < joints.size(); ++i) of_joints_[i] = joints.gap(i) - of_joints_[i];
   joints.solve(of_joints_.data());
   towards_.assign(size, 0.0);
   joints.add_response(of_joints_.data(), towards_.data());

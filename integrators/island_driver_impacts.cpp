@@ -208,7 +208,7 @@ void IslandDriver::tell_joints(DriverNews& news) {
   joints.hold(JointLevel::change, work.of_velocity.data(), work.multipliers.data());
   // What is prescribed moves on: G v = -rate before and after.
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    news.flows[EnergyFlow::external] -= work.multipliers[i] * joints.rows()[i].rate;
+    news.flows[EnergyFlow::external] -= work.multipliers[i] * joints.rate(i);
   }
   list_impulses(news);
   for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {

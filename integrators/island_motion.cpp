@@ -175,7 +175,7 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
   if (joints_.depends_on_time()) {
     // Reactions do the work of what is prescribed: G v = -rate.
     const std::span<const double> multipliers = joint_multipliers();
-    for (std::size_t i = 0; i < multipliers.size(); ++i) external -= multipliers[i] * joints_.rows()[i].rate;
+    for (std::size_t i = 0; i < multipliers.size(); ++i) external -= multipliers[i] * joints_.rate(i);
   }
   rates[work_place(WorkLine::dashpot)] = dashpot;
   rates[work_place(WorkLine::sliding)] = sliding;

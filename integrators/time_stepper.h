@@ -192,14 +192,13 @@ private:
 
   // The joints of an island.
   struct JointWork {
-    IslandJoints end, mean;                // rows at the end; halfway, with factors where bodies touch
-    std::vector<JointRow> start, at_hand;  // rows at the start, where they depend on time; scratch
-    std::vector<JointRow> mean_rows;       // halfway
-    std::vector<double> impulse;           // L
-    std::vector<double> total;             // L, and what contact adds
-    JointPressure pressure;                // of friction in them
-    double pressure_change = 0.0;          // by the last sweep, relative
-    std::vector<double> left;              // of the constraints
+    IslandJoints end, mean;          // rows at the end; halfway, with factors where bodies touch
+    std::vector<double> start_rate;  // of the rows at the start, where they depend on time
+    std::vector<double> impulse;     // L
+    std::vector<double> total;       // L, and what contact adds
+    JointPressure pressure;          // of friction in them
+    double pressure_change = 0.0;    // by the last sweep, relative
+    std::vector<double> left;        // of the constraints
   };
   std::vector<JointWork> joints_;  // by island; empty without joints
   // Over all velocities or coordinates, sized if there are joints: changes of velocity by joints, by contact;

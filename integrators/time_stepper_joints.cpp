@@ -71,10 +71,12 @@ void TimeStepper::start_joints(Index island, const State& state, double step) {
   if (!work.end.depends_on_time()) return;
   evaluate_positions(*assembly_, island, state.view(), start_);
   try {
-    work.end.evaluate(view_of(state, start_), work.start);
+    work.end.place(view_of(state, start_));
   } catch (const SolverError& error) {
     fail_motion(error, state, step);
   }
+  work.start_rate.resize(work.end.size());
+  for (std::size_t row = 0; row < work.end.size(); ++row) work.start_rate[row] = work.end.rate(row);
 }
 
 void TimeStepper::sweep_joints(Index island, const State& state, const Companion& companion, double step) {
@@ -91,9 +93,8 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
     work.end.locate(view_of(trial_, evaluation_));
     if (clusters_in_use_ > 0) {
       work.mean.locate(view_of(middle_, middle_evaluation_));
-      work.mean_rows.assign(work.mean.rows().begin(), work.mean.rows().end());
     } else {
-      work.mean.evaluate(view_of(middle_, middle_evaluation_), work.mean_rows);
+      work.mean.place(view_of(middle_, middle_evaluation_));
     }
   } catch (const SolverError& error) {
     fail_motion(error, state, step);
@@ -117,15 +118,11 @@ void TimeStepper::correct_joint_impulses(Index island) {
   JointWork& work = joints_[island];
   const Range v = assembly_->islands()[island].v;
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
-  for (std::size_t row = 0; row < work.left.size(); ++row) {
-    work.left[row] = IslandJoints::residual(JointLevel::velocity, work.end.rows()[row], scratch_.data());
-  }
+  work.end.residuals(JointLevel::velocity, scratch_.data(), work.left.data());
   work.end.solve(work.left.data());
   clear(reaction_, v);
-  for (std::size_t row = 0; row < work.left.size(); ++row) {
-    work.impulse[row] += work.left[row];
-    work.mean_rows[row].add_transposed(work.impulse[row], reaction_.data());
-  }
+  for (std::size_t row = 0; row < work.left.size(); ++row) work.impulse[row] += work.left[row];
+  work.mean.add_transposed(work.impulse.data(), reaction_.data());
   work.end.apply_inverse_mass(reaction_.data());
 }
 
@@ -190,8 +187,8 @@ void TimeStepper::return_to_joints(Index island) {
   const Range v = assembly_->islands()[island].v;
   move(island, displacement_, trial_);
   evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-  work.end.evaluate(view_of(trial_, evaluation_), work.at_hand);
-  for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] = work.at_hand[row].gap;
+  work.end.place_gaps(view_of(trial_, evaluation_));
+  for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] = work.end.gap(row);
   work.end.solve(work.left.data());
   clear(scratch_, v);
   work.end.add_response(work.left.data(), scratch_.data());
@@ -230,11 +227,12 @@ double TimeStepper::joint_violation(Index island) {
   constexpr double rounding = 1e-13;
   JointWork& work = joints_[island];
   evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-  work.end.evaluate(view_of(trial_, evaluation_), work.at_hand);
+  work.end.place(view_of(trial_, evaluation_));
   const Range q = assembly_->islands()[island].q;
   double extent = 0.0, largest = 0.0;
   for (Index i = q.begin; i < q.end; ++i) extent = std::max(extent, std::abs(trial_.q[i]));
-  for (const JointRow& row : work.at_hand) {
+  for (std::size_t i = 0; i < work.end.size(); ++i) {
+    const JointRow row = work.end.row(i);
     double speed = std::abs(row.rate);
     for (int b = 0; b < row.bodies; ++b) {
       const JointRow::Block& block = row.blocks[static_cast<std::size_t>(b)];
@@ -258,12 +256,13 @@ void TimeStepper::book_joints(Index island, const State& state, double step) {
   work.total = work.impulse;
   if (clusters_in_use_ > 0) add_contacts_to_joints(island);
   place_middle(island, state, step);
+  work.mean.residuals(JointLevel::change, middle_.v.data(), work.left.data());
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step.
   for (std::size_t row = 0; row < work.total.size(); ++row) {
     double rate = 0.0;
-    if (!work.start.empty()) rate = 0.5 * (work.start[row].rate + work.end.rows()[row].rate);
+    if (!work.start_rate.empty()) rate = 0.5 * (work.start_rate[row] + work.end.rate(row));
     flows_[EnergyFlow::external] -= work.total[row] * rate;
-    coupling_work_.add(work.total[row] * (work.mean_rows[row].times(middle_.v.data()) + rate));
+    coupling_work_.add(work.total[row] * (work.left[row] + rate));
   }
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.
@@ -298,8 +297,8 @@ JointId TimeStepper::worst_joint(Index island, double& violation) const {
   const JointWork& work = joints_[island];
   JointId worst;
   violation = 0.0;
-  for (std::size_t row = 0; row < work.at_hand.size(); ++row) {
-    const double gap = std::abs(work.at_hand[row].gap);
+  for (std::size_t row = 0; row < work.end.size(); ++row) {
+    const double gap = std::abs(work.end.gap(row));
     if (!(gap > violation)) continue;
     violation = gap;
     worst = work.end.joint(row);

@@ -1,8 +1,10 @@
 #include <carom/core/body_kind.h>
 #include <carom/joints/binding.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace carom::planar {
 
@@ -15,120 +17,254 @@ double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0
 
 }  // namespace
 
-LocatedBinding::Side LocatedBinding::side(BodyId body, const Vec<2>& point, double turn,
-                                          const Layout& layout) {
-  Side side;
-  side.local = point;
-  side.turn = turn;
-  if (body == ground) return side;
-  const BodySlot slot = layout.slot(body);
-  side.q = slot.q;
-  side.v = slot.v;
-  side.rotation = slot.rotation;
-  side.columns = static_cast<int>(slot.v_size);
-  return side;
-}
+/// The ends of a joint at one configuration.
+struct BindingTable::Geometry {
+  const Places& places;
+  const Place& carrier;
+  Vec<2> from_lever, to_lever;
+  Vec<2> between;  // the ends, d
+  Vec<2> apart;    // dd/dt
+  Vec<2> drift;    // d2d/dt2 where nothing accelerates
+  double from_spin;
+};
 
-LocatedBinding::LocatedBinding(const Binding& binding, const Layout& layout)
-    : form_(binding.form),
-      from_(side(binding.from.body, binding.from.point, binding.turn_from, layout)),
-      to_(side(binding.to.body, binding.to.point, binding.turn_to, layout)),
-      carrier_(side(binding.carrier, Vec<2>::Zero(), binding.turn_carrier, layout)),
-      axis_(binding.axis),
-      offset_(binding.offset),
-      moment_(binding.turn_to) {
-  // The ground does not turn.
-  for (Side* const side : {&from_, &to_, &carrier_}) {
-    if (side->rotation == none) side->turn = 0.0;
+void BindingTable::add(std::span<const Binding> bindings) {
+  const Binding& first = bindings.front();
+  conditions_.resize(bindings.size());
+  for (const BodyId body : {first.from.body, first.to.body}) token_ = std::max(token_, body.token);
+  ends_.push_back({first.from.body.serial, first.to.body.serial});
+  carrier_.push_back(first.carrier.serial);
+  // The points are those of a condition that looks at them.
+  const auto looks = [](const Binding& binding) { return binding.form != Binding::Form::angles; };
+  const auto pointed = std::find_if(bindings.begin(), bindings.end(), looks);
+  const Binding& points = pointed == bindings.end() ? first : *pointed;
+  from_point_.push_back(points.from.point);
+  to_point_.push_back(points.to.point);
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const Binding& binding = bindings[i];
+    conditions_[i].form.push_back(binding.form);
+    conditions_[i].axis.push_back(binding.axis);
+    conditions_[i].turns.push_back({binding.turn_from, binding.turn_to, binding.turn_carrier});
+    conditions_[i].offset.push_back(binding.offset);
   }
-  if (carrier_.turn == 0.0) carrier_ = {};
 }
 
-Vec<2> LocatedBinding::Side::lever(const JointView& at) const {
+void BindingTable::erase(Index joint) {
+  ends_.erase(ends_.begin() + joint);
+  carrier_.erase(joint);
+  from_point_.erase(joint);
+  to_point_.erase(joint);
+  for (Condition& condition : conditions_) {
+    condition.form.erase(joint);
+    condition.axis.erase(joint);
+    condition.turns.erase(joint);
+    condition.offset.erase(joint);
+  }
+}
+
+Binding BindingTable::binding(Index joint, Index which) const {
+  const Condition& condition = conditions_[which];
+  const Turns& turns = condition.turns[joint];
+  Binding binding;
+  binding.form = condition.form[joint];
+  binding.from = End<2>(id(ends_[joint].from));
+  binding.to = End<2>(id(ends_[joint].to));
+  if (binding.form != Binding::Form::angles) {
+    binding.from.point = from_point_[joint];
+    binding.to.point = to_point_[joint];
+  }
+  binding.axis = condition.axis[joint];
+  binding.turn_from = turns.from;
+  binding.turn_to = turns.to;
+  binding.carrier = id(carrier_[joint]);
+  binding.turn_carrier = turns.carrier;
+  binding.offset = condition.offset[joint];
+  return binding;
+}
+
+BindingTable BindingTable::arranged(std::span<const Index> order, const Layout& layout) const {
+  const auto place_of = [&](BodyId body) {
+    if (body == ground) return Place{};
+    const BodySlot slot = layout.slot(body);
+    return Place{slot.q, slot.v, slot.rotation};
+  };
+  BindingTable table;
+  table.ends_.reserve(order.size());
+  table.places_.reserve(order.size());
+  std::vector<Binding> bindings(conditions_.size());
+  for (const Index joint : order) {
+    bool carried = false;
+    for (Index which = 0; which < bindings.size(); ++which) {
+      bindings[which] = binding(joint, which);
+      carried = carried || bindings[which].turn_carrier != 0.0;
+    }
+    table.add(bindings);
+    table.places_.push_back({place_of(bindings[0].from.body), place_of(bindings[0].to.body)});
+    const Place carrier = carried ? place_of(bindings[0].carrier) : Place{};
+    table.carrier_place_.push_back(carrier.rotation == none ? Place{} : carrier);
+  }
+  table.token_ = token_;
+  table.from_point_.shrink();
+  table.to_point_.shrink();
+  for (Condition& condition : table.conditions_) condition.offset.shrink();
+  return table;
+}
+
+void BindingTable::ends(Index joint, std::vector<BodyId>& out) const {
+  out.push_back(id(ends_[joint].from));
+  out.push_back(id(ends_[joint].to));
+  if (carrier_[joint] != ground.serial) out.push_back(id(carrier_[joint]));
+}
+
+void BindingTable::fingerprint(Fingerprint& print) const {
+  for (Index joint = 0; joint < size(); ++joint) {
+    for (Index which = 0; which < conditions_.size(); ++which) {
+      const Binding of = binding(joint, which);
+      add_to(print, of.from);
+      add_to(print, of.to);
+      print.add(std::uint64_t{of.carrier.serial});
+      print.add({of.axis.data(), 2});
+      for (const double number : {of.turn_from, of.turn_to, of.turn_carrier, of.offset}) print.add(number);
+    }
+  }
+}
+
+inline Vec<2> BindingTable::Place::lever(const JointView& at, const Vec<2>& local) const {
   if (rotation == none) return Vec<2>::Zero();
   return Space<2>::rotate(at.rotation + rotation, local);
 }
 
-Vec<2> LocatedBinding::Side::position(const JointView& at, const Vec<2>& lever) const {
+inline Vec<2> BindingTable::Place::position(const JointView& at, const Vec<2>& local,
+                                            const Vec<2>& lever) const {
   if (v == none) return local;
   return Eigen::Map<const Vec<2>>(at.state.q + q) + lever;
 }
 
-Vec<2> LocatedBinding::Side::velocity(const JointView& at, const Vec<2>& lever) const {
+inline Vec<2> BindingTable::Place::velocity(const JointView& at, const Vec<2>& lever) const {
   if (v == none) return Vec<2>::Zero();
   const Vec<2> velocity = Eigen::Map<const Vec<2>>(at.state.v + v);
   return rotation == none ? velocity : Vec<2>(velocity + spin(at) * turned(lever));
 }
 
-void LocatedBinding::pattern(JointRow& row) const {
-  row.bodies = 0;
-  for (const Side* const side : {&from_, &to_, &carrier_}) {
-    if (side->v == none) continue;
-    JointRow::Block& block = row.blocks[static_cast<std::size_t>(row.bodies++)];
-    block.v = side->v;
-    block.columns = side->columns;
-  }
+inline BindingTable::Geometry BindingTable::geometry(const JointView& at, Index joint) const {
+  const auto& [from, to] = places_[joint];
+  const Vec<2>& from_point = from_point_[joint];
+  const Vec<2>& to_point = to_point_[joint];
+  const Vec<2> from_lever = from.lever(at, from_point), to_lever = to.lever(at, to_point);
+  const double from_spin = from.spin(at), to_spin = to.spin(at);
+  return {places_[joint],
+          carrier_place_[joint],
+          from_lever,
+          to_lever,
+          to.position(at, to_point, to_lever) - from.position(at, from_point, from_lever),
+          to.velocity(at, to_lever) - from.velocity(at, from_lever),
+          from_spin * from_spin * from_lever - to_spin * to_spin * to_lever,
+          from_spin};
 }
 
-Vec<2> LocatedBinding::direction(const JointView& at, const Vec<2>& between) const {
-  switch (form_) {
+inline Vec<2> BindingTable::direction(const JointView& at, const Geometry& geometry,
+                                      const Condition& condition, Index joint) const {
+  const Index rotation = geometry.places.from.rotation;
+  switch (condition.form[joint]) {
     case Binding::Form::fixed_axis:
-      return axis_;
+      return condition.axis[joint];
     case Binding::Form::axis_of_from:
-      return from_.rotation == none ? axis_ : Space<2>::rotate(at.rotation + from_.rotation, axis_);
+      if (rotation == none) return condition.axis[joint];
+      return Space<2>::rotate(at.rotation + rotation, condition.axis[joint]);
     case Binding::Form::distance:
-      return between / between.norm();
+      return geometry.between / geometry.between.norm();
     case Binding::Form::angles:
       break;
   }
   return Vec<2>::Zero();
 }
 
-void LocatedBinding::evaluate(const JointView& at, JointRow& row) const {
-  pattern(row);
-  const Vec<2> from_lever = from_.lever(at), to_lever = to_.lever(at);
-  const Vec<2> between = to_.position(at, to_lever) - from_.position(at, from_lever);
-  const Vec<2> apart = to_.velocity(at, to_lever) - from_.velocity(at, from_lever);
-  const double from_spin = from_.spin(at), to_spin = to_.spin(at);
-  const Vec<2> centripetal = from_spin * from_spin * from_lever - to_spin * to_spin * to_lever;
-  const Vec<2> a = direction(at, between);
+/// Writes a row, its numbers of G only if there is a place for them; returns the end of these.
+inline double* BindingTable::write(const JointView& at, const Geometry& geometry, const Condition& condition,
+                                   Index joint, double& gap, double& drift, double* jacobian) const {
+  const auto& [from, to] = geometry.places;
+  const Place& carrier = geometry.carrier;
+  const Vec<2>& between = geometry.between;
+  const Vec<2> a = direction(at, geometry, condition, joint);
+  const Binding::Form form = condition.form[joint];
   // What turning `from` adds where the axis turns with it.
   double swing = 0.0;
-  row.rate = 0.0;
-  row.drift = a.dot(centripetal);
-  row.gap = a.dot(between);
-  if (form_ == Binding::Form::axis_of_from && from_.rotation != none) {
+  drift = a.dot(geometry.drift);
+  gap = a.dot(between);
+  if (form == Binding::Form::axis_of_from && from.rotation != none) {
     const Vec<2> across = turned(a);
+    const double spin = geometry.from_spin;
     swing = across.dot(between);
-    row.drift += 2.0 * from_spin * across.dot(apart) - from_spin * from_spin * row.gap;
-  } else if (form_ == Binding::Form::distance) {
-    const double length = between.norm(), sideways = cross(a, apart);
-    row.drift += sideways * sideways / length;
-    row.gap = length;
+    drift += 2.0 * spin * across.dot(geometry.apart) - spin * spin * gap;
+  } else if (form == Binding::Form::distance) {
+    const double length = between.norm(), sideways = cross(a, geometry.apart);
+    drift += sideways * sideways / length;
+    gap = length;
   }
-  for (const Side* const side : {&from_, &to_, &carrier_}) {
-    if (side->turn != 0.0) row.gap += side->turn * side->angle(at);
-  }
-  row.gap -= offset_;
-  int place = 0;
-  const auto write = [&](const Side& side, double sign, const Vec<2>& lever, double turn) {
-    if (side.v == none) return;
-    auto& jacobian = row.blocks[static_cast<std::size_t>(place++)].jacobian;
-    jacobian[0] = sign * a[0];
-    jacobian[1] = sign * a[1];
-    jacobian[2] = side.rotation == none ? 0.0 : sign * cross(lever, a) + turn;
+  const Turns& turns = condition.turns[joint];
+  if (turns.from != 0.0) gap += turns.from * from.angle(at);
+  if (turns.to != 0.0) gap += turns.to * to.angle(at);
+  if (turns.carrier != 0.0) gap += turns.carrier * carrier.angle(at);
+  gap -= condition.offset[joint];
+  if (jacobian == nullptr) return nullptr;
+  const auto block = [&](const Place& place, double sign, const Vec<2>& lever, double turn) {
+    if (place.v == none) return;
+    *jacobian++ = sign * a[0];
+    *jacobian++ = sign * a[1];
+    if (place.rotation != none) *jacobian++ = sign * cross(lever, a) + turn;
   };
-  write(from_, -1.0, from_lever, from_.turn + swing);
-  write(to_, 1.0, to_lever, to_.turn);
-  write(carrier_, 0.0, Vec<2>::Zero(), carrier_.turn);
+  block(from, -1.0, geometry.from_lever, turns.from + swing);
+  block(to, 1.0, geometry.to_lever, turns.to);
+  block(carrier, 0.0, Vec<2>::Zero(), turns.carrier);
+  return jacobian;
 }
 
-void LocatedBinding::add_reaction(const JointView& at, double multiplier, JointReaction& out) const {
-  const Vec<2> between = to_.position(at, to_.lever(at)) - from_.position(at, from_.lever(at));
-  const Vec<2> force = multiplier * direction(at, between);
-  out.force[0] += force[0];
-  out.force[1] += force[1];
-  out.moment += multiplier * moment_;
+void BindingTable::pattern(Index joint, JointRow& row) const {
+  row.bodies = 0;
+  const auto& [from, to] = places_[joint];
+  for (const Place& place : {from, to, carrier_place_[joint]}) {
+    if (place.v == none) continue;
+    JointRow::Block& block = row.blocks[static_cast<std::size_t>(row.bodies++)];
+    block.v = place.v;
+    block.columns = place.columns();
+  }
+}
+
+void BindingTable::evaluate(const JointView& at, Index joint, Index which, JointRow& row) const {
+  pattern(joint, row);
+  std::array<double, std::size_t{JointRow::max_bodies * JointRow::max_columns}> numbers{};
+  row.rate = 0.0;
+  write(at, geometry(at, joint), conditions_[which], joint, row.gap, row.drift, numbers.data());
+  const double* number = numbers.data();
+  for (JointRow::Block& block : std::span(row.blocks).first(static_cast<std::size_t>(row.bodies))) {
+    std::copy_n(number, block.columns, block.jacobian.begin());
+    number += block.columns;
+  }
+}
+
+void BindingTable::evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const {
+  double unwanted = 0.0;
+  if (out.rate != nullptr) std::fill_n(out.rate, joints.size() * rows, 0.0);
+  for (Index joint = joints.begin; joint < joints.end; ++joint) {
+    const Geometry ends = geometry(at, joint);
+    for (Index row = 0; row < rows; ++row) {
+      double& drift = out.drift == nullptr ? unwanted : *out.drift++;
+      out.jacobian = write(at, ends, conditions_[row], joint, *out.gap++, drift, out.jacobian);
+    }
+  }
+}
+
+JointReaction BindingTable::reaction(const JointView& at, Index joint, Index rows,
+                                     const double* multipliers) const {
+  JointReaction reaction;
+  const Geometry ends = geometry(at, joint);
+  for (Index row = 0; row < rows; ++row) {
+    const Vec<2> force = multipliers[row] * direction(at, ends, conditions_[row], joint);
+    reaction.force[0] += force[0];
+    reaction.force[1] += force[1];
+    reaction.moment += multipliers[row] * conditions_[row].turns[joint].to;
+  }
+  return reaction;
 }
 
 Vec<2> DescribedPlace::point(const Vec<2>& local) const {
@@ -159,6 +295,22 @@ Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis, std::string_view
   const double length = axis.stableNorm();  // squares of what is far from 1 over- or underflow
   if (!(length > 0.0)) check.refuse(quantity, "(0, 0)", "an axis of any length > 0");
   return axis / length;
+}
+
+void check_bindings(const PartCheck& check, std::span<const Binding> bindings, Index count) {
+  if (bindings.size() != count)
+    check.refuse("number of bindings", std::to_string(bindings.size()), std::to_string(count));
+  const Binding* points = nullptr;
+  for (const Binding& binding : bindings) {
+    const Binding& first = bindings.front();
+    bool same = binding.from.body == first.from.body && binding.to.body == first.to.body &&
+                binding.carrier == first.carrier;
+    if (binding.form != Binding::Form::angles) {
+      if (points == nullptr) points = &binding;
+      same = same && binding.from.point == points->from.point && binding.to.point == points->to.point;
+    }
+    if (!same) check.refuse("bindings", "between different ends", "all between the same two ends");
+  }
 }
 
 void check_turning_end(const PartCheck& check, BodyId body, std::string_view quantity) {

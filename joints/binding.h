@@ -10,6 +10,7 @@
 ///
 /// A line may have angles in it (rolling).
 
+#include <carom/core/column.h>
 #include <carom/core/end.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
@@ -18,6 +19,7 @@
 #include <carom/core/system.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace carom::planar {
@@ -38,28 +40,58 @@ struct Binding {
   double offset = 0.0;           ///< what is subtracted [m, rad]
 };
 
-/// A binding whose places in the arrays are known.
-class CAROM_API LocatedBinding {
+/// The bindings of many joints of one kind, property by property: what joints have in common is stored once.
+/// All bindings of a joint are between the same ends; conditions on angles alone do not look at the points.
+class CAROM_API BindingTable {
 public:
-  LocatedBinding(const Binding& binding, const Layout& layout);
+  /// Appends a joint. The number of bindings is the same for all.
+  void add(std::span<const Binding> bindings);
+  /// Removes a joint; later ones move up.
+  void erase(Index joint);
+  /// The joints named by `order`, in that order, with their places in the arrays.
+  [[nodiscard]] BindingTable arranged(std::span<const Index> order, const Layout& layout) const;
 
-  /// Writes which velocities the row has blocks for.
-  void pattern(JointRow& row) const;
-  /// Writes the row.
-  void evaluate(const JointView& at, JointRow& row) const;
-  /// Adds what a multiplier of the row does to `to`.
-  void add_reaction(const JointView& at, double multiplier, JointReaction& out) const;
+  [[nodiscard]] Index size() const { return static_cast<Index>(ends_.size()); }  ///< number of joints
+  /// A binding of a joint, as it was added.
+  [[nodiscard]] Binding binding(Index joint, Index which) const;
+  /// Appends the bodies of a joint.
+  void ends(Index joint, std::vector<BodyId>& out) const;
+  /// Adds all that distinguishes the joints.
+  void fingerprint(Fingerprint& print) const;
+
+  /// Writes which velocities the rows of a joint have blocks for. The table must be an arranged one, here and
+  /// below.
+  void pattern(Index joint, JointRow& row) const;
+  /// Writes one row of a joint.
+  void evaluate(const JointView& at, Index joint, Index which, JointRow& row) const;
+  /// Writes the first `rows` rows of several joints.
+  void evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  /// What multipliers of the first `rows` rows do to `to`.
+  [[nodiscard]] JointReaction reaction(const JointView& at, Index joint, Index rows,
+                                       const double* multipliers) const;
 
 private:
-  // A body and the point on it.
-  struct Side {
+  // Serial numbers of bodies.
+  struct Ends {
+    Index from, to;
+  };
+  // Coefficients of angles.
+  struct Turns {
+    double from, to, carrier;
+  };
+  // A condition, of all joints.
+  struct Condition {
+    Column<Binding::Form> form;
+    Column<Vec<2>> axis;
+    Column<Turns> turns;
+    Column<double> offset;
+  };
+  // Place of a body.
+  struct Place {
     Index q = none, v = none, rotation = none;
-    int columns = 0;
-    Vec<2> local = Vec<2>::Zero();
-    double turn = 0.0;
 
-    [[nodiscard]] Vec<2> lever(const JointView& at) const;
-    [[nodiscard]] Vec<2> position(const JointView& at, const Vec<2>& lever) const;
+    [[nodiscard]] Vec<2> lever(const JointView& at, const Vec<2>& local) const;
+    [[nodiscard]] Vec<2> position(const JointView& at, const Vec<2>& local, const Vec<2>& lever) const;
     [[nodiscard]] Vec<2> velocity(const JointView& at, const Vec<2>& lever) const;
     [[nodiscard]] double spin(const JointView& at) const {
       return rotation == none ? 0.0 : at.state.v[v + 2];
@@ -67,15 +99,29 @@ private:
     [[nodiscard]] double angle(const JointView& at) const {
       return rotation == none ? 0.0 : at.state.q[q + 2];
     }
+    [[nodiscard]] int columns() const { return rotation == none ? 2 : 3; }
   };
-  [[nodiscard]] static Side side(BodyId body, const Vec<2>& point, double turn, const Layout& layout);
-  [[nodiscard]] Vec<2> direction(const JointView& at, const Vec<2>& between) const;
+  struct Places {
+    Place from, to;
+  };
+  struct Geometry;
+  [[nodiscard]] BodyId id(Index serial) const {
+    return serial == ground.serial ? ground : BodyId{serial, token_};
+  }
+  [[nodiscard]] Geometry geometry(const JointView& at, Index joint) const;
+  [[nodiscard]] Vec<2> direction(const JointView& at, const Geometry& geometry, const Condition& condition,
+                                 Index joint) const;
+  double* write(const JointView& at, const Geometry& geometry, const Condition& condition, Index joint,
+                double& gap, double& drift, double* jacobian) const;
 
-  Binding::Form form_;
-  Side from_, to_, carrier_;
-  Vec<2> axis_;
-  double offset_;
-  double moment_;  // on `to` by a unit of the multiplier; the ground takes it too
+  std::vector<Condition> conditions_;
+  std::vector<Ends> ends_;
+  Column<Index> carrier_;  // serial numbers
+  Column<Vec<2>> from_point_, to_point_;
+  Index token_ = 0;
+  // Of an arranged table.
+  std::vector<Places> places_;
+  Column<Place> carrier_place_;  // nowhere unless it has a part in a row
 };
 
 /// Where a body stands as described.
@@ -91,6 +137,8 @@ struct CAROM_API DescribedPlace {
 
 /// Demands two ends on different bodies that can be.
 CAROM_API void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& to);
+/// Demands that many bindings, all between the same ends.
+CAROM_API void check_bindings(const PartCheck& check, std::span<const Binding> bindings, Index count);
 /// Demands an axis that is finite and not zero; returns it with unit length.
 [[nodiscard]] CAROM_API Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis,
                                             std::string_view quantity);

@@ -76,8 +76,8 @@ std::vector<double> random_numbers(std::size_t size, Random& random) {
 
 double largest_residual(const IslandJoints& joints, JointLevel level, const std::vector<double>& x) {
   double largest = 0.0;
-  for (const JointRow& row : joints.rows()) {
-    largest = std::max(largest, std::abs(IslandJoints::residual(level, row, x.data())));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    largest = std::max(largest, std::abs(IslandJoints::residual(level, joints.row(i), x.data())));
   }
   return largest;
 }
@@ -90,8 +90,7 @@ Eigen::MatrixXd matrix_of(const IslandJoints& joints, std::size_t columns) {
   for (std::size_t c = 0; c < columns; ++c) {
     unit[c] = 1.0;
     for (std::size_t r = 0; r < joints.size(); ++r) {
-      matrix(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
-          joints.rows()[r].times(unit.data());
+      matrix(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = joints.row(r).times(unit.data());
     }
     unit[c] = 0.0;
   }
@@ -171,7 +170,7 @@ TEST(IslandJoints, HoldChangesByTheLeastInTheSenseOfTheMasses) {
       joints.hold(level, x.data());
       Eigen::VectorXd right(static_cast<Eigen::Index>(joints.size()));
       for (std::size_t r = 0; r < joints.size(); ++r) {
-        right[static_cast<Eigen::Index>(r)] = -IslandJoints::residual(level, joints.rows()[r], before.data());
+        right[static_cast<Eigen::Index>(r)] = -IslandJoints::residual(level, joints.row(r), before.data());
       }
       // With numbers weighed by the roots of the masses it is the least solution of G x = right.
       const Eigen::VectorXd root = Eigen::Map<const Eigen::VectorXd>(inverse.data(), size).cwiseSqrt();
@@ -346,8 +345,9 @@ TEST(IslandJoints, RowsKnowTheirJoint) {
   EXPECT_EQ(first.joint(1), pin);
   EXPECT_EQ(first.joint(2), pin);
   EXPECT_EQ(first.joint(3), drive);
-  EXPECT_EQ((std::vector<Index>(first.first_rows().begin(), first.first_rows().end())),
-            (std::vector<Index>{0, 1, 3, 4}));
+  ASSERT_EQ(first.joints(), 3u);
+  const std::vector<Index> first_rows{0, 1, 3, 4};
+  for (std::size_t i = 0; i < first_rows.size(); ++i) EXPECT_EQ(first.first_row(i), first_rows[i]);
   EXPECT_TRUE(first.depends_on_time());
   ASSERT_EQ(second.size(), 3u);
   EXPECT_EQ(second.joint(2), alone);
@@ -364,7 +364,56 @@ TEST(IslandJoints, SolveIsWhatHoldUses) {
   joints.solve(multipliers.data());
   joints.add_response(multipliers.data(), x.data());
   for (std::size_t r = 0; r < joints.size(); ++r) {
-    EXPECT_NEAR(joints.rows()[r].times(x.data()), -right[r], 1e-11);
+    EXPECT_NEAR(joints.row(r).times(x.data()), -right[r], 1e-11);
+  }
+}
+
+TEST(IslandJoints, AllRowsAtOnceAreTheRowsOneByOne) {
+  Random random(417);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const JointModel model(random_scene(random));
+    for (Index island = 0; island < model.assembly.islands().size(); ++island) {
+      IslandJoints joints(model.assembly, island);
+      joints.place(model.view());
+      const std::vector<double> x = random_numbers(model.state.v.size(), random);
+      const std::vector<double> multipliers = random_numbers(joints.size(), random);
+      std::vector<double> found(joints.size()), load(x.size(), 0.0), expected(x.size(), 0.0);
+      for (const JointLevel level : levels) {
+        joints.residuals(level, x.data(), found.data());
+        for (std::size_t r = 0; r < found.size(); ++r) {
+          EXPECT_NEAR(found[r], IslandJoints::residual(level, joints.row(r), x.data()), 1e-13);
+        }
+      }
+      joints.add_transposed(multipliers.data(), load.data());
+      for (std::size_t r = 0; r < found.size(); ++r) {
+        joints.row(r).add_transposed(multipliers[r], expected.data());
+        EXPECT_EQ(joints.row(r).gap, joints.gap(r));
+        EXPECT_EQ(joints.row(r).rate, joints.rate(r));
+      }
+      for (std::size_t i = 0; i < load.size(); ++i) EXPECT_NEAR(load[i], expected[i], 1e-13) << i;
+    }
+  }
+}
+
+TEST(IslandJoints, GapsAloneGoToAConfiguration) {
+  Random random(418);
+  JointModel model(random_scene(random));
+  IslandJoints joints(model.assembly, 0), fresh(model.assembly, 0);
+  joints.locate(model.view());
+  const IslandJoints before = joints;
+  for (double& number : model.state.q) number += random.uniform(-0.5, 0.5);
+  model.update();
+  joints.place_gaps(model.view());
+  fresh.locate(model.view());
+  std::vector<double> x = random_numbers(model.state.v.size(), random), y = x;
+  IslandJoints held = before;
+  held.hold(JointLevel::change, x.data());
+  joints.hold(JointLevel::change, y.data());
+  EXPECT_EQ(x, y);
+  for (std::size_t r = 0; r < joints.size(); ++r) {
+    EXPECT_EQ(joints.gap(r), fresh.gap(r));
+    EXPECT_NE(joints.gap(r), before.gap(r));
+    EXPECT_EQ(joints.row(r).drift, before.row(r).drift);
   }
 }
 
@@ -386,9 +435,7 @@ TEST(IslandJoints, AnOldConfigurationIsForgotten) {
   joints.hold(JointLevel::acceleration, x.data());
   fresh.hold(JointLevel::acceleration, y.data());
   EXPECT_EQ(x, y);
-  std::vector<JointRow> rows;
-  joints.evaluate(model.view(), rows);
-  for (std::size_t r = 0; r < rows.size(); ++r) EXPECT_EQ(rows[r].gap, joints.rows()[r].gap);
+  for (std::size_t r = 0; r < joints.size(); ++r) EXPECT_EQ(joints.gap(r), fresh.gap(r));
 }
 
 }  // namespace

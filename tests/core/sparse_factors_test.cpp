@@ -32,9 +32,17 @@ Entries entries_of(const Eigen::MatrixXd& matrix, Random& random) {
   return entries;
 }
 
-void set_values(SparseFactors& factors, const Entries& entries, const Eigen::MatrixXd& matrix) {
+using Places = std::vector<SparseFactors::Place>;
+
+/// Analyses blocks of one row each.
+Places analyse(SparseFactors& factors, Index size, const Entries& entries) {
+  return factors.analyse(std::vector<Index>(size, 1), entries);
+}
+
+void set_values(SparseFactors& factors, const Places& places, const Entries& entries,
+                const Eigen::MatrixXd& matrix) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    factors.values()[factors.place(i)] = matrix(entries[i].first, entries[i].second);
+    factors.values()[places[i].first] = matrix(entries[i].first, entries[i].second);
   }
 }
 
@@ -64,7 +72,7 @@ TEST(SparseFactors, OfNothingDoNothing) {
   SparseFactors factors;
   factors.factor();
   factors.solve(nullptr);
-  factors.analyse(0, {});
+  analyse(factors, 0, {});
   factors.factor();
   factors.solve(nullptr);
   EXPECT_EQ(factors.size(), 0u);
@@ -74,9 +82,9 @@ TEST(SparseFactors, OfNothingDoNothing) {
 TEST(SparseFactors, OfOneRowDivide) {
   SparseFactors factors;
   const Entries entries{{0, 0}};
-  factors.analyse(1, entries);
+  const Places places = analyse(factors, 1, entries);
   for (const double value : {4.0, 1e-200, 1e200}) {
-    factors.values()[factors.place(0)] = value;
+    factors.values()[places[0].first] = value;
     factors.factor();
     double x = 2.0;
     factors.solve(&x);
@@ -93,9 +101,9 @@ TEST(SparseFactors, MeetADenseSolution) {
     const Eigen::MatrixXd matrix = rows * rows.transpose() + 0.1 * Eigen::MatrixXd::Identity(size, size);
     const Entries entries = entries_of(matrix, random);
     SparseFactors factors;
-    factors.analyse(static_cast<Index>(size), entries);
+    const Places places = analyse(factors, static_cast<Index>(size), entries);
     EXPECT_EQ(factors.size(), static_cast<Index>(size));
-    set_values(factors, entries, matrix);
+    set_values(factors, places, entries, matrix);
     factors.factor();
     const Eigen::VectorXd right = random_vector(size, random);
     const Eigen::VectorXd expected = matrix.ldlt().solve(right), found = solved(factors, right);
@@ -103,10 +111,10 @@ TEST(SparseFactors, MeetADenseSolution) {
     // Again, and with other numbers in the same places.
     EXPECT_EQ(solved(factors, right), found);
     const Eigen::MatrixXd other = 3.0 * matrix + Eigen::MatrixXd(matrix.diagonal().asDiagonal());
-    set_values(factors, entries, other);
+    set_values(factors, places, entries, other);
     factors.factor();
     EXPECT_LE((other * solved(factors, right) - right).cwiseAbs().maxCoeff(), 1e-13);
-    set_values(factors, entries, matrix);
+    set_values(factors, places, entries, matrix);
     factors.factor();
     EXPECT_EQ(solved(factors, right), found);
   }
@@ -121,12 +129,85 @@ TEST(SparseFactors, TheOrderOfEntriesDoesNotMatter) {
   for (int repeat = 0; repeat < 5; ++repeat) {
     const Entries entries = entries_of(matrix, random);
     SparseFactors factors;
-    factors.analyse(20, entries);
-    set_values(factors, entries, matrix);
+    const Places places = analyse(factors, 20, entries);
+    set_values(factors, places, entries, matrix);
     factors.factor();
     const Eigen::VectorXd found = solved(factors, right);
     if (repeat == 0) first = found;
     EXPECT_EQ(found, first);
+  }
+}
+
+/// The matrix by blocks of these sizes.
+struct Blocks {
+  std::vector<Index> sizes, first{0};
+  Entries entries;
+  Places places;
+
+  Blocks(SparseFactors& factors, const std::vector<Index>& of, const Eigen::MatrixXd& matrix) : sizes(of) {
+    for (const Index size : sizes) first.push_back(first.back() + size);
+    for (Index a = 0; a < sizes.size(); ++a) {
+      for (Index b = 0; b <= a; ++b) {
+        if (a == b || !matrix.block(first[a], first[b], sizes[a], sizes[b]).isZero(0.0)) {
+          entries.emplace_back(a, b);
+        }
+      }
+    }
+    places = factors.analyse(sizes, entries);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const auto [a, b] = entries[i];
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> block =
+          matrix.block(first[a], first[b], sizes[a], sizes[b]);
+      if (places[i].transposed) block = block.transpose().eval();
+      std::copy_n(block.data(), block.size(), factors.values().data() + places[i].first);
+    }
+    factors.factor();
+  }
+};
+
+TEST(SparseFactors, OfBlocksMeetADenseSolution) {
+  Random random(406);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    // All of one size, or of several.
+    const Index usual = random.below(5);
+    std::vector<Index> sizes(1 + random.below(12));
+    Index size = 0;
+    for (Index& of : sizes) size += of = usual == 0 ? 1 + random.below(SparseFactors::most_rows) : usual;
+    const Eigen::MatrixXd rows = random_rows(size, size + 10, random);
+    const Eigen::MatrixXd matrix = rows * rows.transpose() + 0.1 * Eigen::MatrixXd::Identity(size, size);
+    SparseFactors factors;
+    const Blocks blocks(factors, sizes, matrix);
+    EXPECT_EQ(factors.size(), size);
+    const Eigen::VectorXd right = random_vector(size, random);
+    const Eigen::VectorXd expected = matrix.ldlt().solve(right), found = solved(factors, right);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-13 * (1.0 + expected.cwiseAbs().maxCoeff()));
+    EXPECT_EQ(solved(factors, right), found);
+    // A copy has numbers of its own.
+    SparseFactors copy = factors;
+    const Blocks others(factors, sizes, Eigen::MatrixXd(2.0 * matrix));
+    EXPECT_EQ(solved(copy, right), found);
+    EXPECT_LE((solved(factors, right) - 0.5 * found).norm(), 1e-13 * (1.0 + found.norm()));
+  }
+}
+
+TEST(SparseFactors, OfBlocksNameWhatDepends) {
+  // One row is the sum of two others, in any blocks: the combination of them vanishes.
+  Random random(407);
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    const Index each = 2 + random.below(2), size = 4 * each;
+    Eigen::MatrixXd rows = random_rows(size, size + 10, random);
+    rows.row(random.below(size)) = rows.row(0) + rows.row(size - 1);
+    const Eigen::MatrixXd matrix = rows * rows.transpose();
+    SparseFactors factors;
+    const Blocks blocks(factors, std::vector<Index>(4, each), matrix);
+    for (Index row = 0; row < size; ++row) {
+      if (factors.pivot(row) >= dependent_pivot) continue;
+      std::vector<double> vector;
+      factors.dependence(row, vector);
+      EXPECT_EQ(vector[row], 1.0);
+      // Rounding by the condition of the rows that remain.
+      EXPECT_LE((matrix * Eigen::Map<const Eigen::VectorXd>(vector.data(), size)).norm(), 1e-7);
+    }
   }
 }
 
@@ -144,8 +225,8 @@ TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
     const Eigen::MatrixXd matrix = rows * rows.transpose();
     const Entries entries = entries_of(matrix, random);
     SparseFactors factors;
-    factors.analyse(static_cast<Index>(size), entries);
-    set_values(factors, entries, matrix);
+    const Places places = analyse(factors, static_cast<Index>(size), entries);
+    set_values(factors, places, entries, matrix);
     factors.factor();
     std::size_t left_out = 0;
     std::vector<double> vanishes;
@@ -173,7 +254,7 @@ TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
 TEST(SparseFactors, OfTwinsOneCarriesTheLoad) {
   SparseFactors factors;
   const Entries entries{{0, 0}, {1, 0}, {1, 1}};
-  factors.analyse(2, entries);
+  analyse(factors, 2, entries);
   for (const double value : {1.0, 0.3, 7e5}) {
     std::fill(factors.values().begin(), factors.values().end(), value);
     factors.factor();
@@ -186,9 +267,9 @@ TEST(SparseFactors, OfTwinsOneCarriesTheLoad) {
 TEST(SparseFactors, ARowOfZerosIsHarmless) {
   SparseFactors factors;
   const Entries entries{{0, 0}, {1, 1}};
-  factors.analyse(2, entries);
-  factors.values()[factors.place(0)] = 2.0;
-  factors.values()[factors.place(1)] = 0.0;
+  const Places places = analyse(factors, 2, entries);
+  factors.values()[places[0].first] = 2.0;
+  factors.values()[places[1].first] = 0.0;
   factors.factor();
   const Eigen::VectorXd found = solved(factors, Eigen::Vector2d(1.0, 0.0));
   EXPECT_NEAR(found[0], 0.5, 1e-15);
@@ -209,8 +290,8 @@ TEST(SparseFactors, ALongChainStaysSparseAndExact) {
     }
   }
   SparseFactors factors;
-  factors.analyse(size, entries);
-  for (std::size_t i = 0; i < entries.size(); ++i) factors.values()[factors.place(i)] = values[i];
+  const Places places = analyse(factors, size, entries);
+  for (std::size_t i = 0; i < entries.size(); ++i) factors.values()[places[i].first] = values[i];
   factors.factor();
   EXPECT_EQ(factors.fill(), size - 1u);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
@@ -229,7 +310,7 @@ TEST(SparseFactors, ATreeHasLittleFill) {
     entries.emplace_back(i, (i - 1) / 2);
   }
   SparseFactors factors;
-  factors.analyse(size, entries);
+  analyse(factors, size, entries);
   EXPECT_LE(factors.fill(), 3 * size / 2);
 }
 

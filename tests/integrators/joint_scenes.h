@@ -137,11 +137,11 @@ struct JointCheck {
         joints_.emplace_back(assembly, island);
       }
     }
-    std::vector<JointRow> rows;
     for (Index island = 0; island < assembly.islands().size(); ++island) {
       evaluate_positions(assembly, island, now.state().view(), evaluation_);
-      joints_[island].evaluate({now.state().view(), evaluation_.rotation.data()}, rows);
-      for (const JointRow& row : rows) {
+      joints_[island].place({now.state().view(), evaluation_.rotation.data()});
+      for (std::size_t i = 0; i < joints_[island].size(); ++i) {
+        const JointRow row = joints_[island].row(i);
         gap = std::max(gap, std::abs(row.gap));
         speed = std::max(speed,
                          std::abs(IslandJoints::residual(JointLevel::velocity, row, now.state().v.data())));

@@ -178,6 +178,66 @@ TEST(Binding, EndsThatCannotBeAreRefusedByName) {
   expect_bad_ends_are_refused("rod", [](Ends a, Ends b) { return Rod{.from = a, .to = b}; });
 }
 
+TEST(Binding, RowsOfAllJointsAreThoseOfEach) {
+  Random random(305);
+  const Bodies bodies(random);
+  System system = bodies.system;
+  std::vector<JointId> joints;
+  for (const auto& [from, to] : pairs_of_ends(bodies, random)) {
+    for (const JointId joint : add_joints(system, from, to, random)) joints.push_back(joint);
+  }
+  JointModel model(system);
+  for (double& number : model.state.v) number = random.uniform(-2.0, 2.0);
+  std::size_t compared = 0;
+  for (const auto& kind : model.assembly.joint_kinds()) {
+    struct Numbers {
+      std::vector<double> jacobian, gap, rate, drift;
+      explicit Numbers(std::size_t rows) : jacobian(9 * rows, 7.0), gap(rows), rate(rows, 7.0), drift(rows) {}
+      JointNumbers out() { return {jacobian.data(), gap.data(), rate.data(), drift.data()}; }
+    };
+    Numbers found(kind->size() * kind->rows()), expected = found, gaps = found;
+    kind->evaluate_all(model.view(), {0, kind->size()}, found.out());
+    kind->JointKind::evaluate_all(model.view(), {0, kind->size()}, expected.out());
+    kind->evaluate_all(model.view(), {0, kind->size()}, {.gap = gaps.gap.data()});
+    EXPECT_EQ(found.jacobian, expected.jacobian) << kind->label();
+    EXPECT_EQ(found.gap, expected.gap) << kind->label();
+    EXPECT_EQ(found.rate, expected.rate) << kind->label();
+    EXPECT_EQ(found.drift, expected.drift) << kind->label();
+    EXPECT_EQ(gaps.gap, expected.gap) << kind->label();
+    compared += kind->size();
+  }
+  EXPECT_EQ(compared, joints.size());
+}
+
+/// Two pins in one joint.
+struct TwoPins {
+  static constexpr Role role = Role::joint;
+  static constexpr std::string_view label = "two pins";
+  static constexpr Index row_count = 4;
+  BodyId from, to;
+  Vec<2> other;
+  int pins = 2;
+
+  [[nodiscard]] std::vector<Binding> bindings(const PartCheck&) const {
+    std::vector<Binding> all = point_bindings(from, to);
+    if (pins == 2) {
+      for (const Binding& binding : point_bindings(from, {to, other})) all.push_back(binding);
+    }
+    return all;
+  }
+};
+
+TEST(Binding, AllOfAJointAreBetweenTheSameEnds) {
+  System system;
+  const BodyId plate = system.add(RigidBody{.mass = disc(1.0, 1.0)});
+  EXPECT_MODEL_ERROR(system.add(TwoPins{ground, plate, {1.0, 0.0}}), "two pins #0",
+                     "bindings is between different ends", "allowed: all between the same two ends");
+  EXPECT_MODEL_ERROR(system.add(TwoPins{ground, plate, {0.0, 0.0}, 1}), "number of bindings is 2",
+                     "allowed: 4");
+  system.add(TwoPins{ground, plate, {0.0, 0.0}});  // redundant, but that does no harm
+  EXPECT_EQ(system.joints().size(), 1u);
+}
+
 TEST(Binding, AParticleCannotBeHeldAtAnAngle) {
   System system;
   const BodyId plate = system.add(RigidBody{.mass = disc(1.0, 1.0), .position = {1, 0}}, "plate");

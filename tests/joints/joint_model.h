@@ -68,8 +68,8 @@ public:
       joints.locate(view());
       std::vector<double> multipliers(joints.size());
       joints.hold(carom::JointLevel::acceleration, a.data(), multipliers.data());
-      for (std::size_t i = 0; i + 1 < joints.first_rows().size(); ++i) {
-        const carom::Index row = joints.first_rows()[i];
+      for (std::size_t i = 0; i < joints.joints(); ++i) {
+        const carom::Index row = joints.first_row(i);
         const carom::JointId id = joints.joint(row);
         reactions_.emplace_back(id, kind(id).reaction(view(), slot(id), multipliers.data() + row));
       }
