@@ -12,7 +12,8 @@ import sys
 from pathlib import Path
 
 SIZES = [10, 30, 100, 300, 1000]
-TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second")
+TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
+         "eigen_per_rod", "seconds")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -213,6 +214,44 @@ def friction_table(event):
     return table(["", "slider: µs per event", "steps", "evaluations", "belt: µs per event", "steps", "evaluations"], rows)
 
 
+CHAINS = (10, 100, 1000, 10000, 100000)
+ROD_NETS = (10, 30, 100)
+
+
+def joint_ratio(case):
+    return case["per_rod"] / case["eigen_per_rod"]
+
+
+def joint_table(joint):
+    rows = []
+    for key, sizes, title in (("chain_evaluation", CHAINS, "chain of {:,} rods"),
+                              ("net_evaluation", ROD_NETS, "net of {0} × {0} particles")):
+        for size in sizes:
+            case = joint[f"{key}/{size}"]
+            rows.append([title.format(size), figure(1e9 * case["per_rod"]), figure(1e9 * case["eigen_per_rod"]),
+                         f"{joint_ratio(case):.2f}"])
+    return table(["ns per rod", "library: accelerations with multipliers", "Eigen: factorise, solve", "ratio"], rows)
+
+
+def joint_aims_table(joint):
+    def ratios(key, sizes):
+        found = [joint_ratio(joint[f"{key}/{size}"]) for size in sizes]
+        return f"{min(found):.2f} to {max(found):.2f}"
+
+    growth = joint["chain_evaluation/100000"]["per_rod"] / joint["chain_evaluation/1000"]["per_rod"]
+    ten = joint["ten_rods"]
+    rows = [
+        ["evaluation of a chain, in Eigen's", "≤ 1.5", ratios("chain_evaluation", CHAINS)],
+        ["evaluation of a net, in Eigen's", "≤ 1.5", ratios("net_evaluation", ROD_NETS)],
+        ["time per rod, chain of 10⁵ rods against 10³", "≤ 1.5", f"{growth:.2f}"],
+        ["bytes per rod, chain of 10⁴ rods, time stepping", "< 2,000", f"{joint['storage/stepped']['bytes_per_rod']:,.0f}"],
+        ["the same, event-driven", "< 2,000", f"{joint['storage/event']['bytes_per_rod']:,.0f}"],
+        ["ten rods for 10 s, event-driven, s of CPU", "", f"{ten['seconds']:.2f}"],
+        ["their drift of energy [J]", "", f"{ten['drift']:.1e}"],
+    ]
+    return table(["figure", "aim", "measured"], rows)
+
+
 def machine(context, compiler, began):
     cpu = "unknown processor"
     if Path("/proc/cpuinfo").exists():
@@ -234,6 +273,7 @@ def main():
     _, tables = load(folder, "tables")
     _, chain = load(folder, "chain")
     event_context, event = load(folder, "event")
+    joint_context, joint = load(folder, "joint")
     parts = {}
     if net:
         parts |= {"machine": machine(context, compiler, "the net"), "net": net_table(net), "second": second_table(net)}
@@ -248,6 +288,9 @@ def main():
     if event:
         parts |= {"event_machine": machine(event_context, compiler, "the events"), "bounce": bounce_table(event),
                   "balls": balls_table(event), "lasting": lasting_table(event), "friction": friction_table(event)}
+    if joint:
+        parts |= {"joint_machine": machine(joint_context, compiler, "the joints"), "joint": joint_table(joint),
+                  "joint_aims": joint_aims_table(joint)}
     text = page.read_text()
     for name, part in parts.items():
         text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
