@@ -7,6 +7,12 @@ namespace carom {
 
 JointPressure::JointPressure(const Assembly& assembly, Index island, const IslandJoints& joints) {
   const JointTable* const table = assembly.layout()->joints();
+  if (table == nullptr) return;
+  std::vector<std::size_t> rows(table->places.size(), 0);  // first ones, by serial number
+  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+    const std::size_t row = joints.first_row(joint);
+    rows[joints.joint(row).serial] = row;
+  }
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
     if (!kind.rubs()) continue;
@@ -16,20 +22,21 @@ JointPressure::JointPressure(const Assembly& assembly, Index island, const Islan
       if (rub.coefficient == 0.0) continue;
       const JointId bearing = kind.on_joint(slot);
       const JointTable::Place place = table->place(bearing.serial);
-      std::size_t row = 0;
-      while (joints.joint(row) != bearing) ++row;
-      bearings_.push_back({assembly.joint_id(k, slot).serial, table->kinds[place.kind].get(), place.slot, row,
-                           rub.bound, rub.coefficient});
+      bearings_.push_back({assembly.joint_id(k, slot).serial, table->kinds[place.kind].get(), place.slot,
+                           rows[bearing.serial], rub.bound, rub.coefficient});
     }
   }
+  std::sort(bearings_.begin(), bearings_.end(),
+            [](const Bearing& a, const Bearing& b) { return a.serial < b.serial; });
 }
 
 const JointPressure::Bearing* JointPressure::find(const Contact& contact) const {
   if (!contact.rubs()) return nullptr;
-  const auto at = std::find_if(bearings_.begin(), bearings_.end(), [&](const Bearing& bearing) {
-    return bearing.serial == contact.key.of.serial;
-  });
-  return at == bearings_.end() ? nullptr : &*at;
+  const Index serial = contact.key.of.serial;
+  const auto at =
+      std::lower_bound(bearings_.begin(), bearings_.end(), serial,
+                       [](const Bearing& bearing, Index wanted) { return bearing.serial < wanted; });
+  return at == bearings_.end() || at->serial != serial ? nullptr : &*at;
 }
 
 double JointPressure::press(Contact& contact, const JointView& at, const double* multipliers,

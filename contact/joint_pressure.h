@@ -40,7 +40,7 @@ private:
     double bound, coefficient;
   };
   [[nodiscard]] const Bearing* find(const Contact& contact) const;
-  std::vector<Bearing> bearings_;
+  std::vector<Bearing> bearings_;  // by serial number
 };
 
 }  // namespace carom

@@ -65,6 +65,11 @@ std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
 /// Demands that forces of joints which bound friction are unique.
 void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints& joints) {
   const System& system = assembly.system();
+  std::vector<std::size_t> dependent;
+  for (std::size_t row = 0; row < joints.size(); ++row) {
+    if (joints.factors().pivot(row) < dependent_pivot) dependent.push_back(row);
+  }
+  if (dependent.empty()) return;
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
     if (!kind.rubs()) continue;
@@ -72,8 +77,7 @@ void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints
     for (Index slot = range.begin; slot < range.end; ++slot) {
       if (kind.rub(slot).coefficient == 0.0) continue;
       const JointId bearing = kind.on_joint(slot);
-      for (std::size_t row = 0; row < joints.size(); ++row) {
-        if (joints.factors().pivot(row) >= dependent_pivot) continue;
+      for (const std::size_t row : dependent) {
         std::vector<JointId> taking_part = partners(joints, row);
         taking_part.push_back(joints.joint(row));
         if (std::find(taking_part.begin(), taking_part.end(), bearing) == taking_part.end()) continue;
