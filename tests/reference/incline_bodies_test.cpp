@@ -71,7 +71,7 @@ void expect_penetration_bounded(const Case& c, const InclineRun& run, double ste
 }
 
 void expect_run_right(const Case& c, double step) {
-  const InclineRun run = run_incline(c.incline, c.is_bar, c.end, step);
+  const InclineRun run = run_incline(c.incline, c.is_bar, c.end, carom::TimeStepping{.step = step});
   expect_same_impacts(c, run, step);
   expect_penetration_bounded(c, run, step);
   EXPECT_LE(std::abs(run.residual), 1e3 * eps * run.scale) << c.name;
@@ -86,7 +86,7 @@ void expect_run_right(const Case& c, double step) {
 analytic::MeanOrder order(const Case& c, double largest_step, int bins, int steps_per_bin) {
   const std::vector<double> reference = reference_end(c.data.at("state_at_end"), c.is_bar);
   return analytic::mean_order(largest_step, bins, steps_per_bin, [&](double step) {
-    return distance(run_incline(c.incline, c.is_bar, c.end, step).q, reference);
+    return distance(run_incline(c.incline, c.is_bar, c.end, carom::TimeStepping{.step = step}).q, reference);
   });
 }
 
@@ -130,7 +130,7 @@ TEST(InclineBodiesLong, PairOrderOneInTheMean) {
 TEST(InclineBodiesLong, BarWithinAMillimetreAtSmallSteps) {
   for (const Case& c : cases("incline_bodies.json", "bar")) {
     constexpr double step = 1e-5;
-    const InclineRun run = run_incline(c.incline, true, c.end, step);
+    const InclineRun run = run_incline(c.incline, true, c.end, carom::TimeStepping{.step = step});
     const std::vector<double> reference = reference_end(c.data.at("state_at_end"), true);
     // Asked for: 1e-3 m. The delay of the impact (at most h) times the change of velocity (at most 40 m/s)
     // moves the flight by 4e-4 m; the change of the impact itself with the angle adds as much.

@@ -1,6 +1,7 @@
 #pragma once
 
-// One run of the bar or the pair over the inclined plane, with what the reference files tell of it.
+// One run of the bar or the pair over the inclined plane, in either mode, with what the reference files tell
+// of it.
 
 #include "examples/scenes/incline.h"
 #include "tests/reference/reference_data.h"
@@ -45,7 +46,8 @@ inline scenes::Incline incline_of(const Json& p) {
   return incline;
 }
 
-inline InclineRun run_incline(const scenes::Incline& incline, bool is_bar, double end, double step) {
+inline InclineRun run_incline(const scenes::Incline& incline, bool is_bar, double end,
+                              const carom::Mode& mode) {
   carom::System system;
   scenes::add_plane(system, incline);
   carom::BodyId bar{};
@@ -55,18 +57,23 @@ inline InclineRun run_incline(const scenes::Incline& incline, bool is_bar, doubl
   } else {
     pair = scenes::add_pair(system, incline);
   }
-  carom::Simulation simulation(std::move(system), carom::TimeStepping{.step = step});
+  carom::Simulation simulation(std::move(system), mode);
   InclineRun run;
+  const auto add = [&](double time, const carom::ContactKey& key, const auto& at) {
+    const bool upper = is_bar ? key.of.feature == 1 : at.body == pair.upper;
+    run.impacts.push_back({time, upper, std::string(to_string(at.mode)), at.velocity_before[0]});
+  };
   simulation.observe([&](const carom::Simulation& now) {
+    if (!std::holds_alternative<carom::TimeStepping>(mode)) return;  // there are events
     for (const carom::ContactRecord& contact : now.report().contacts) {
       // A contact that is found again while it separates is no impact: its law answers with P = 0.
-      if (!contact.impact) continue;
-      const bool upper = is_bar ? contact.key.of.feature == 1 : contact.body == pair.upper;
-      run.impacts.push_back(
-          {now.time(), upper, std::string(to_string(contact.mode)), contact.velocity_before[0]});
+      if (contact.impact) add(now.time(), contact.key, contact);
     }
   });
   simulation.run_until(end);
+  for (const carom::EventRecord& event : simulation.events()) {
+    if (event.kind == carom::EventKind::impact) add(event.time, event.contact, event);
+  }
   const carom::State& state = simulation.state();
   if (is_bar) {
     run.q = {state.position(bar)[0], state.position(bar)[1], state.angle(bar)};

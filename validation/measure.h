@@ -1,0 +1,193 @@
+#pragma once
+
+/// \file
+/// Measuring: the worst of many comparisons, CPU time, orders, and rows made of them.
+
+#include "tests/analytic/convergence.h"
+#include "tests/reference/reference_data.h"
+#include "validation/report.h"
+
+#include <carom/carom.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace validation {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::Json;
+using carom_test::reference_data;
+
+inline constexpr double g = 9.81;  // [m/s^2], of all references
+inline constexpr double pi = 3.14159265358979323846;
+
+inline constexpr const char* stepping_name = "time stepping";
+inline constexpr const char* events_name = "event-driven";
+inline constexpr const char* solver_name = "contact solver";
+
+/// Part of a reference file, by its keys: a value of its own, so that it can be looped over.
+template <class... Keys>
+Json reference(const std::string& file, const Keys&... keys) {
+  Json part = reference_data(file);
+  ((part = Json(part.at(keys))), ...);
+  return part;
+}
+
+inline double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
+
+/// CPU time since its making [s].
+class Clock {
+public:
+  [[nodiscard]] double seconds() const {
+    return static_cast<double>(std::clock() - start_) / static_cast<double>(CLOCKS_PER_SEC);
+  }
+
+private:
+  std::clock_t start_ = std::clock();
+};
+
+/// Many values beside their references: keeps the worst against its scale, and their number.
+class Comparison {
+public:
+  void operator()(double obtained, double reference, double scale = 1.0) {
+    const double found = std::abs(obtained - reference) / scale;
+    if (count_++ == 0 || !(found <= scaled_error_)) {
+      scaled_error_ = found;
+      obtained_ = obtained;
+      reference_ = reference;
+    }
+  }
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] double obtained() const { return obtained_; }
+  [[nodiscard]] double reference() const { return reference_; }
+
+private:
+  double scaled_error_ = 0.0, obtained_ = unknown, reference_ = unknown;
+  int count_ = 0;
+};
+
+/// The tolerances of the event-driven runs.
+inline EventDriven tight() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-13}; }
+
+inline std::string short_text(double value) {
+  constexpr int longest = 40;
+  char text[longest];
+  std::snprintf(text, longest, "%.4g", value);
+  return text;
+}
+
+/// How a run was made.
+inline std::string setting(const EventDriven& options) {
+  return "rtol " + short_text(options.relative_tolerance);
+}
+inline std::string setting(const TimeStepping& options) { return "h = " + short_text(options.step) + " s"; }
+
+/// Name and setting of a mode.
+inline std::pair<std::string, std::string> described(const Mode& mode) {
+  if (const auto* events = std::get_if<EventDriven>(&mode)) return {events_name, setting(*events)};
+  return {stepping_name, setting(std::get<TimeStepping>(mode))};
+}
+
+/// A row of one value, or of the worst of many, which the quantity then says.
+inline Row row(const Mode& mode, const std::string& quantity, const Comparison& compared, double cost,
+               double order = unknown) {
+  const auto [name, how] = described(mode);
+  const std::string many =
+      compared.count() > 1 ? ", worst of " + std::to_string(compared.count()) : std::string();
+  return {name,
+          how,
+          quantity + many,
+          number_text(compared.reference()),
+          number_text(compared.obtained()),
+          std::abs(compared.obtained() - compared.reference()),
+          order,
+          cost};
+}
+inline Row row(const Mode& mode, const std::string& quantity, double obtained, double reference, double cost,
+               double order = unknown) {
+  Comparison one;
+  one(obtained, reference);
+  return row(mode, quantity, one, cost, order);
+}
+
+/// Rows of contact problems solved without a simulation.
+inline Row solver_row(const std::string& solver, const std::string& quantity, const Comparison& compared,
+                      double cost) {
+  Row result = row(TimeStepping{}, quantity, compared, cost);
+  result.mode = solver_name;
+  result.setting = solver;
+  return result;
+}
+
+/// A row of words.
+inline Row statement(const Mode& mode, const std::string& quantity, const std::string& reference,
+                     const std::string& obtained, double cost) {
+  const auto [name, how] = described(mode);
+  return {name, how, quantity, reference, obtained, unknown, unknown, cost};
+}
+
+/// Errors of runs with steps h, h/2, h/4, ...
+struct Halvings {
+  std::vector<double> steps, errors;
+  double cost = 0.0;  ///< of all runs [s]
+  [[nodiscard]] double order() const { return analytic::slope(steps, errors); }
+};
+template <class F>
+Halvings halve(double step, int runs, F&& error_at) {
+  Halvings result;
+  const Clock clock;
+  for (int i = 0; i < runs; ++i, step *= 0.5) {
+    result.steps.push_back(step);
+    result.errors.push_back(error_at(step));
+  }
+  result.cost = clock.seconds();
+  return result;
+}
+
+/// The events of one kind, in time.
+inline std::vector<EventRecord> events_of(const Simulation& simulation, EventKind kind) {
+  std::vector<EventRecord> found;
+  for (const EventRecord& event : simulation.events()) {
+    if (event.kind == kind) found.push_back(event);
+  }
+  return found;
+}
+
+/// An impact, in either mode: of time stepping with the time at the end of its step. Normal, tangential.
+struct Impact {
+  double time = 0.0;
+  ContactKey contact{};
+  BodyId body{};
+  ObstacleId obstacle{};
+  std::array<double, 3> before{}, after{}, impulse{};
+  ContactMode mode = ContactMode::open;
+};
+
+/// Runs until `end`, once, and returns all impacts since the start.
+inline std::vector<Impact> impacts_until(Simulation& simulation, double end) {
+  const auto impacts =
+      std::make_shared<std::vector<Impact>>();  // the observer lives as long as the simulation
+  simulation.observe([impacts](const Simulation& now) {
+    if (!std::holds_alternative<TimeStepping>(now.mode())) return;  // there are events
+    for (const ContactRecord& at : now.report().contacts) {
+      if (!at.impact) continue;
+      impacts->push_back({now.time(), at.key, at.body, at.obstacle, at.velocity_before, at.velocity_after,
+                          at.impulse, at.mode});
+    }
+  });
+  simulation.run_until(end);
+  for (const EventRecord& at : events_of(simulation, EventKind::impact)) {
+    impacts->push_back({at.time, at.contact, at.body, at.obstacle, at.velocity_before, at.velocity_after,
+                        at.impulse, at.mode});
+  }
+  return *impacts;
+}
+
+}  // namespace validation
