@@ -53,12 +53,14 @@ private:
   std::clock_t start_ = std::clock();
 };
 
-/// Many values beside their references: keeps the worst against its scale, and their number.
+/// Many values beside their references: keeps the worst against its scale, and their number. Of those that
+/// are equally bad but for rounding it keeps the first, so that rounding does not decide which is shown.
 class Comparison {
 public:
   void operator()(double obtained, double reference, double scale = 1.0) {
     const double found = std::abs(obtained - reference) / scale;
-    if (count_++ == 0 || !(found <= scaled_error_)) {
+    constexpr double equally_bad = 1.0 + 1e-6;
+    if (count_++ == 0 || !(found <= equally_bad * scaled_error_)) {
       scaled_error_ = found;
       obtained_ = obtained;
       reference_ = reference;
