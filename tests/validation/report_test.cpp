@@ -140,6 +140,9 @@ TEST(ReportTable, RoundingIsPassedOverOnlyWhereBothAreRight) {
   other.reference = other.obtained = "1.5";
   other.error = "3.0e-16";
   EXPECT_EQ(difference(right, other), "");
+  other.obtained = "1.6";
+  EXPECT_NE(difference(right, other), "");
+  other.obtained = "1.5001";
   other.error = "1.0e-04";
   EXPECT_NE(difference(right, other), "");
 }
