@@ -1,13 +1,16 @@
 #pragma once
 
-// The code that a page of the documentation shows.
+// The code that a page of the documentation shows, and what it says that code prints.
 
 #include "tests/paths.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,6 +36,53 @@ inline std::vector<std::string> code_blocks(const std::string& page, const std::
     at = end + 3;
   }
   return blocks;
+}
+
+/// True for lines of the same words and numbers. Numbers are printed with six digits or more, of which the
+/// last may be rounded otherwise; those of the size of rounding may be any.
+inline bool same_line(const std::string& shown, const std::string& printed) {
+  constexpr double last_digit = 1e-5, rounding = 1e-10;
+  std::istringstream a(shown), b(printed);
+  for (std::string x, y;;) {
+    const bool more = static_cast<bool>(a >> x);
+    if (static_cast<bool>(b >> y) != more) return false;
+    if (!more) return true;
+    if (x == y) continue;
+    char *x_end = nullptr, *y_end = nullptr;
+    const double p = std::strtod(x.c_str(), &x_end), q = std::strtod(y.c_str(), &y_end);
+    if (x_end == x.c_str() || std::string(x_end) != y_end) return false;
+    if (!(std::abs(p - q) <= last_digit * std::abs(p) + rounding)) return false;
+  }
+}
+
+/// Whether block `number` of those marked `text` is what was printed. A line "..." of the page stands for any
+/// lines.
+inline testing::AssertionResult prints(const std::string& page, std::size_t number,
+                                       const std::string& output) {
+  const auto blocks = code_blocks(page, "text");
+  if (number >= blocks.size()) return testing::AssertionFailure() << page << ": no text block " << number;
+  std::istringstream shown(blocks[number]), printed(output);
+  bool skips = false;
+  std::string actual;
+  for (std::string line; std::getline(shown, line);) {
+    if (line == "...") {
+      skips = true;
+      continue;
+    }
+    do {
+      if (!std::getline(printed, actual)) {
+        return testing::AssertionFailure() << "not printed: " << line << "\nbut\n" << output;
+      }
+    } while (skips && !same_line(line, actual));
+    if (!same_line(line, actual)) {
+      return testing::AssertionFailure() << "the page has: " << line << "\nprinted was: " << actual;
+    }
+    skips = false;
+  }
+  if (!skips && std::getline(printed, actual)) {
+    return testing::AssertionFailure() << "the page lacks: " << actual;
+  }
+  return testing::AssertionSuccess();
 }
 
 }  // namespace carom_test
