@@ -297,7 +297,11 @@ TEST(JointsTimeStepping, NothingIsAllocatedInTheSteadyState) {
       scene.system.add(RigidBody{.mass = rod(1.0, 1.0), .position = {2.0, 0.5}, .angle = quarter});
   scene.system.add(Revolute{.from = {scene.bodies[0], {1.0, 0.0}}, .to = {link, {-0.5, 0.0}}});
   Simulation simulation(scene.system, TimeStepping{.step = 1e-3});
-  simulation.run_until(3.0);
+  // The tip cannot slip, for the pin holds it too: some problems in thousands are rounding that the first
+  // solver is not believed on. Steady is a state in which the next one has been asked before and has its
+  // memory.
+  simulation.run_until(10.0);
+  ASSERT_GT(simulation.contact_statistics().fall_backs, 0);
   const std::int64_t contacts = simulation.statistics().contact_steps;
   const std::int64_t before = carom_test::allocations();
   for (int i = 0; i < 200; ++i) simulation.step();
