@@ -3,6 +3,7 @@
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -26,44 +27,30 @@ constexpr double rounding = 1e-12;
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
 
-/// A body in contact with a plane that falls to the right.
+/// A body in contact with a plane that falls to the right, running.
 class Downhill {
 public:
   Downhill(double slope, double mu, double inertia, double r, double speed, double forward_spin)
-      : r_(r),
-        normal_(incline(-slope)),
-        tangent_(normal_[1], -normal_[0]),
-        simulation_(make(mu, inertia, speed, forward_spin)) {}
+      : scene_{.slope = slope,
+               .friction = mu,
+               .inertia = inertia,
+               .radius = r,
+               .speed = speed,
+               .forward_spin = forward_spin},
+        simulation_(scenes::downhill(scene_).system, tight()) {}
 
-  double distance() const {
-    return tangent_.dot(Vec<2>(simulation_.state().position(body())) - r_ * normal_);
+  double distance() const { return scene_.distance(simulation_.state(), body()); }
+  double height() const {
+    return scene_.normal().dot(Vec<2>(simulation_.state().position(body()))) - scene_.radius;
   }
-  double height() const { return normal_.dot(Vec<2>(simulation_.state().position(body()))) - r_; }
-  double speed() const { return tangent_.dot(Vec<2>(simulation_.state().velocity(body()))); }
+  double speed() const { return scene_.speed_of(simulation_.state(), body()); }
   double forward_spin() const { return -simulation_.state().spin(body()); }
   Simulation& simulation() { return simulation_; }
 
 private:
   BodyId body() const { return simulation_.system().body("body"); }
-  Simulation make(double mu, double inertia, double speed, double forward_spin) const {
-    System system;
-    system.add(Gravity{{0.0, -g}});
-    system.add(HalfPlane{.normal = normal_}, Surface{.friction = mu, .normal_restitution = 0.0});
-    if (r_ == 0.0) {
-      system.add(Particle{.mass = 1.0, .velocity = speed * tangent_}, "body");
-    } else {
-      const BodyId body = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = inertia},
-                                               .position = r_ * normal_,
-                                               .velocity = speed * tangent_,
-                                               .spin = -forward_spin},
-                                     "body");
-      system.add(Disc{.body = body, .radius = r_});
-    }
-    return Simulation(std::move(system), tight());
-  }
 
-  double r_;
-  Vec<2> normal_, tangent_;
+  scenes::Downhill scene_;
   Simulation simulation_;
 };
 
@@ -165,13 +152,9 @@ TEST(EventFriction, SliderOnARamp) {
 /// \param allowed error of places [m] and times [s]
 void expect_coulomb_oscillator(FlowMethod method, double allowed) {
   const Json data = reference_data("contacts_planar.json").at("coulomb_oscillator");
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.0});
-  const BodyId block = system.add(Particle{.mass = 1.0, .position = {0.2, 0.0}});
-  system.add(
-      SpringDamper{.from = {ground, {-5.0, 0.0}}, .to = block, .stiffness = 100.0, .free_length = 5.0});
-  Simulation simulation(std::move(system), tight(method));
+  scenes::BodyScene scene = scenes::coulomb_oscillator();
+  const BodyId block = scene.body;
+  Simulation simulation(std::move(scene.system), tight(method));
   const LedgerWatch ledger(simulation);
   Worst place, time;
   const std::vector<double> looks{0.1, 0.5, 0.9};
@@ -218,13 +201,9 @@ TEST(EventFriction, CoulombOscillator) {
 TEST(EventFriction, CoulombOscillatorTurnsWhereItShould) {
   const Json data = reference_data("contacts_planar.json").at("coulomb_oscillator");
   for (int turn = 1; turn <= 3; ++turn) {
-    System system;
-    system.add(Gravity{{0.0, -g}});
-    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.0});
-    const BodyId block = system.add(Particle{.mass = 1.0, .position = {0.2, 0.0}});
-    system.add(
-        SpringDamper{.from = {ground, {-5.0, 0.0}}, .to = block, .stiffness = 100.0, .free_length = 5.0});
-    Simulation simulation(std::move(system), tight());
+    scenes::BodyScene scene = scenes::coulomb_oscillator();
+    const BodyId block = scene.body;
+    Simulation simulation(std::move(scene.system), tight());
     simulation.run_until(turn * of(data, "half_period"));
     EXPECT_NEAR(simulation.state().position(block)[0],
                 data.at("turning_points")[static_cast<std::size_t>(turn)].get<double>(), 1e-10);

@@ -1,8 +1,10 @@
 // Event-driven impacts against closed forms: the bouncing ball up to and beyond its accumulation, Johansson's
 // tables, Horak's ball, Walton's curves.
 
+#include "examples/scenes/tables.h"
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -22,17 +24,9 @@ constexpr double g = 9.81;
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
 
-System ball_above_floor() {
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.0, .normal_restitution = 0.8});
-  system.add(Particle{.mass = 1.0, .position = {0.0, 1.0}}, "ball");
-  return system;
-}
-
 TEST(EventImpacts, BouncingBallThroughItsAccumulation) {
   const Json data = reference_data("impacts_planar.json").at("bouncing_ball");
-  Simulation simulation(ball_above_floor(), tight());
+  Simulation simulation(scenes::ball_above_floor(1.0, 0.8).system, tight());
   const LedgerWatch ledger(simulation);
   const BodyId ball = simulation.system().body("ball");
   Worst state;
@@ -90,14 +84,11 @@ TEST(EventImpacts, BounceThenRoll) {
   ASSERT_EQ(data.size(), 3u);
   for (const auto& at : data) {
     constexpr double r = 0.1;
-    System system;
-    system.add(Gravity{{0.0, -g}});
-    system.add(HalfPlane{.normal = {0.0, 1.0}},
-               Surface{.friction = of(at, "mu"), .normal_restitution = of(at, "e_n")});
-    const BodyId disc = system.add(RigidBody{
-        .mass = {.mass = 1.0, .inertia = 0.5 * r * r}, .position = {0.0, 0.5 + r}, .velocity = {2.0, 0.0}});
-    system.add(Disc{.body = disc, .radius = r});
-    Simulation simulation(std::move(system), tight());
+    scenes::BodyScene scene = scenes::round_body(
+        {.mass = 1.0, .inertia = 0.5 * r * r}, r,
+        {.friction = of(at, "mu"), .normal_restitution = of(at, "e_n")}, 0.5, {2.0, 0.0}, 0.0);
+    const BodyId disc = scene.body;
+    Simulation simulation(std::move(scene.system), tight());
     const LedgerWatch ledger(simulation);
     simulation.run_until(10.0);
     const auto impacts = events_of(simulation, EventKind::impact);
@@ -134,24 +125,18 @@ double named(const std::string& name, const std::string& word) {
 }
 
 TEST(EventImpacts, JohanssonTables) {
-  constexpr double r = 0.0131, m = 0.00859;
+  constexpr double m = scenes::ball_mass;
   Worst time, velocity, spin;
   int runs = 0;
   const Json data = reference_data("impacts_planar.json").at("johansson_tables").at("runs");
   for (const auto& [name, run] : data.items()) {
-    const double e_t = named(name, "et");
-    const auto surface = [e_t](double friction) {
-      return Surface{.friction = friction, .normal_restitution = 0.91, .tangential_restitution = e_t};
-    };
     System system;
-    system.add(Gravity{{0.0, -g}});
-    const ObstacleId low = system.add(HalfPlane{.normal = {0.0, 1.0}}, surface(1.13));
-    system.add(HalfPlane{.point = {0.0, 0.530}, .normal = {0.0, -1.0}}, surface(0.95));
-    const BodyId ball = system.add(RigidBody{.mass = solid_sphere(m, r),
-                                             .position = {0.0, named(name, "_y")},
-                                             .velocity = {named(name, "_vx"), named(name, "_vy")},
-                                             .spin = named(name, "_spin")});
-    system.add(Disc{.body = ball, .radius = r});
+    const BodyId ball = scenes::add_tables(system, {.tangential_restitution = named(name, "et"),
+                                                    .horizontal_speed = named(name, "_vx"),
+                                                    .vertical_speed = named(name, "_vy"),
+                                                    .height = named(name, "_y"),
+                                                    .spin = named(name, "_spin")});
+    const ObstacleId low = system.obstacle("lower table");
     Simulation simulation(std::move(system), tight());
     const LedgerWatch ledger(simulation);
     for (const auto& at : run) {
@@ -190,15 +175,13 @@ TEST(EventImpacts, HorakBall) {
   Worst velocity, spin;
   for (const auto& [name, result] : data.at("results").items()) {
     for (const auto& row : result.at("rows")) {
-      System system;
-      system.add(Gravity{{0.0, -g}});
-      system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = of(result, "mu"),
-                                                          .normal_restitution = of(result, "e_n"),
-                                                          .tangential_restitution = of(result, "e_t")});
-      const BodyId ball = system.add(
-          RigidBody{.mass = thin_shell(m, r), .position = {0.0, r + height}, .spin = of(row, "spin_before")});
-      system.add(Disc{.body = ball, .radius = r});
-      Simulation simulation(std::move(system), tight());
+      scenes::BodyScene scene = scenes::round_body(thin_shell(m, r), r,
+                                                   {.friction = of(result, "mu"),
+                                                    .normal_restitution = of(result, "e_n"),
+                                                    .tangential_restitution = of(result, "e_t")},
+                                                   height, {0.0, 0.0}, of(row, "spin_before"));
+      const BodyId ball = scene.body;
+      Simulation simulation(std::move(scene.system), tight());
       const LedgerWatch ledger(simulation);
       simulation.run_until(fall + later);
       ASSERT_EQ(simulation.events().size(), 1u) << name << row;
@@ -225,16 +208,14 @@ TEST(EventImpacts, WaltonCurvesFromContactsThatStartClosed) {
   for (const auto& curve : data) {
     constexpr double r = 1.59e-3, m = 4.0e-5;
     for (const auto& point : curve.at("curve_psi1_psi2_mode")) {
-      System system;
-      system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = of(curve, "mu"),
-                                                          .normal_restitution = of(curve, "e_n"),
-                                                          .tangential_restitution = of(curve, "beta0")});
-      const BodyId ball =
-          system.add(RigidBody{.mass = {.mass = m, .inertia = of(curve, "I_over_m_r2") * m * r * r},
-                               .position = {0.0, r},
-                               .velocity = {point[0].get<double>(), -1.0}});
-      system.add(Disc{.body = ball, .radius = r});
-      Simulation simulation(std::move(system), tight());
+      scenes::BodyScene scene =
+          scenes::round_body({.mass = m, .inertia = of(curve, "I_over_m_r2") * m * r * r}, r,
+                             {.friction = of(curve, "mu"),
+                              .normal_restitution = of(curve, "e_n"),
+                              .tangential_restitution = of(curve, "beta0")},
+                             0.0, {point[0].get<double>(), -1.0}, 0.0);
+      const BodyId ball = scene.body;
+      Simulation simulation(std::move(scene.system), tight());
       const LedgerWatch ledger(simulation);
       simulation.step();
       ASSERT_EQ(simulation.events().size(), 1u) << curve << point;
@@ -250,17 +231,6 @@ TEST(EventImpacts, WaltonCurvesFromContactsThatStartClosed) {
   note("speeds", speed.value());
 }
 
-/// A body of which one point touches the floor at the start and approaches: one impact at once.
-Simulation struck_point(const MassProperties<2>& mass, const Vec<2>& point, const Surface& surface,
-                        const Vec<2>& velocity, const EventDriven& options) {
-  System system;
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
-  const BodyId body =
-      system.add(RigidBody{.mass = mass, .position = {0.0, -point[1]}, .velocity = velocity}, "body");
-  system.add(Point{.body = body, .position = point});
-  return Simulation(std::move(system), options);
-}
-
 TEST(EventImpacts, RandomContacts) {
   const Json data = reference_data("open_variants.json").at("single_contact");
   ASSERT_EQ(data.size(), 40u);
@@ -269,11 +239,14 @@ TEST(EventImpacts, RandomContacts) {
   for (const auto& at : data) {
     const auto point = at.at("contact_from_centre").get<std::vector<double>>();
     const auto before = at.at("v_minus").get<std::vector<double>>();
-    Simulation simulation = struck_point({.mass = of(at, "m"), .inertia = of(at, "I")}, {point[0], point[1]},
-                                         {.friction = of(at, "mu"),
-                                          .normal_restitution = of(at, "e_n"),
-                                          .tangential_restitution = of(at, "e_t")},
-                                         {before[0], before[1]}, tight());
+    Simulation simulation(
+        scenes::struck_point({.mass = of(at, "m"), .inertia = of(at, "I")}, {point[0], point[1]},
+                             {.friction = of(at, "mu"),
+                              .normal_restitution = of(at, "e_n"),
+                              .tangential_restitution = of(at, "e_t")},
+                             {before[0], before[1]})
+            .system,
+        tight());
     const LedgerWatch ledger(simulation);
     simulation.run_until(1e-6);
     EXPECT_TRUE(ledger.closes()) << at;
@@ -311,8 +284,9 @@ TEST(EventImpacts, ImpactsThatGainEnergyAreToldAndCanBeRefused) {
     const Surface surface{
         .friction = 1.0, .normal_restitution = of(value, "e_n"), .tangential_restitution = of(value, "e_t")};
     EventDriven options = tight();
-    Simulation simulation =
-        struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0}, surface, {1.0, -2.0}, options);
+    const System system =
+        scenes::struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0}, surface, {1.0, -2.0}).system;
+    Simulation simulation(system, options);
     const LedgerWatch ledger(simulation);
     simulation.run_until(1e-6);
     const EventRecord& impact = simulation.events().at(0);
@@ -323,8 +297,7 @@ TEST(EventImpacts, ImpactsThatGainEnergyAreToldAndCanBeRefused) {
     EXPECT_TRUE(ledger.closes()) << value;
 
     options.refuse_energy_gain = true;
-    Simulation strict =
-        struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0}, surface, {1.0, -2.0}, options);
+    Simulation strict(system, options);
     if (change > 1e-12) {
       ++gains;
       EXPECT_NEAR(simulation.statistics().energy_gained, change, 1e-12) << value;

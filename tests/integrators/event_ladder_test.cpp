@@ -3,6 +3,7 @@
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -20,25 +21,11 @@ constexpr double g = 9.81;
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
 
-/// A ladder with its foot on the floor, leaning on a smooth wall.
-Simulation ladder(double mu, double theta) {
-  constexpr double length = 2.0;
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = mu, .normal_restitution = 0.0}, "floor");
-  system.add(HalfPlane{.normal = {1.0, 0.0}}, Surface{.friction = 0.0, .normal_restitution = 0.0}, "wall");
-  const Vec<2> half(0.5 * length * std::cos(theta), 0.5 * length * std::sin(theta));
-  const BodyId body =
-      system.add(RigidBody{.mass = rod(1.0, length), .position = half, .angle = -theta}, "ladder");
-  system.add(Segment{.body = body, .from = {-0.5 * length, 0.0}, .to = {0.5 * length, 0.0}});
-  return Simulation(std::move(system), tight());
-}
-
 TEST(EventLadder, StandsAboveTheLeastFriction) {
   const Json data = reference_data("contacts_planar.json").at("ladder");
   const double theta = of(data, "theta"), least = of(data, "mu_min");
   for (const double mu : {least * (1.0 + 1e-9), least + 0.1, 2.0}) {
-    Simulation simulation = ladder(mu, theta);
+    Simulation simulation(scenes::ladder(mu, theta).system, tight());
     const LedgerWatch ledger(simulation);
     const BodyId body = simulation.system().body("ladder");
     simulation.run_until(5.0);
@@ -54,7 +41,7 @@ TEST(EventLadder, SlipsBelowTheLeastFriction) {
   const Json data = reference_data("contacts_planar.json").at("ladder");
   const double theta = of(data, "theta"), least = of(data, "mu_min");
   for (const double mu : {least * (1.0 - 1e-6), 0.2, 0.0}) {
-    Simulation simulation = ladder(mu, theta);
+    Simulation simulation(scenes::ladder(mu, theta).system, tight());
     const LedgerWatch ledger(simulation);
     const BodyId body = simulation.system().body("ladder");
     constexpr double time = 1e-3;
@@ -74,7 +61,7 @@ TEST(EventLadder, LeavesTheSmoothWallAtTwoThirdsOfItsHeight) {
   // Without friction (2/3) omega^2 = g (sin theta0 - sin theta) while it leans; the wall's force ends where
   // sin theta = (2/3) sin theta0. From there on its foot slides at a constant speed of the centre.
   const double theta0 = 1.0;
-  Simulation simulation = ladder(0.0, theta0);
+  Simulation simulation(scenes::ladder(0.0, theta0).system, tight());
   const LedgerWatch ledger(simulation);
   const BodyId body = simulation.system().body("ladder");
   const ObstacleId wall = simulation.system().obstacle("wall");

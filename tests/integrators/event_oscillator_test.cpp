@@ -2,6 +2,7 @@
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -22,19 +23,14 @@ constexpr double pi = 3.14159265358979323846;
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
 
-/// x'' + x = F cos(w t) with a stop: free space is x < wall.
 System impact_oscillator(const Json& data) {
-  const double size = of(data, "F"), w = of(data, "w");
-  System system;
-  system.add(HalfPlane{.point = {of(data, "wall"), 0.0}, .normal = {-1.0, 0.0}},
-             Surface{.friction = 0.0, .normal_restitution = of(data, "e")});
-  const BodyId mass = system.add(
-      Particle{.mass = 1.0, .position = {of(data, "x0"), 0.0}, .velocity = {of(data, "v0"), 0.0}}, "mass");
-  // Of no free length: linear, and without force across its line.
-  system.add(SpringDamper{.from = {ground, {0.0, 0.0}}, .to = mass, .stiffness = 1.0});
-  system.add(
-      AppliedForce{.on = mass, .force = [=](double t) { return Vec<2>(size * std::cos(w * t), 0.0); }});
-  return system;
+  return scenes::impact_oscillator({.force = of(data, "F"),
+                                    .frequency = of(data, "w"),
+                                    .wall = of(data, "wall"),
+                                    .restitution = of(data, "e"),
+                                    .position = of(data, "x0"),
+                                    .speed = of(data, "v0")})
+      .system;
 }
 
 TEST(EventOscillator, ImpactOscillator) {
@@ -130,20 +126,14 @@ TEST(EventOscillator, GrazingIsFoundFromOneSideOnly) {
   }
 }
 
-/// A table y = A sin(w t + phase), a ball above it.
 System vibrating_table(double size, double w, double phase, double e, double y, double speed) {
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(
-      HalfPlane{
-          .normal = {0.0, 1.0},
-          .motion = {.displacement = [=](double t) { return Vec<2>(0.0, size * std::sin(w * t + phase)); },
-                     .velocity = [=](double t) { return Vec<2>(0.0, size * w * std::cos(w * t + phase)); },
-                     .acceleration =
-                         [=](double t) { return Vec<2>(0.0, -size * w * w * std::sin(w * t + phase)); }}},
-      Surface{.friction = 0.0, .normal_restitution = e});
-  system.add(Particle{.mass = 1.0, .position = {0.0, y}, .velocity = {0.0, speed}}, "ball");
-  return system;
+  return scenes::vibrating_table({.amplitude = size,
+                                  .frequency = w,
+                                  .phase = phase,
+                                  .restitution = e,
+                                  .height = y,
+                                  .speed = speed})
+      .system;
 }
 
 // The period-1 orbit with n periods per flight leaves the table at the speed n pi g/w when the table's phase

@@ -3,6 +3,7 @@
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -39,19 +40,10 @@ public:
   }
 
 private:
-  Simulation make(double theta, double mu, double omega, double tip_speed) const {
-    System system;
-    system.add(Gravity{{0.0, -g}});
-    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = mu, .normal_restitution = 0.0});
-    const BodyId rod =
-        system.add(RigidBody{.mass = planar::rod(1.0, 2.0),
-                             .position = lever,
-                             .angle = theta,
-                             .velocity = Vec<2>(tip_speed, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
-                             .spin = omega},
-                   "rod");
-    system.add(Point{.body = rod, .position = {-1.0, 0.0}});
-    return Simulation(std::move(system), tight());
+  static Simulation make(double theta, double mu, double omega, double tip_speed) {
+    return {
+        scenes::painleve_rod({.theta = theta, .friction = mu, .omega = omega, .tip_speed = tip_speed}).system,
+        tight()};
   }
 };
 

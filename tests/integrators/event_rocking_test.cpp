@@ -3,6 +3,7 @@
 
 #include "tests/integrators/event_run.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -21,21 +22,6 @@ using namespace carom_test;
 constexpr double g = 9.81;
 
 double of(const Json& data, const char* key) { return data.at(key).get<double>(); }
-
-/// A rectangle of mass 1 tilted about its left corner, at rest.
-System rocking_block(double b, double h, double tilt) {
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 2.0, .normal_restitution = 0.0});
-  const double c = std::cos(tilt), s = std::sin(tilt);
-  const BodyId block = system.add(
-      RigidBody{
-          .mass = box(1.0, 2.0 * b, 2.0 * h), .position = {c * b - s * h, s * b + c * h}, .angle = tilt},
-      "block");
-  system.add(Point{.body = block, .position = {-b, -h}}, "left");
-  system.add(Point{.body = block, .position = {b, -h}}, "right");
-  return system;
-}
 
 struct Errors {
   Worst time, spin, impulse, amplitude;
@@ -58,7 +44,7 @@ double next_amplitude(Simulation& simulation, double p, double alpha) {
 }
 
 void expect_rocks(const Json& at, const Json& row, double b, double h, Errors& errors) {
-  Simulation simulation(rocking_block(b, h, of(row, "theta0")), tight());
+  Simulation simulation(scenes::rocking_block(b, h, of(row, "theta0")).system, tight());
   const LedgerWatch ledger(simulation);
   const BodyId block = simulation.system().body("block");
   const double quarter = of(row, "quarter_period_exact"), before = of(row, "omega_before_impact");
@@ -122,7 +108,7 @@ TEST(EventRocking, RatioOfSpinsAmplitudesAndQuarterPeriods) {
 TEST(EventRocking, ComesToRestOverAlternatingCorners) {
   // Spins shrink by 0.7 with each impact, e_n = 0 or not: the amplitudes add up to a finite time, and the
   // block stands flat behind it.
-  Simulation simulation(rocking_block(0.5, 1.0, 0.05), tight());
+  Simulation simulation(scenes::rocking_block(0.5, 1.0, 0.05).system, tight());
   const LedgerWatch ledger(simulation);
   const BodyId block = simulation.system().body("block");
   simulation.run_until(5.0);

@@ -4,6 +4,7 @@
 #include "tests/analytic/bouncing_ball.h"
 #include "tests/analytic/convergence.h"
 #include "tests/reference/reference_data.h"
+#include "validation/scenes.h"
 
 #include <carom/carom.h>
 
@@ -117,15 +118,12 @@ TEST(ImpactsPlanar, EnergyInconsistency) {
   // r1 = r, r2 = -r, I = m r^2, mu = 1: the corner at (-r, -r) of the body strikes with (v0, -2 v0).
   const Json data = reference_data("impacts_planar.json").at("energy_inconsistency");
   for (const auto& value : data.at("values")) {
-    System system;
-    system.add(HalfPlane{.normal = {0.0, 1.0}},
-               Surface{.friction = 1.0,
-                       .normal_restitution = value.at("e_n").get<double>(),
-                       .tangential_restitution = value.at("e_t").get<double>()});
-    const BodyId body = system.add(
-        RigidBody{.mass = {.mass = 1.0, .inertia = 1.0}, .position = {0.0, 1.0}, .velocity = {1.0, -2.0}});
-    system.add(Point{.body = body, .position = {-1.0, -1.0}});
-    Simulation simulation(std::move(system), TimeStepping{});
+    scenes::BodyScene scene = scenes::struck_point({.mass = 1.0, .inertia = 1.0}, {-1.0, -1.0},
+                                                   {.friction = 1.0,
+                                                    .normal_restitution = value.at("e_n").get<double>(),
+                                                    .tangential_restitution = value.at("e_t").get<double>()},
+                                                   {1.0, -2.0});
+    Simulation simulation(std::move(scene.system), TimeStepping{});
     const StepReport& report = simulation.step();
     ASSERT_EQ(report.contacts.size(), 1u);
     EXPECT_NEAR(report.contacts[0].impulse[0], value.at("Pn").get<double>(), impact_tolerance) << value;
@@ -137,11 +135,9 @@ TEST(ImpactsPlanar, EnergyInconsistency) {
 }
 
 double height_error(double step, double time, double exact) {
-  System system;
-  system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.0, .normal_restitution = 0.8});
-  const BodyId ball = system.add(Particle{.mass = 1.0, .position = {0.0, 1.0}});
-  Simulation simulation(std::move(system), TimeStepping{.step = step});
+  scenes::BodyScene scene = scenes::ball_above_floor(1.0, 0.8);
+  const BodyId ball = scene.body;
+  Simulation simulation(std::move(scene.system), TimeStepping{.step = step});
   simulation.run_until(time);
   return std::abs(simulation.state().position(ball)[1] - exact);
 }
@@ -174,23 +170,19 @@ struct Rolling {
 /// A round body in contact with a plane that falls to the right; `depth` below it.
 Rolling roll(double factor, double r, double slope, double mu, double speed, double spin, double depth,
              double step, double time) {
-  System system;
-  system.add(Gravity{{0.0, -9.81}});
-  const Vec<2> normal = incline(-slope);
-  const Vec<2> tangent(normal[1], -normal[0]);
-  system.add(HalfPlane{.normal = normal}, Surface{.friction = mu, .normal_restitution = 0.0});
-  const Vec<2> start = (r - depth) * normal;
-  const BodyId body = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = factor * r * r},
-                                           .position = start,
-                                           .velocity = speed * tangent,
-                                           .spin = -spin});
-  system.add(Disc{.body = body, .radius = r});
-  Simulation simulation(std::move(system), TimeStepping{.step = step});
+  const scenes::Downhill start{.slope = slope,
+                               .friction = mu,
+                               .inertia = factor * r * r,
+                               .radius = r,
+                               .speed = speed,
+                               .forward_spin = spin,
+                               .depth = depth};
+  scenes::BodyScene scene = scenes::downhill(start);
+  Simulation simulation(std::move(scene.system), TimeStepping{.step = step});
   simulation.run_until(time);
   const State& state = simulation.state();
   EXPECT_LE(std::abs(simulation.energy().residual()), 1e3 * 2.2e-16 * simulation.energy().scale());
-  return {tangent.dot(Vec<2>(state.position(body)) - start), tangent.dot(Vec<2>(state.velocity(body))),
-          -state.spin(body)};
+  return {start.distance(state, scene.body), start.speed_of(state, scene.body), -state.spin(scene.body)};
 }
 
 TEST(ImpactsPlanar, BodyOnInclineSlidesOrRolls) {
