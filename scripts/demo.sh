@@ -20,7 +20,8 @@ data=$build/data
 figures=$build/figures
 
 scripts/setup.sh
-cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_BENCHMARKS=OFF
+cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_BENCHMARKS=OFF \
+  -DCAROM_BUILD_VALIDATION=OFF
 cmake --build "$build" --parallel "$(nproc)"
 
 # The first python in PATH may know nothing of the system's packages.

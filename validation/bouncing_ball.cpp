@@ -61,11 +61,10 @@ Page bouncing_ball() {
   page.source = "closed form, `impacts_planar.json`";
   page.text =
       "A particle falls 1 m on a floor, e_n = 0.8. Its impacts pile up at √(2 h0/g) (1 + e)/(1 − e) = 4.0637 "
-      "s, "
-      "after which it rests.";
+      "s, after which it rests.";
   page.figures = {{"bouncing_ball",
-                   "Height over time, and its last tenth of a second before rest, where the steps of 1 ms "
-                   "no longer resolve the flights."}};
+                   "Height over time, and its last tenth of a second before rest, where the steps of 1 ms no "
+                   "longer resolve the flights."}};
   const Json data = reference("impacts_planar.json", "bouncing_ball");
   add_states(page, data, TimeStepping{.step = 1e-3});
   add_states(page, data, tight());
@@ -89,11 +88,9 @@ Page bouncing_ball() {
                  path("ball_events_late", tight(), 2e-4, 3.96, 4.1)};
   page.remarks =
       "Event-driven, only the energy of the last approach, below the capture speed of 1e-4 m/s, is thrown "
-      "away, and the time of "
-      "accumulation follows from the ratio of the intervals. In time stepping flights shorter than two steps "
-      "cannot be told "
-      "apart and the ball comes to rest by itself, some micrometres deep; its largest error in height is "
-      "that of impacts that are up to one step late.";
+      "away, and the time of accumulation follows from the ratio of the intervals. In time stepping flights "
+      "shorter than two steps cannot be told apart and the ball comes to rest by itself, at a depth of the "
+      "order of g h²; its largest error in height is that of impacts that are up to one step late.";
   return page;
 }
 

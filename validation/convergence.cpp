@@ -102,8 +102,8 @@ Page convergence() {
   page.source = "`andrews.json`, `incline_bodies.json`";
   page.text =
       "Both modes on the same axes: a smooth mechanism, and the bar and the pair of Johansson's section 6, "
-      "which are struck. The step of the event-driven "
-      "mode is the mean one that it took, for relative tolerances from 1e-4 to 1e-12.";
+      "which are struck. The step of the event-driven mode is the mean one that it took, for relative "
+      "tolerances from 1e-4 to 1e-12.";
   page.figures = {{"convergence",
                    "Largest error of a coordinate over the step (above) and over CPU time (below). Lines of "
                    "slope 2 and 1 for comparison."}};
@@ -112,11 +112,10 @@ Page convergence() {
   add(page, incline(false));
   page.remarks =
       "Time stepping is of order 2 where nothing is hit and of order 1, in the mean, across impacts, where "
-      "single errors scatter over a decade or two. The event-driven mode "
-      "reaches many more digits at the same cost; the bar's flight is a parabola, which it follows to "
-      "rounding at any tolerance. "
-      "Time stepping keeps its place where contacts are many or impacts pile up: its cost does not depend on "
-      "what happens.";
+      "single errors scatter over a decade or two. The event-driven mode reaches many more digits at the "
+      "same cost; the bar's flight is a parabola, which it follows to rounding at any tolerance. Time "
+      "stepping keeps its place where contacts are many or impacts pile up: its cost does not depend on what "
+      "happens.";
   return page;
 }
 

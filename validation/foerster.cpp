@@ -52,18 +52,15 @@ Page foerster() {
       "`impacts_planar.json`";
   page.text =
       "Spheres that strike a wall or each other obliquely: ψ1 is the tangential over the normal speed of the "
-      "contact "
-      "before, ψ2 the tangential speed after over the normal one before. Foerster and others describe their "
-      "measurements by "
-      "three numbers, e, μ and β0: ψ2 = −β0 ψ1 as long as the contact sticks, that is up to "
-      "ψ* = (7/2) μ (1 + e)/(1 + β0), and ψ2 = ψ1 − (7/2) μ (1 + e) beyond. For spheres this is the paper's "
-      "law with "
-      "e_t = β0, and the experiments test it: that three numbers describe both branches is their finding.\n\n"
+      "contact before, ψ2 the tangential speed after over the normal one before. Foerster and others "
+      "describe their measurements by three numbers, e, μ and β0: ψ2 = −β0 ψ1 as long as the contact sticks, "
+      "that is up to ψ* = (7/2) μ (1 + e)/(1 + β0), and ψ2 = ψ1 − (7/2) μ (1 + e) beyond. For spheres this "
+      "is the paper's law with e_t = β0, and the experiments test it: that three numbers describe both "
+      "branches is their finding.\n\n"
       "The coefficients are the published ones as widely quoted; they were not checked against the paper "
-      "itself, and those of "
-      "plates are uncertain. No measured points are tabulated. Two equal spheres are replaced by one and a "
-      "wall, which has the "
-      "same ratios. Acetate on the plate has no β0: only its slipping branch is compared.";
+      "itself, and those of plates are uncertain. No measured points are tabulated. Two equal spheres are "
+      "replaced by one and a wall, which has the same ratios. Acetate on the plate has no β0: only its "
+      "slipping branch is compared.";
   page.figures = {{"foerster",
                    "ψ2 over ψ1 for the published coefficients, as the library computes them; circles: the "
                    "law in closed form. Falling: stick, rising: slip."}};
@@ -110,9 +107,8 @@ Page foerster() {
   }
   page.remarks =
       "The library follows the law to rounding; how well the law describes the spheres is said by the "
-      "scatter of the "
-      "published coefficients (e ± 0.01, μ ± 0.006, β0 ± 0.07 for glass). [Alumina on glass](kharaz.md) is "
-      "compared with measured points.";
+      "scatter of the published coefficients (e ± 0.01, μ ± 0.006, β0 ± 0.07 for glass). [Alumina on "
+      "glass](kharaz.md) is compared with measured points.";
   return page;
 }
 
@@ -127,15 +123,12 @@ Page kharaz() {
       "Kharaz, Gorham and Salman, Powder Technology 120 (2001) 281, digitised points, `experiments.json`";
   page.text =
       "A sphere of 5 mm strikes a thick glass anvil at 3.9 m/s without spin, at angles of 0 to 60 degrees "
-      "from the normal: "
-      "e_n = 0.98, μ = 0.092. Measured are the spin and the speed and direction of the centre after the "
-      "impact. The "
-      "points are digitised, to about 1 to 2 percent.\n\n"
+      "from the normal: e_n = 0.98, μ = 0.092. Measured are the spin and the speed and direction of the "
+      "centre after the impact. The points are digitised, to about 1 to 2 percent.\n\n"
       "This is an experiment, not a computed reference: the errors below are those of the law.";
-  page.figures = {
-      {"kharaz",
-       "Measured points and the law, with e_t = 0 and 0.3. Beyond about 30 degrees the contact slips and the "
-       "law holds; below it sticks, and there the elastic contact is not rigid."}};
+  page.figures = {{"kharaz",
+                   "Measured points and the law, with e_t = 0 and 0.3. Beyond about 30 degrees the contact "
+                   "slips and the law holds; below it sticks, and there the elastic contact is not rigid."}};
   const double degree = pi / 180.0;
   const auto after = [&](double angle, double e_t) {
     scenes::BodyScene scene =
@@ -190,10 +183,9 @@ Page kharaz() {
   }
   page.remarks =
       "Where the contact slips the law agrees with the points about as well as they are known, but for the "
-      "spin at 60°, whatever e_t. Where it sticks it does not: the "
-      "tangential compliance of the contact stores energy and gives it back, and no single e_t describes all "
-      "angles. That is "
-      "a limit of the rigid law, not of the computation.";
+      "spin at 60°, whatever e_t. Where it sticks it does not: the tangential compliance of the contact "
+      "stores energy and gives it back, and no single e_t describes all angles. That is a limit of the rigid "
+      "law, not of the computation.";
   return page;
 }
 

@@ -92,13 +92,11 @@ Page friction() {
   page.source = "closed forms, `contacts_planar.json`";
   page.text =
       "A block on a ramp that slides, stays, stops or turns round (slope 0.3 rad, μ = 0.2 and 0.5), and a "
-      "block of 1 kg "
-      "on a rough floor (μ = 0.3) held by a spring of 100 N/m: its amplitude falls by 2 μ m g/k in each half "
-      "period, and it stops where the spring cannot move it any more, |x| ≤ μ m g/k.";
-  page.figures = {
-      {"coulomb_oscillator",
-       "The block on the spring: line, event-driven; circles, time stepping with h = 0.01 s; crosses, "
-       "turning points in closed form; grey, where friction holds it."}};
+      "block of 1 kg on a rough floor (μ = 0.3) held by a spring of 100 N/m: its amplitude falls by 2 μ m "
+      "g/k in each half period, and it stops where the spring cannot move it any more, |x| ≤ μ m g/k.";
+  page.figures = {{"coulomb_oscillator",
+                   "The block on the spring: line, event-driven; circles, time stepping with h = 0.01 s; "
+                   "crosses, turning points in closed form; grey, where friction holds it."}};
   for (const Mode& mode : {Mode(TimeStepping{.step = 1e-3}), Mode(tight())}) {
     add_ramp(page, mode);
     add_oscillator(page, mode);
@@ -114,8 +112,7 @@ Page friction() {
   page.curves.push_back(turns);
   page.remarks =
       "Both modes stop the block at the same place. In time stepping the direction of friction is right in "
-      "all steps but those in "
-      "which the block turns.";
+      "all steps but those in which the block turns.";
   return page;
 }
 
@@ -126,12 +123,10 @@ Page ladder() {
   page.source = "statics, `contacts_planar.json`";
   page.text =
       "A uniform ladder (1 kg, 2 m) at 1 rad to the floor leans on a smooth wall. It stands if μ of the "
-      "floor is at least "
-      "1/(2 tan θ) = 0.32105.";
+      "floor is at least 1/(2 tan θ) = 0.32105.";
   page.figures = {{"ladder",
                    "Angle by which the ladder has turned 0.2 s after it was let go, over the friction of the "
-                   "floor; dashed: the least "
-                   "friction by statics."}};
+                   "floor; dashed: the least friction by statics."}};
   const Json data = reference("contacts_planar.json", "ladder");
   const double theta = of(data, "theta"), least = of(data, "mu_min");
   const auto turned = [&](double friction, double time, const Mode& mode) {
@@ -188,8 +183,8 @@ Page ladder() {
   page.curves.push_back({.name = "ladder_reference", .columns = {"friction"}, .rows = {{least}}});
   page.remarks =
       "The border is sharp: the accelerations of a ladder that slips go to zero at it, so that the "
-      "bisection, which asks whether the "
-      "ladder has moved after 0.1 s, finds it to the size of what it calls moved.";
+      "bisection, which asks whether the ladder has moved after 0.1 s, finds it to the size of what it calls "
+      "moved.";
   return page;
 }
 

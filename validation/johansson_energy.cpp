@@ -39,14 +39,12 @@ Page johansson_energy() {
   page.source = "Johansson 1999, section 3.3";
   page.text =
       "With e_n ≠ e_t the law can add energy. The paper's example: r1 = r, r2 = −r, I = m r², μ = 1, speeds "
-      "of the "
-      "contact v along and −2v against the surface, no spin. It sticks for all e_n and e_t, and\n\n"
+      "of the contact v along and −2v against the surface, no spin. It sticks for all e_n and e_t, and\n\n"
       "    ΔT = (m v²/3)(4 e_n² − 2 e_n e_t + e_t² − 3),    ΔT > 0 where e_n > (e_t + √(12 − 3 e_t²))/4\n\n"
       "The references are that formula (`impacts_planar.json`); m = r = v = 1, so that T = 2.5 J before.";
-  page.figures = {
-      {"energy_gain",
-       "ΔT/T of the impact as the library computes it, over both coefficients. Black: the "
-       "border by the formula; dots: by bisection with the library's impacts; dashed: e_t = e_n."}};
+  page.figures = {{"energy_gain",
+                   "ΔT/T of the impact as the library computes it, over both coefficients. Black: the border "
+                   "by the formula; dots: by bisection with the library's impacts; dashed: e_t = e_n."}};
   const Json data = reference("impacts_planar.json", "energy_inconsistency");
   for (const Mode& mode : {Mode(TimeStepping{}), Mode(tight())}) {
     const Clock clock;
@@ -89,8 +87,8 @@ Page johansson_energy() {
   page.curves = {found, map};
   page.remarks =
       "Energy is gained in the corner of large e_n and small e_t. The library computes such impacts as the "
-      "law says, "
-      "reports them, and can refuse them (`refuse_energy_gain`). With e_n = e_t there is never a gain.";
+      "law says, reports them, and can refuse them (`refuse_energy_gain`). With e_n = e_t there is never a "
+      "gain.";
   return page;
 }
 

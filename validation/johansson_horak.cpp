@@ -49,18 +49,15 @@ Page johansson_horak() {
   page.source = "Johansson 1999, section 5, figure 5";
   page.text =
       "A thin-walled ball (0.1134 kg, radius 0.0359 m) with spin is dropped 0.799 m onto a rough floor, and "
-      "its "
-      "spin afterwards is drawn over that before. The paper has μ = 0.24, e_n = 0.82 with e_t = 0 and with "
-      "e_t = e_n, and the values that fit the experiments, μ = 0.08, e_t = e_n = 0.92.\n\n"
+      "its spin afterwards is drawn over that before. The paper has μ = 0.24, e_n = 0.82 with e_t = 0 and "
+      "with e_t = e_n, and the values that fit the experiments, μ = 0.08, e_t = e_n = 0.92.\n\n"
       "What the paper leaves open: the points measured by Horak are not tabulated there, so that the "
-      "references "
-      "are the law in closed form (`impacts_planar.json`), not the experiment. Rolling resistance, which is "
-      "left out "
-      "of the paper's law, is left out here too.";
-  page.figures = {{"figure5_horak",
-                   "Figure 5 of the paper. Lines: event-driven runs; crosses: closed forms. Each line has a "
-                   "part that sticks, through the origin, and a part that slips, parallel to the dotted line "
-                   "of equal spins."}};
+      "references are the law in closed form (`impacts_planar.json`), not the experiment. Rolling "
+      "resistance, which is left out of the paper's law, is left out here too.";
+  page.figures = {
+      {"figure5_horak",
+       "Figure 5 of the paper. Lines: event-driven runs; crosses: closed forms. Each line has a part that "
+       "sticks, through the origin, and a part that slips, parallel to the dotted line of equal spins."}};
   const Json results = reference("impacts_planar.json", "horak", "results");
   const std::vector<Mode> modes{TimeStepping{.step = 1e-4}, tight()};
   for (const Mode& mode : modes) {
@@ -87,10 +84,8 @@ Page johansson_horak() {
   }
   page.remarks =
       "With e_t = 0 a ball that sticks keeps 2/5 of its spin, with e_t = e_n its spin turns round slightly; "
-      "beyond, "
-      "all lose the same spin to sliding friction. In time stepping the speed of the impact depends on when "
-      "within its "
-      "step it is noticed, and a slipping ball's friction with it: order 1.";
+      "beyond, all lose the same spin to sliding friction. In time stepping the speed of the impact depends "
+      "on when within its step it is noticed, and a slipping ball's friction with it: order 1.";
   return page;
 }
 

@@ -125,21 +125,16 @@ Page johansson_incline() {
   page.source = "Johansson 1999, section 6, figures 6 to 8";
   page.text =
       "A bar (2 kg, 2 m, I = 2 kg m² as printed; a uniform bar would have 2/3) and two particles of 1 kg on "
-      "a spring "
-      "of 1000 N/m and free length 2 m fall from 20 m with 10 m/s to the right on a plane inclined by 0.1 "
-      "rad: "
-      "μ = 0.1, e_n = e_t = 1, steps of 1/1200 s, drawn every 100th step.\n\n"
+      "a spring of 1000 N/m and free length 2 m fall from 20 m with 10 m/s to the right on a plane inclined "
+      "by 0.1 rad: μ = 0.1, e_n = e_t = 1, steps of 1/1200 s, drawn every 100th step.\n\n"
       "What the paper leaves open: the angle at the start and which way the plane slopes. Here the plane "
-      "goes through the "
-      "origin and rises with +x, the bodies start upright with their centre at (0, 20). Five other choices "
-      "are in "
-      "[other inclines](incline_variants.md).\n\n"
+      "goes through the origin and rises with +x, the bodies start upright with their centre at (0, 20). "
+      "Five other choices are in [other inclines](incline_variants.md).\n\n"
       "References: closed-form flight of the bar, extrapolation in 80-bit arithmetic for the pair, impacts "
-      "by enumeration "
-      "of the modes (`incline_bodies.json`).";
+      "by enumeration of the modes (`incline_bodies.json`).";
   page.figures = {{"figure6_motion",
-                   "Figure 6 of the paper: the motion, time stepping at the paper's step. Red: the "
-                   "end that is lower at the start."},
+                   "Figure 6 of the paper: the motion, time stepping at the paper's step. Red: the end that "
+                   "is lower at the start."},
                   {"figure7_energy_bar", "Figure 7 of the paper: energies of the bar."},
                   {"figure8_energy_pair", "Figure 8 of the paper: energies of the pair."}};
   const Json data = reference_data("incline_bodies.json");
@@ -151,13 +146,10 @@ Page johansson_incline() {
   }
   page.remarks =
       "The pair strikes twice in quick succession where the bar strikes once, and energy falls at impacts "
-      "only, by "
-      "friction: e_n = e_t = 1. At the paper's step the places at the end are off, because an impact is "
-      "noticed "
-      "up to a step late: the error of a place is the delay times the change of velocity at the impact, and "
-      "it falls with the first power of "
-      "the step. The pair's is larger, and scatters more over the steps, since the delay of the first impact "
-      "changes the phase of the spring at the second.";
+      "only, by friction: e_n = e_t = 1. At the paper's step the places at the end are off, because an "
+      "impact is noticed up to a step late: the error of a place is the delay times the change of velocity "
+      "at the impact, and it falls with the first power of the step. The pair's is larger, and scatters more "
+      "over the steps, since the delay of the first impact changes the phase of the spring at the second.";
   return page;
 }
 
@@ -168,11 +160,10 @@ Page incline_variants() {
   page.source = "closed forms and 80-bit extrapolation, `incline_bodies.json`, `open_variants.json`";
   page.text =
       "The bar and the pair of Johansson's section 6 with both slopes, with tilted starts, with friction "
-      "that sticks, and "
-      "with random angles, speeds and coefficients: six cases of each sort.";
+      "that sticks, and with random angles, speeds and coefficients: six cases of each sort.";
   page.figures = {{"incline_variants",
-                   "Error of the coordinates at 3.5 s of the six bars over the step: dots are "
-                   "single runs of time stepping, the line has slope 1."}};
+                   "Error of the coordinates at 3.5 s of the six bars over the step: dots are single runs of "
+                   "time stepping, the line has slope 1."}};
   for (const Mode& mode : {Mode(TimeStepping{.step = 2.3e-4}), Mode(tight())}) {
     for (const char* file : {"incline_bodies.json", "open_variants.json"}) {
       for (const bool is_bar : {true, false}) add_variants(page, file, is_bar, mode);
@@ -192,10 +183,8 @@ Page incline_variants() {
   page.curves = {errors};
   page.remarks =
       "Both modes find the same impacts at the same ends in the same modes. The largest errors of time "
-      "stepping belong to "
-      "pairs: a late impact meets the spring in another phase, and the second impact, which follows within "
-      "tenths of a second, "
-      "multiplies the difference.";
+      "stepping belong to pairs: a late impact meets the spring in another phase, and the second impact, "
+      "which follows within tenths of a second, multiplies the difference.";
   return page;
 }
 

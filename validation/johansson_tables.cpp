@@ -112,21 +112,19 @@ Page johansson_tables() {
   page.title = "Ball between two tables";
   page.source = "Johansson 1999, section 4, figures 3 and 4";
   page.text =
-      "A solid rubber sphere (0.00859 kg, diameter 0.0262 m) is thrown between two tables 0.530 m apart: "
-      "e_n = 0.91, μ = 1.13 below and 0.95 above, no spin at first, steps of 0.000309 s, a flash every "
-      "0.0309 s, twelve flashes. Figure 3 has e_t = e_n = 0.91, figure 4 e_t = 0.68.\n\n"
+      "A solid rubber sphere (0.00859 kg, diameter 0.0262 m) is thrown between two tables 0.530 m apart: e_n "
+      "= 0.91, μ = 1.13 below and 0.95 above, no spin at first, steps of 0.000309 s, a flash every 0.0309 s, "
+      "twelve flashes. Figure 3 has e_t = e_n = 0.91, figure 4 e_t = 0.68.\n\n"
       "What the paper leaves open: the initial velocity. It prints a spin of 567 rad/s after the first "
-      "impact "
-      "but not for which e_t. A sphere that sticks leaves with (5/7)(1 + e_t) v/r, so that the speed was "
-      "5.444 m/s if that was e_t = 0.91, and 6.190 m/s if 0.68: both are shown. That the spin is met is "
+      "impact but not for which e_t. A sphere that sticks leaves with (5/7)(1 + e_t) v/r, so that the speed "
+      "was 5.444 m/s if that was e_t = 0.91, and 6.190 m/s if 0.68: both are shown. That the spin is met is "
       "then by construction for the law, not for the run. The vertical speed, −5 m/s, and the height of the "
       "centre, 0.25 m, are assumptions.\n\n"
       "The rows *other starts* compare all 48 impacts of twelve more runs (e_t = 0, 0.68, 0.91) with "
-      "closed-form "
-      "flights and an enumeration of the modes of the law (`impacts_planar.json`).";
+      "closed-form flights and an enumeration of the modes of the law (`impacts_planar.json`).";
   page.figures = {{"figure3_tables",
-                   "Figure 3 of the paper: e_t = e_n = 0.91. Circles numbered by flash, with a "
-                   "radius drawn to show the turning; time stepping at the paper's step."},
+                   "Figure 3 of the paper: e_t = e_n = 0.91. Circles numbered by flash, with a radius drawn "
+                   "to show the turning; time stepping at the paper's step."},
                   {"figure4_tables", "Figure 4 of the paper: e_t = 0.68."}};
   for (const Mode& mode : {Mode(TimeStepping{.step = scenes::tables_step}), Mode(tight())}) {
     for (const double restitution : {0.91, 0.68}) {
@@ -140,10 +138,9 @@ Page johansson_tables() {
   page.remarks =
       "The ball meets the lower, the upper and the lower table and leaves the way it came, as in the paper, "
       "for both e_t and both speeds. Time stepping notices an impact up to one step late and books it at the "
-      "end of "
-      "that step's successor: a time is up to two steps late, and later impacts inherit that. Spins are "
-      "those of the law all the same where the ball "
-      "sticks; μ is so large that it always does in the figures.";
+      "end of that step's successor: a time is up to two steps late, and later impacts inherit that. Spins "
+      "are those of the law all the same where the ball sticks; μ is so large that it always does in the "
+      "figures.";
   return page;
 }
 

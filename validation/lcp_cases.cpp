@@ -100,9 +100,8 @@ Page lcp_cases() {
   page.source = "solutions in exact rationals, `lcp_cases.json`";
   page.text =
       "57 problems w = q + M z up to n = 30, among them those on which Lemke's method needs 2ⁿ pivots, those "
-      "that end in a ray though there is a solution, and "
-      "those on which principal pivoting cycles or divides by zero. Both methods are run with a bound of "
-      "5,000 pivots, and how they end is compared with the "
+      "that end in a ray though there is a solution, and those on which principal pivoting cycles or divides "
+      "by zero. Both methods are run with a bound of 5,000 pivots, and how they end is compared with the "
       "behaviour recorded for exact arithmetic.";
   page.figures = {
       {"lcp_cases", "How each method ends on each problem, in the order of the file, with its pivots."}};

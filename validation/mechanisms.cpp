@@ -195,9 +195,8 @@ Page mechanisms() {
       "`andrews.json`, `smooth_planar.json`";
   page.text =
       "Smooth motion with joints: Andrews' squeezing mechanism, a slider-crank, pendulums of one to ten "
-      "links, and the four-bar windows of the "
-      "IFToMM library, which pass through positions where all rods are in line and their joints depend on "
-      "each other.";
+      "links, and the four-bar windows of the IFToMM library, which pass through positions where all rods "
+      "are in line and their joints depend on each other.";
   page.figures = {
       {"mechanisms",
        "Slider-crank: place of the slider and speed of the crank, event-driven; dots: reference."}};
@@ -213,10 +212,9 @@ Page mechanisms() {
   page.curves = {slider_course(), points};
   page.remarks =
       "Time stepping is of order 2. It does not pass singular positions: at the first one of A02, where rows "
-      "of the joints depend on each other, it stops with an error "
-      "that names the island. Event-driven, rounding is magnified at each passage, but the motion stays on "
-      "its branch. The chains are chaotic: they are compared up to "
-      "times at which references of two methods still agree.";
+      "of the joints depend on each other, it stops with an error that names the island. Event-driven, "
+      "rounding is magnified at each passage, but the motion stays on its branch. The chains are chaotic: "
+      "they are compared up to times at which references of two methods still agree.";
   return page;
 }
 

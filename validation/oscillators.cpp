@@ -181,8 +181,8 @@ Page impact_oscillator() {
   page.source = "exact piecewise solution, roots to 40 digits, `contacts_planar.json`";
   page.text =
       "x″ + x = F cos(ω t) with a rigid stop: three runs of six to twelve impacts, of which one comes near "
-      "to grazing, and the force at "
-      "which the steady motion grazes the stop. Impacts are up to 160 s from the start.";
+      "to grazing, and the force at which the steady motion grazes the stop. Impacts are up to 160 s from "
+      "the start.";
   page.figures = {
       {"impact_oscillator", "The run *impacting*: event-driven; dots: impacts of the reference."}};
   const Json runs = reference("contacts_planar.json", "impact_oscillator", "runs");
@@ -208,8 +208,7 @@ Page vibrating_table() {
   page.source = "Holmes, J. Sound Vib. 84 (1982) 173; exact map, `contacts_planar.json`";
   page.text =
       "A ball bounces on a table y = A sin(ω t), Γ = A ω²/g. Its orbit with one bounce in n periods of the "
-      "table is known in closed form, "
-      "and so is the Γ at which it loses its stability by period doubling.";
+      "table is known in closed form, and so is the Γ at which it loses its stability by period doubling.";
   page.figures = {{"vibrating_table",
                    "The orbit with one bounce per period, e = 0.8, Γ = 0.6, ω = 50 rad/s; event-driven."}};
   const Json data = reference("contacts_planar.json", "vibrating_table");
@@ -219,8 +218,7 @@ Page vibrating_table() {
   page.curves = {table_course(data.at("example"))};
   page.remarks =
       "The border of stability is found by asking whether an error of 1e-6 shrinks from the 40th to the 60th "
-      "flight; near the border "
-      "it shrinks slowly, and terms of second order shift the answer a little.";
+      "flight; near the border it shrinks slowly, and terms of second order shift the answer a little.";
   return page;
 }
 

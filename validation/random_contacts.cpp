@@ -162,8 +162,8 @@ Page random_contacts() {
   page.source = "enumeration of open, stick, slip+ and slip−, `open_variants.json`";
   page.text =
       "Forty impacts of one contact and twenty of two contacts of one body, with random masses, places, "
-      "speeds and coefficients: solved by each "
-      "solver that is made for them, and the single ones in event-driven runs too.";
+      "speeds and coefficients: solved by each solver that is made for them, and the single ones in "
+      "event-driven runs too.";
   page.figures = {{"random_contacts",
                    "Certificates of all answers, by solver; the dashed line is the limit below which an "
                    "answer is taken at once."}};

@@ -54,8 +54,7 @@ std::string overview_text(const std::vector<Page>& pages) {
   std::ostringstream out;
   out << "# Validation\n\n"
          "Every problem with a known answer that the project has, in every mode that applies. The files of "
-         "this "
-         "folder are written by `scripts/validate.sh`, which builds and runs the programs of "
+         "this folder are written by `scripts/validate.sh`, which builds and runs the programs of "
          "[validation/](../../validation) and draws the pictures; nothing in them is typed in but the "
          "references, whose sources are named ([tests/reference](../../tests/reference/README.md)). A test "
          "computes the rows again and compares them with the table below.\n\n"
@@ -64,8 +63,11 @@ std::string overview_text(const std::vector<Page>& pages) {
          "fitted to several steps; across impacts in the mean over many steps, since an impact is noticed up "
          "to one step late and single errors scatter. *CPU s* is the time of all the runs behind the row on "
          "the machine that made this report: it is not compared. Rows of the event-driven mode with errors "
-         "of "
-         "1e-12 and less show rounding.\n\n"
+         "of 1e-12 and less show rounding.\n\n"
+         "## Problems\n\n";
+  for (const Page& page : pages)
+    out << "- [" << page.title << "](" << page.name << ".md): " << page.source << "\n";
+  out << "\n## Results\n\n"
          "| problem | source | "
       << row_head << "|---|---|" << row_line;
   for (const Page& page : pages) {

@@ -69,11 +69,9 @@ Page rocking_block() {
   page.source = "Housner, Bull. Seism. Soc. Am. 53 (1963) 403; exact quadratures, `contacts_planar.json`";
   page.text =
       "A uniform rectangle is let go tilted about a corner, falls on its base with e_n = e_t = 0 and enough "
-      "friction (μ = 2), and goes "
-      "on over the other corner with 1 − (3/2) sin²α of its spin (α: angle of its diagonal to its height). "
-      "Two blocks, four "
-      "tilts each; quarter period, spins before and after the first impact, and the next tilt are known "
-      "exactly.";
+      "friction (μ = 2), and goes on over the other corner with 1 − (3/2) sin²α of its spin (α: angle of its "
+      "diagonal to its height). Two blocks, four tilts each; quarter period, spins before and after the "
+      "first impact, and the next tilt are known exactly.";
   page.figures = {{"rocking_block",
                    "Tilt of the block of 0.4 m x 1.6 m, let go at 0.1 rad: line, event-driven; dashed, time "
                    "stepping with h = 2 ms."}};
@@ -114,8 +112,7 @@ Page rocking_block() {
   page.curves = {tilt_of("rocking_events", tight()), tilt_of("rocking_stepping", TimeStepping{.step = 2e-3})};
   page.remarks =
       "The largest tilt is looked for every millisecond: event-driven, that is the error of its row. In time "
-      "stepping the "
-      "block falls below its base by up to a step before the impact is noticed.";
+      "stepping the block falls below its base by up to a step before the impact is noticed.";
   return page;
 }
 

@@ -129,10 +129,9 @@ Page rolling() {
   page.title = "Sliding and rolling";
   page.source = "closed forms, `impacts_planar.json`, `open_variants.json`";
   page.text =
-      "Rings, discs and spheres of several inertias on inclines from rest (16 cases: they roll where "
-      "μ ≥ tan φ/(1 + m r²/I)), thrown along a level floor until sliding turns into rolling (8 cases), and "
-      "dropped with "
-      "a horizontal speed so that they bounce, slide and roll (3 cases). e_t = 0.";
+      "Rings, discs and spheres of several inertias on inclines from rest (16 cases: they roll where μ ≥ tan "
+      "φ/(1 + m r²/I)), thrown along a level floor until sliding turns into rolling (8 cases), and dropped "
+      "with a horizontal speed so that they bounce, slide and roll (3 cases). e_t = 0.";
   page.figures = {
       {"rolling",
        "A disc thrown at 5 m/s along a floor, μ = 0.3: speed of the centre and of the rim; lines: "
@@ -149,10 +148,9 @@ Page rolling() {
                          .rows = {{of(at, "t_roll"), of(at, "v_roll")}}});
   page.remarks =
       "Constant accelerations are followed exactly by both modes; where sliding ends, only the one step of "
-      "time stepping in which it "
-      "ends is wrong: order 2 in the mean. Discs that bounce are late at every impact, and so is their final "
-      "speed reached; that speed is right all the same, "
-      "since it depends on the sum of the impulses only.";
+      "time stepping in which it ends is wrong: order 2 in the mean. Discs that bounce are late at every "
+      "impact, and so is their final speed reached; that speed is right all the same, since it depends on "
+      "the sum of the impulses only.";
   return page;
 }
 

@@ -124,10 +124,9 @@ Page several_bodies() {
   page.source = "enumeration of modes and statics, `contacts_planar.json`";
   page.text =
       "Problems with contacts between bodies, which simulations do not have: as contact problems W P + b by "
-      "themselves. Newton's cradle "
-      "(3 and 5 masses, four e, all contacts at once), ten discs and ten blocks one above the other, and "
-      "three smooth discs between walls: "
-      "impulses of a millisecond of weight, divided by it.";
+      "themselves. Newton's cradle (3 and 5 masses, four e, all contacts at once), ten discs and ten blocks "
+      "one above the other, and three smooth discs between walls: impulses of a millisecond of weight, "
+      "divided by it.";
   page.figures = {{"stacks", "Forces in the stacks by level from below; crosses: statics."}};
   SolverChain chain;
   add_cradle(page, chain);
@@ -135,8 +134,8 @@ Page several_bodies() {
   add_pyramid(page, chain);
   page.remarks =
       "For the cradle the law gives what all contacts do at once, not the passing on of the impact from mass "
-      "to mass: with e = 1 three masses leave "
-      "with −1/3, 2/3, 2/3 of the speed. That is the law's answer, not nature's.";
+      "to mass: with e = 1 three masses leave with −1/3, 2/3, 2/3 of the speed. That is the law's answer, "
+      "not nature's.";
   return page;
 }
 

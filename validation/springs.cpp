@@ -78,9 +78,8 @@ Page springs() {
   page.source = "closed forms; two formulations with two methods, `smooth_planar.json`, `open_variants.json`";
   page.text =
       "A particle on a spring that swings, two masses with spring and dashpot in free fall, a pair that "
-      "turns about its centre at "
-      "constant distance, and four random spring pendulums. Time stepping with both rules for the coupling "
-      "forces.";
+      "turns about its centre at constant distance, and four random spring pendulums. Time stepping with "
+      "both rules for the coupling forces.";
   page.figures = {
       {"spring_pendulum", "Path of the spring pendulum over 10 s, event-driven; dots: reference."}};
   const Json data = reference_data("smooth_planar.json");

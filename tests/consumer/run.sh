@@ -68,7 +68,8 @@ run_program() {
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 
-library_options=(-DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF)
+library_options=(-DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF
+  -DCAROM_BUILD_VALIDATION=OFF)
 
 # Users of a shared copy need none of its private dependencies.
 without_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
