@@ -63,7 +63,8 @@ std::string overview_text(const std::vector<Page>& pages) {
          "fitted to several steps; across impacts in the mean over many steps, since an impact is noticed up "
          "to one step late and single errors scatter. *CPU s* is the time of all the runs behind the row on "
          "the machine that made this report: it is not compared. Rows of the event-driven mode with errors "
-         "of 1e-12 and less show rounding.\n\n"
+         "of 1e-12 and less show rounding. Why errors are large, where they are, is said on the page of the "
+         "problem.\n\n"
          "## Problems\n\n";
   for (const Page& page : pages)
     out << "- [" << page.title << "](" << page.name << ".md): " << page.source << "\n";

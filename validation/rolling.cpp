@@ -148,9 +148,9 @@ Page rolling() {
                          .rows = {{of(at, "t_roll"), of(at, "v_roll")}}});
   page.remarks =
       "Constant accelerations are followed exactly by both modes; where sliding ends, only the one step of "
-      "time stepping in which it ends is wrong: order 2 in the mean. Discs that bounce are late at every "
-      "impact, and so is their final speed reached; that speed is right all the same, since it depends on "
-      "the sum of the impulses only.";
+      "time stepping in which it ends is wrong: order 2 in the mean. Of a disc that bounces each impact is "
+      "noticed up to a step late, which changes the flights that follow; its final speed is right all the "
+      "same, since it depends on the sum of the impulses only.";
   return page;
 }
 
