@@ -83,10 +83,10 @@ extern template class ParticleKind<3>;
 }  // namespace generic
 
 namespace planar {
-using Particle = generic::Particle<2>;
+using Particle = generic::Particle<2>;  ///< generic::Particle in the plane
 }
 namespace spatial {
-using Particle = generic::Particle<3>;
+using Particle = generic::Particle<3>;  ///< generic::Particle in space
 }
 
 }  // namespace carom

@@ -85,7 +85,7 @@ private:
 }  // namespace generic
 
 namespace planar {
-using RigidBody = generic::RigidBody<2>;
+using RigidBody = generic::RigidBody<2>;  ///< generic::RigidBody in the plane
 }
 
 }  // namespace carom

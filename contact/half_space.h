@@ -85,7 +85,7 @@ extern template class HalfSpaceKind<3>;
 
 namespace planar {
 
-using HalfPlane = generic::HalfSpace<2>;
+using HalfPlane = generic::HalfSpace<2>;  ///< generic::HalfSpace in the plane
 
 /// Normal of a plane through which the ground rises with +x at the angle `slope` [rad].
 [[nodiscard]] inline Vec<2> incline(double slope) { return {-std::sin(slope), std::cos(slope)}; }
@@ -93,7 +93,7 @@ using HalfPlane = generic::HalfSpace<2>;
 }  // namespace planar
 
 namespace spatial {
-using HalfSpace = generic::HalfSpace<3>;
+using HalfSpace = generic::HalfSpace<3>;  ///< generic::HalfSpace in space
 }
 
 }  // namespace carom

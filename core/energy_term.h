@@ -40,7 +40,7 @@ inline constexpr std::size_t energy_flow_count = 14;
 
 /// Name of a term, as used in tables and files: "kinetic", "impact_normal", ...
 [[nodiscard]] CAROM_API std::string_view to_string(StoredEnergy term);
-[[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);
+[[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);  ///< likewise
 
 /// True for the flows that are counted as gains.
 [[nodiscard]] constexpr bool is_gain(EnergyFlow flow) {

@@ -3,6 +3,9 @@
 /// \file
 /// Visibility of the library's symbols: hidden unless marked CAROM_API.
 
+/// \def CAROM_API
+/// Marks what can be linked to from outside.
+
 #if defined(CAROM_STATIC)
 #define CAROM_API
 #elif defined(_WIN32)

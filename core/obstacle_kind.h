@@ -56,7 +56,7 @@ public:
 
   /// Distance of a point from an obstacle at rest. \param point 2 or 3 numbers [m]
   [[nodiscard]] virtual Gap gap(Index slot, const double* point) const = 0;
-  /// Distance of a point from a moving obstacle. \param motion what place() said
+  /// Distance of a point from a moving obstacle; the motion is what place() said.
   [[nodiscard]] virtual Gap moved_gap(Index slot, const ObstacleMotion& /*motion*/,
                                       const double* point) const {
     return gap(slot, point);

@@ -28,26 +28,31 @@ enum class Role : std::uint8_t {
 /// Interface and identity that belong to a role.
 template <Role R>
 struct RoleTraits;
+/// Of bodies.
 template <>
 struct RoleTraits<Role::body> {
   using Interface = BodyKind;
   using Identity = BodyId;
 };
+/// Of couplings and loads.
 template <>
 struct RoleTraits<Role::force> {
   using Interface = ForceKind;
   using Identity = ElementId;
 };
+/// Of joints.
 template <>
 struct RoleTraits<Role::joint> {
   using Interface = JointKind;
   using Identity = JointId;
 };
+/// Of shapes.
 template <>
 struct RoleTraits<Role::shape> {
   using Interface = ShapeKind;
   using Identity = ShapeId;
 };
+/// Of obstacles.
 template <>
 struct RoleTraits<Role::obstacle> {
   using Interface = ObstacleKind;

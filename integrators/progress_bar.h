@@ -15,7 +15,8 @@ class CAROM_API ProgressBar {
 public:
   using Clock = std::chrono::steady_clock;
 
-  /// \param out where to draw; \param from \param to simulated times the run spans [s]
+  /// \param out where to draw
+  /// \param from, to simulated times the run spans [s]
   ProgressBar(std::ostream& out, double from, double to, Clock::time_point now = Clock::now());
   /// Wipes the bar.
   ~ProgressBar();

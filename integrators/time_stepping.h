@@ -35,7 +35,7 @@ enum class Iteration : std::uint8_t {
 
 /// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit".
 [[nodiscard]] CAROM_API std::string_view to_string(ForceRule rule);
-[[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);
+[[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);  ///< likewise
 
 /// Steps of varying length, by the difference between one step and two halves of it, of which the halves are
 /// kept. An impact is no part of it: where one step and the halves meet different contacts, or contacts in

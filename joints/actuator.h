@@ -107,7 +107,7 @@ struct LinearActuator {
 
 namespace planar {
 
-using LinearActuator = generic::LinearActuator<2>;
+using LinearActuator = generic::LinearActuator<2>;  ///< generic::LinearActuator in the plane
 
 /// Rotary actuator between two rigid bodies, or one and the ground: the torque m(t, a, da/dt) on `to`, the
 /// opposite on `from`, with a the angle of `to` relative to `from`, turns counted. Its work is external work.
@@ -164,7 +164,7 @@ struct RotaryActuator {
 }  // namespace planar
 
 namespace spatial {
-using LinearActuator = generic::LinearActuator<3>;
+using LinearActuator = generic::LinearActuator<3>;  ///< generic::LinearActuator in space
 }
 
 }  // namespace carom

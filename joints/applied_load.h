@@ -48,7 +48,7 @@ struct AppliedForce {
 
 namespace planar {
 
-using AppliedForce = generic::AppliedForce<2>;
+using AppliedForce = generic::AppliedForce<2>;  ///< generic::AppliedForce in the plane
 
 /// A torque on a rigid body, a given function of time. Its work is external work.
 struct AppliedTorque {
@@ -81,7 +81,7 @@ struct AppliedTorque {
 }  // namespace planar
 
 namespace spatial {
-using AppliedForce = generic::AppliedForce<3>;
+using AppliedForce = generic::AppliedForce<3>;  ///< generic::AppliedForce in space
 }
 
 }  // namespace carom

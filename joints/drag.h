@@ -57,10 +57,10 @@ struct Drag {
 }  // namespace generic
 
 namespace planar {
-using Drag = generic::Drag<2>;
+using Drag = generic::Drag<2>;  ///< generic::Drag in the plane
 }
 namespace spatial {
-using Drag = generic::Drag<3>;
+using Drag = generic::Drag<3>;  ///< generic::Drag in space
 }
 
 }  // namespace carom

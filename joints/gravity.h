@@ -73,10 +73,10 @@ extern template class GravityKind<3>;
 }  // namespace generic
 
 namespace planar {
-using Gravity = generic::Gravity<2>;
+using Gravity = generic::Gravity<2>;  ///< generic::Gravity in the plane
 }
 namespace spatial {
-using Gravity = generic::Gravity<3>;
+using Gravity = generic::Gravity<3>;  ///< generic::Gravity in space
 }
 
 }  // namespace carom

@@ -113,10 +113,10 @@ private:
 }  // namespace generic
 
 namespace planar {
-using MaxwellElement = generic::MaxwellElement<2>;
+using MaxwellElement = generic::MaxwellElement<2>;  ///< generic::MaxwellElement in the plane
 }
 namespace spatial {
-using MaxwellElement = generic::MaxwellElement<3>;
+using MaxwellElement = generic::MaxwellElement<3>;  ///< generic::MaxwellElement in space
 }
 
 }  // namespace carom

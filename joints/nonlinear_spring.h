@@ -154,10 +154,10 @@ private:
 }  // namespace generic
 
 namespace planar {
-using NonlinearSpring = generic::NonlinearSpring<2>;
+using NonlinearSpring = generic::NonlinearSpring<2>;  ///< generic::NonlinearSpring in the plane
 }
 namespace spatial {
-using NonlinearSpring = generic::NonlinearSpring<3>;
+using NonlinearSpring = generic::NonlinearSpring<3>;  ///< generic::NonlinearSpring in space
 }
 
 }  // namespace carom

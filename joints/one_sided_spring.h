@@ -124,12 +124,12 @@ using Bumper = OneSidedSpring<D, false>;
 }  // namespace generic
 
 namespace planar {
-using Cable = generic::Cable<2>;
-using Bumper = generic::Bumper<2>;
+using Cable = generic::Cable<2>;    ///< generic::Cable in the plane
+using Bumper = generic::Bumper<2>;  ///< generic::Bumper in the plane
 }  // namespace planar
 namespace spatial {
-using Cable = generic::Cable<3>;
-using Bumper = generic::Bumper<3>;
+using Cable = generic::Cable<3>;    ///< generic::Cable in space
+using Bumper = generic::Bumper<3>;  ///< generic::Bumper in space
 }  // namespace spatial
 
 }  // namespace carom

@@ -104,10 +104,10 @@ extern template class SpringDamperKind<3>;
 }  // namespace generic
 
 namespace planar {
-using SpringDamper = generic::SpringDamper<2>;
+using SpringDamper = generic::SpringDamper<2>;  ///< generic::SpringDamper in the plane
 }
 namespace spatial {
-using SpringDamper = generic::SpringDamper<3>;
+using SpringDamper = generic::SpringDamper<3>;  ///< generic::SpringDamper in space
 }
 
 }  // namespace carom

@@ -45,6 +45,7 @@ private:
   Check check_;
 };
 
+/// A matcher of GoogleTest made of a check.
 template <class Check>
 [[nodiscard]] auto matcher(std::string demand, Check check) {
   return ::testing::MakePolymorphicMatcher(VerdictMatcher<Check>(std::move(demand), std::move(check)));
