@@ -9,6 +9,7 @@ packages=(
   libeigen3-dev libspdlog-dev libsundials-dev
   libgtest-dev libgmock-dev librapidcheck-dev nlohmann-json3-dev libbenchmark-dev libtbb-dev
   python3 python3-matplotlib
+  dpkg-dev file # what cpack makes packages with
 )
 for argument in "$@"; do
   case "$argument" in

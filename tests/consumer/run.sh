@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds and runs a user's program against carom in four ways: an installed shared copy, the same from a
-# program with wider vector instructions, a subdirectory, and an installed static copy. And the energy tests of
-# docs/energy_tests.md, from an empty folder, against the installed shared copy.
+# Builds and runs a user's program against carom in four ways: a shared copy out of the Debian package, the same
+# from a program with wider vector instructions, a subdirectory, and an installed static copy. And the energy tests
+# of docs/energy_tests.md, from an empty folder, against the shared copy.
 #   tests/consumer/run.sh <work dir> [<build dir of a shared carom>]
 set -euo pipefail
 
@@ -46,10 +46,27 @@ configure_and_build() {
 install_copy() {
   cmake --install "$1" --prefix "$2.first" >"$2.log" || fail "cannot install $1"
   mv "$2.first" "$2"
-  if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector|nlohmann)' "$2/include"; then
+  check_copy "$2"
+}
+
+# unpack_package <build dir> <folder>: makes the Debian package and unpacks it; the copy is then in <folder>/usr.
+unpack_package() {
+  local package
+  cpack -G DEB --config "$1/CPackConfig.cmake" -B "$2.packages" >"$2.log" 2>&1 || fail "no package, see $2.log"
+  package=$(echo "$2.packages"/*.deb)
+  dpkg-deb -x "$package" "$2" || fail "cannot unpack $package"
+  [[ $(dpkg-deb --field "$package" Depends) == *libeigen3-dev*libsundials* ]] ||
+    fail "$package does not say what it needs: $(dpkg-deb --field "$package" Depends)"
+  cmp -s "$source_dir/LICENSE" "$2/usr/share/doc/libcarom-dev/copyright" || fail "$package has no licence"
+  check_copy "$2/usr"
+}
+
+# check_copy <prefix>
+check_copy() {
+  if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector|nlohmann)' "$1/include"; then
     fail "installed headers show a private dependency"
   fi
-  if grep -rqF -e "$source_dir/" -e "$2.first" "$2/include" "$2"/lib*/cmake "$2"/lib/*/cmake 2>/dev/null; then
+  if grep -rqF -e "$source_dir/" -e "$1.first" "$1/include" "$1"/lib*/cmake "$1"/lib/*/cmake 2>/dev/null; then
     fail "the installed copy points back to where it was built"
   fi
 }
@@ -76,23 +93,30 @@ without_json=-DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON
 without_private=(-DCMAKE_DISABLE_FIND_PACKAGE_spdlog=ON -DCMAKE_DISABLE_FIND_PACKAGE_SUNDIALS=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON "$without_json")
 
-echo "consumer: installed shared copy"
+echo "consumer: shared copy of the Debian package"
 if [[ -z $shared_build ]]; then
   shared_build=$work/shared-build
   configure_and_build "$source_dir" "$shared_build" "${library_options[@]}"
 fi
-install_copy "$shared_build" "$work/shared"
+if command -v dpkg-deb >/dev/null; then
+  unpack_package "$shared_build" "$work/package"
+  shared=$work/package/usr
+else
+  echo "consumer: installed instead, this is no Debian"
+  shared=$work/shared
+  install_copy "$shared_build" "$shared"
+fi
 configure_and_build "$here/find_package" "$work/from-shared" \
-  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
+  -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}"
 run "$work/from-shared/consumer" "$work/problem.json"
-run_program "$work/shared"
+run_program "$shared"
 
 echo "consumer: energy tests from an empty folder"
-if [[ -f $work/shared/include/carom/testing/matchers.h ]]; then
+if [[ -f $shared/include/carom/testing/matchers.h ]]; then
   tests=$work/energy_tests
   cp -r "$here/energy_tests" "$tests"
   rm -f "$tests"/*.csv
-  configure_and_build "$tests" "$tests/build" -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}"
+  configure_and_build "$tests" "$tests/build" -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}"
   # expect <passed> <failed> <log>: what ctest counts.
   expect() {
     local counts
@@ -121,20 +145,20 @@ else
 fi
 # Without GoogleTest there is carom still, and the kit says what it lacks.
 configure "$here/find_package" "$work/without-gtest" \
-  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
+  -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}" -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
 
 echo "consumer: the program of the README"
 sed -n '/^```cpp$/,/^```$/{/^```/!p}' "$source_dir/README.md" >"$work/readme.cpp"
 grep -q 'int main' "$work/readme.cpp" || fail "README.md shows no program"
 configure_and_build "$here/find_package" "$work/readme" \
-  -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCONSUMER_SOURCE="$work/readme.cpp"
+  -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}" -DCONSUMER_SOURCE="$work/readme.cpp"
 run "$work/readme/consumer" >"$work/readme.out"
 grep -q '^  total ' "$work/readme.out" || fail "the README's program prints no energies"
 
-echo "consumer: installed shared copy, program compiled with -mavx2"
+echo "consumer: shared copy, program compiled with -mavx2"
 if grep -qw avx2 /proc/cpuinfo; then
   configure_and_build "$here/find_package" "$work/from-shared-avx2" \
-    -DCMAKE_PREFIX_PATH="$work/shared" "${without_private[@]}" -DCMAKE_CXX_FLAGS="-mavx2 -mfma"
+    -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}" -DCMAKE_CXX_FLAGS="-mavx2 -mfma"
   run "$work/from-shared-avx2/consumer"
 else
   echo "consumer: left out, this machine has no AVX2"
