@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what carom is built with, on Debian and Ubuntu. Says nothing when all of it is there.
 #   scripts/setup.sh            compiler, libraries, plotting
+#   scripts/setup.sh --docs     also what scripts/docs.sh needs
 #   scripts/setup.sh --checks   also what .ci/run checks with
 set -euo pipefail
 
@@ -13,9 +14,10 @@ packages=(
 )
 for argument in "$@"; do
   case "$argument" in
-    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev git) ;;
+    --docs) packages+=(doxygen) ;;
+    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev git doxygen) ;;
     *)
-      echo "usage: $0 [--checks]" >&2
+      echo "usage: $0 [--docs | --checks]" >&2
       exit 2
       ;;
   esac

@@ -1,0 +1,17 @@
+# The target docs: a site of the pages of docs/ and the reference of the public headers, in <build>/html.
+find_program(CAROM_DOXYGEN doxygen)
+mark_as_advanced(CAROM_DOXYGEN)
+if(NOT CAROM_DOXYGEN)
+  return()
+endif()
+
+set(carom_docs_headers ${public_headers} ${kit_headers})
+list(JOIN carom_docs_headers " " carom_docs_headers)
+configure_file("${PROJECT_SOURCE_DIR}/docs/Doxyfile.in" "${PROJECT_BINARY_DIR}/Doxyfile" @ONLY)
+add_custom_target(
+  docs
+  COMMAND "${CMAKE_COMMAND}" -E rm -rf "${PROJECT_BINARY_DIR}/html"
+  COMMAND "${CAROM_DOXYGEN}" "${PROJECT_BINARY_DIR}/Doxyfile"
+  WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  COMMENT "Writing ${PROJECT_BINARY_DIR}/html"
+  VERBATIM)

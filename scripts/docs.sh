@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Writes the site of the pages and the reference into build/docs/html. Fails if Doxygen warns, or if a link of the
+# site leads nowhere.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+build=build/docs
+
+scripts/setup.sh --docs
+cmake -G Ninja -S . -B "$build" -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF \
+  >"$build.log" 2>&1 || {
+  cat "$build.log" >&2
+  exit 1
+}
+cmake --build "$build" --target docs >"$build.log" 2>&1 || {
+  cat "$build.log" >&2
+  exit 1
+}
+
+status=0
+# A docstring may speak for the declarations that follow it closely, or for the members of its struct.
+if grep -vE 'warning: Member .* of (class|struct) .* is not documented\.$' "$build/warnings.txt" >&2; then
+  echo "docs: the warnings above" >&2
+  status=1
+fi
+python3 scripts/check_site.py "$build/html" || status=1
+echo "site: $build/html/index.html"
+exit $status
