@@ -7,6 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build/docs
 
 scripts/setup.sh --docs
+mkdir -p build
 cmake -G Ninja -S . -B "$build" -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_EXAMPLES=OFF -DCAROM_BUILD_BENCHMARKS=OFF \
   >"$build.log" 2>&1 || {
   cat "$build.log" >&2

@@ -323,6 +323,37 @@ TEST(ErrorsPage, CommonFailuresSayWhatItSays) {
   }
 }
 
+TEST(ErrorsPage, OwnExceptionsComeOutUnchanged) {
+  struct Mine {};
+  for (const Mode& mode : {Mode(TimeStepping{}), Mode(EventDriven{})}) {
+    System system = ball_over_floor(1.0, {});
+    system.remove(system.obstacle("floor"));
+    const BodyId ball = system.body("ball");
+    bool broken = false;
+    system.add(AppliedForce{.on = ball, .force = [&](double) {
+                              if (broken) throw Mine();
+                              return Vec<2>(0.0, 0.0);
+                            }});
+    Simulation simulation(system, mode);
+    simulation.run_until(0.1);
+    const State before = simulation.state();
+    broken = true;
+    EXPECT_THROW(simulation.run_until(0.5), Mine);
+    EXPECT_EQ(simulation.time(), 0.1);
+    EXPECT_EQ(simulation.state().q, before.q);
+    broken = false;
+    bool watched = true;
+    simulation.observe([&](const Simulation&) {
+      if (watched) throw Mine();
+    });
+    EXPECT_THROW(simulation.step(), Mine);
+    EXPECT_GT(simulation.time(), 0.1);  // the step stays
+    watched = false;
+    simulation.run_until(0.5);
+    EXPECT_NEAR(simulation.state().position(ball)[1], 1.0 - 0.5 * 9.81 * 0.25, 1e-9);
+  }
+}
+
 TEST(ErrorsPage, MessagesAreAsShown) {
   const std::vector<std::string> shown = carom_test::code_blocks("docs/errors.md", "text");
   ASSERT_EQ(shown.size(), 2U);

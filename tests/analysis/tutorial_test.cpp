@@ -163,9 +163,9 @@ void compare_the_modes(std::ostream& out) {
 }
 
 bool record_and_go_on(const std::string& folder) {
-  const TimeStepping mode{.step = 1e-4};
+  const TimeStepping mode{.step = 1e-3};
   Simulation simulation(slider_crank(), mode);
-  const CsvRecorder recorder(simulation, folder + "/run.csv", {.every_steps = 100});
+  const CsvRecorder recorder(simulation, folder + "/run.csv", {.every_steps = 10});
   simulation.run_until(0.5);
   simulation.save(folder + "/half.checkpoint");
   simulation.run_until(1.0);
