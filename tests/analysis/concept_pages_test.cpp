@@ -139,6 +139,18 @@ TEST(ConceptPages, LinksLeadToFilesOfTheProject) {
   EXPECT_GT(count, 50U);
 }
 
+TEST(ConceptPages, OutputsAreComparedNumberByNumber) {
+  using carom_test::same_line;
+  EXPECT_TRUE(same_line("  total   2.9441174 J", "total 2.9441175 J"));
+  EXPECT_TRUE(same_line("0.001551 m,", "0.001552 m,"));
+  EXPECT_FALSE(same_line("0.001551 m,", "0.001553 m,"));
+  EXPECT_TRUE(same_line("residual 3.6e-14 J", "residual -1e-13 J"));
+  EXPECT_FALSE(same_line("2.9441 J", "2.9451 J"));
+  EXPECT_FALSE(same_line("freedoms: 1", "freedoms: 2"));
+  EXPECT_FALSE(same_line("2 m", "2 m/s"));
+  EXPECT_FALSE(same_line("2 m", "2 m more"));
+}
+
 // docs/modelling.md
 
 TEST(ModellingPage, TheLawIsThatOfTheMaterials) {
