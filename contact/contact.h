@@ -18,9 +18,9 @@ struct FeatureKey {
   /// What the feature belongs to.
   enum class Owner : std::uint8_t { body, shape, obstacle, joint };
 
-  Owner owner = Owner::body;
-  Index serial = none;  ///< serial number of the owner
-  Index feature = 0;    ///< number of the feature within its owner
+  Owner owner = Owner::body;  ///< what it belongs to
+  Index serial = none;        ///< serial number of the owner
+  Index feature = 0;          ///< number of the feature within its owner
   friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
 };
 
@@ -42,7 +42,7 @@ struct Contact {
   static constexpr int max_rows = 3;
   static constexpr int max_columns = 6;
 
-  ContactKey key;
+  ContactKey key;         ///< identity
   Index body = none;      ///< in the order of assembly
   Index v = 0;            ///< first velocity of the body
   int columns = 0;        ///< velocities of the body

@@ -39,6 +39,7 @@ struct Attachment {
   Index rotation = none;          ///< its rotation, `none` if the end is at its centre
   Vec<D> local = Vec<D>::Zero();  ///< point in the body's frame (fixed frame on the ground) [m]
 
+  /// On the ground, at the origin, or where an end is.
   Attachment() = default;
   Attachment(const End<D>& end, const Layout& layout) : local(end.point) {
     if (end.body == ground) return;

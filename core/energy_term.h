@@ -51,6 +51,7 @@ inline constexpr std::size_t energy_flow_count = 14;
 struct StoredEnergies {
   std::array<double, stored_energy_count> values{};
 
+  /// One of them.
   [[nodiscard]] double& operator[](StoredEnergy term) { return values[static_cast<std::size_t>(term)]; }
   [[nodiscard]] double operator[](StoredEnergy term) const { return values[static_cast<std::size_t>(term)]; }
   /// Sum of all forms.
@@ -74,6 +75,7 @@ struct StoredEnergies {
 struct EnergyFlows {
   std::array<double, energy_flow_count> values{};
 
+  /// One of them.
   [[nodiscard]] double& operator[](EnergyFlow term) { return values[static_cast<std::size_t>(term)]; }
   [[nodiscard]] double operator[](EnergyFlow term) const { return values[static_cast<std::size_t>(term)]; }
 };

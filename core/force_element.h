@@ -112,6 +112,7 @@ class ForceElementKind final : public ForceKind {
 public:
   static constexpr int D = P::dimension;
 
+  /// What a System wants to know of any kind (part.h).
   static constexpr int part_dimension() { return D; }
   static constexpr std::string_view part_label() {
     if constexpr (requires { P::label; }) {

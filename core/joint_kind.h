@@ -34,9 +34,9 @@ struct JointRow {
     std::array<double, static_cast<std::size_t>(max_columns)> jacobian{};
   };
 
-  std::array<Block, static_cast<std::size_t>(max_bodies)> blocks{};
-  int bodies = 0;      ///< blocks in use
-  double gap = 0.0;    ///< g [m, rad]
+  std::array<Block, static_cast<std::size_t>(max_bodies)> blocks{};  ///< of G
+  int bodies = 0;                                                    ///< blocks in use
+  double gap = 0.0;                                                  ///< g [m, rad]
   double rate = 0.0;   ///< dg/dt where nothing moves: of a row that depends on time
   double drift = 0.0;  ///< d2g/dt2 where nothing accelerates
 

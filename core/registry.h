@@ -32,6 +32,7 @@ public:
     Index slot = none;
   };
 
+  /// Copies own their kinds.
   Registry() = default;
   Registry(const Registry& other) : next_serial_(other.next_serial_) {
     entries_.reserve(other.entries_.size());

@@ -60,8 +60,9 @@ public:
   /// tolerances below rounding; also what rates() or jacobian() throw. Then state() is the last good one, and
   /// start() is needed before the next step. ModelError: before start(), or longest not > 0.
   virtual void advance(double longest) = 0;
-  /// Times of the last step [s].
+  /// Time at which the last step began [s].
   [[nodiscard]] virtual double begin() const = 0;
+  /// Time at which the last step ended [s].
   [[nodiscard]] virtual double end() const = 0;
   /// y at the end of the last step. Valid until the next call.
   [[nodiscard]] virtual std::span<const double> state() const = 0;

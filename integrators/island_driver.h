@@ -29,6 +29,7 @@ namespace carom {
 struct CAROM_API DriverWorkspace {
   explicit DriverWorkspace(const Assembly& assembly) : motion(assembly) {}
 
+  /// For one island at a time.
   MotionWorkspace motion;
   SolverChain chain;
   ContactCluster cluster;

@@ -29,7 +29,7 @@ struct Binding {
   /// How the distance d between the ends enters.
   enum class Form : std::uint8_t { angles, fixed_axis, axis_of_from, distance };
 
-  Form form = Form::angles;
+  Form form = Form::angles;      ///< how the distance enters
   End<2> from{};                 ///< a body or ground
   End<2> to{};                   ///< a body or ground
   Vec<2> axis = Vec<2>::Zero();  ///< of unit length, in the fixed frame or that of `from`

@@ -29,6 +29,7 @@ public:
   };
   static constexpr Index row_count = P::row_count;
 
+  /// What a System wants to know of any kind (part.h).
   static constexpr int part_dimension() { return 2; }
   static constexpr std::string_view part_label() { return P::label; }
 

@@ -14,6 +14,7 @@ namespace carom {
 
 /// The described start of a body: its coordinates and velocities. For laws that are tried as they enter.
 struct DescribedStart {
+  /// Of one body.
   DescribedStart(const System& system, BodyId body) {
     const Registry<BodyKind>& registry = system.body_kinds();
     const BodyKind& kind = registry.kind_of(body.serial);
@@ -22,7 +23,7 @@ struct DescribedStart {
     kind.initial(registry.place(body.serial).slot, q.data(), v.data());
   }
 
-  std::vector<double> q, v;
+  std::vector<double> q, v;  ///< [m, rad], [m/s, rad/s]
 };
 
 namespace generic {

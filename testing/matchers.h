@@ -30,6 +30,7 @@ class VerdictMatcher {
 public:
   VerdictMatcher(std::string demand, Check check) : demand_(std::move(demand)), check_(std::move(check)) {}
 
+  /// What GoogleTest asks of a matcher.
   template <class T>
   bool MatchAndExplain(const T& value, ::testing::MatchResultListener* listener) const {
     const Verdict verdict = check_(value);

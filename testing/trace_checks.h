@@ -19,7 +19,7 @@ struct Coordinates {
   Coordinates(const Vec<2>& v) : values{v[0], v[1], 0.0} {}   // NOLINT(google-explicit-constructor)
   Coordinates(const Vec<3>& v) : values{v[0], v[1], v[2]} {}  // NOLINT(google-explicit-constructor)
 
-  std::array<double, 3> values;
+  std::array<double, 3> values;  ///< x, y, z
 };
 
 /// Checks throw ModelError for a trace without rows, and for a tolerance that is negative or not finite.
