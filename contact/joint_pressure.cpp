@@ -8,6 +8,7 @@ namespace carom {
 JointPressure::JointPressure(const Assembly& assembly, Index island, const IslandJoints& joints) {
   const JointTable* const table = assembly.layout()->joints();
   if (table == nullptr) return;
+  rows_ = joints.size();
   std::vector<std::size_t> rows(table->places.size(), 0);  // first ones, by serial number
   for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
     const std::size_t row = joints.first_row(joint);
@@ -39,15 +40,21 @@ const JointPressure::Bearing* JointPressure::find(const Contact& contact) const 
   return at == bearings_.end() || at->serial != serial ? nullptr : &*at;
 }
 
-double JointPressure::press(Contact& contact, const JointView& at, const double* multipliers,
-                            double duration) const {
+void JointPressure::take(const double* multipliers, double duration) {
+  multipliers_ = multipliers;
+  duration_ = duration;
+  largest_ = 0.0;
+  for (std::size_t row = 0; row < rows_; ++row) largest_ = std::max(largest_, std::abs(multipliers[row]));
+}
+
+double JointPressure::press(Contact& contact, const JointView& at) const {
   const Bearing* const bearing = find(contact);
   if (bearing == nullptr) return 0.0;
-  const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers + bearing->row);
+  const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers_ + bearing->row);
   const double force = std::hypot(reaction.force[0], reaction.force[1], reaction.force[2]);
-  const double pressed = duration * bearing->bound + bearing->coefficient * force;
-  const double largest = std::max(pressed, contact.pressed);
-  const double change = largest > 0.0 ? std::abs(pressed - contact.pressed) / largest : 0.0;
+  const double pressed = duration_ * bearing->bound + bearing->coefficient * force;
+  const double scale = std::max({pressed, contact.pressed, bearing->coefficient * largest_});
+  const double change = scale > 0.0 ? std::abs(pressed - contact.pressed) / scale : 0.0;
   contact.pressed = pressed;
   return change;
 }

@@ -26,10 +26,13 @@ public:
   [[nodiscard]] bool empty() const { return bearings_.empty(); }
   /// True if that of a contact is.
   [[nodiscard]] bool bears(const Contact& contact) const { return find(contact) != nullptr; }
-  /// Sets `pressed` of friction in a joint. \param multipliers of all rows of the island's joints: forces, or
-  /// impulses over a duration [s] (0: of an impact; 1 for forces). Returns the change against the larger of
-  /// the old and new number; does nothing and returns 0 for what is bound by a constant only.
-  double press(Contact& contact, const JointView& at, const double* multipliers, double duration) const;
+  /// Takes note of the multipliers of all rows of the island's joints: forces, or impulses over a duration
+  /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
+  void take(const double* multipliers, double duration);
+  /// Sets `pressed` of friction in a joint. Returns the change against the number itself, or against that of
+  /// the largest force in the island where it is small; does nothing and returns 0 for what is bound by a
+  /// constant only.
+  double press(Contact& contact, const JointView& at) const;
 
 private:
   struct Bearing {
@@ -41,6 +44,9 @@ private:
   };
   [[nodiscard]] const Bearing* find(const Contact& contact) const;
   std::vector<Bearing> bearings_;  // by serial number
+  std::size_t rows_ = 0;           // of the island
+  const double* multipliers_ = nullptr;
+  double duration_ = 1.0, largest_ = 0.0;  // of multipliers_
 };
 
 }  // namespace carom

@@ -47,9 +47,10 @@ bool IslandMotion::add_pressed_reactions() {
     std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
     if (!closed_.add_reactions(*assembly_, work.acceleration.data())) return false;
     const std::span<const double> multipliers = joint_multipliers();
+    pressure_.take(multipliers.data(), 1.0);
     double change = 0.0;
     for (ClosedContact& contact : closed_.list()) {
-      change = std::max(change, pressure_.press(contact.at, at, multipliers.data(), 1.0));
+      change = std::max(change, pressure_.press(contact.at, at));
     }
     if (settling.take(change)) return true;
   }
@@ -72,11 +73,11 @@ bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, J
     cluster.add_loads(1.0, answer.data());
     joints_.apply_inverse_mass(answer.data());
     joints_.hold(level, answer.data(), work.multipliers.data());
+    pressure_.take(work.multipliers.data(), impact ? 0.0 : 1.0);
     double change = 0.0;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       if (!pressure_.bears(contacts[c])) continue;
-      change =
-          std::max(change, pressure_.press(contacts[c], at, work.multipliers.data(), impact ? 0.0 : 1.0));
+      change = std::max(change, pressure_.press(contacts[c], at));
       cluster.press(c);
     }
     if (settling.take(change)) return true;

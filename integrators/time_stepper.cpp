@@ -152,6 +152,7 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   const bool with_joints = jointed(island);
   double violation = std::numeric_limits<double>::infinity();
   double contraction = 0.0;
+  bool confirming = false;
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
     sweep_all(island, state, companion, step);
@@ -185,8 +186,11 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
       }
       violation = left;
     }
-    if (with_joints && verdict == FixedPointJudge::Verdict::converged &&
-        joints_[island].pressure_change > settled_pressure) {
+    // Bounds of friction that the last sweep has changed are seen by the next one only.
+    const bool changed = with_joints && joints_[island].pressure_change > settled_pressure;
+    if (verdict == FixedPointJudge::Verdict::go_on) confirming = false;
+    if (verdict == FixedPointJudge::Verdict::converged && changed && !confirming) {
+      confirming = true;
       const bool more = judge.sweeps() < options_.max_sweeps;
       verdict = more ? FixedPointJudge::Verdict::go_on : FixedPointJudge::Verdict::failed;
     }

@@ -146,9 +146,10 @@ void TimeStepper::press_rubbing(Index island, double step) {
   work.pressure_change = 0.0;
   if (work.pressure.empty()) return;
   add_contacts_to_joints(island);
+  work.pressure.take(work.total.data(), step);
   const JointView halfway = view_of(middle_, middle_evaluation_);
   for (Contact& contact : contacts_) {
-    const double change = work.pressure.press(contact, halfway, work.total.data(), step);
+    const double change = work.pressure.press(contact, halfway);
     work.pressure_change = std::max(work.pressure_change, change);
   }
 }

@@ -79,6 +79,20 @@ inline Scene random_tree(std::uint64_t seed) {
   return scene;
 }
 
+/// Such a tree with dry friction in all joints that have a coordinate.
+inline Scene rubbing_tree(std::uint64_t seed) {
+  Scene scene = random_tree(seed);
+  carom_test::Random random(seed + 1000);
+  for (const JointId joint : scene.system.joints()) {
+    if (!scene.system.joint_kinds().kind_of(joint.serial).has_coordinate()) continue;
+    scene.system.add(JointFriction{.joint = joint,
+                                   .bound = random.uniform(0.1, 1.0),
+                                   .coefficient = random.below(2) == 0 ? 0.0 : random.uniform(0.0, 0.02),
+                                   .static_factor = random.below(2) == 0 ? 1.0 : random.uniform(1.0, 1.5)});
+  }
+  return scene;
+}
+
 /// A closed chain of uniform rods between two pins of the ground: four- or five-bar, with a crank that moves
 /// at first (five-bar: and its other crank too); gravity. Seldom far from being closed wrongly: lengths are
 /// those of the drawing.

@@ -2,6 +2,7 @@
 // converges to them with order two.
 
 #include "tests/integrators/random_mechanisms.h"
+#include "tests/energy/ledger_check.h"
 #include "tests/integrators/joint_run.h"
 
 #include <carom/carom.h>
@@ -87,12 +88,53 @@ void loops(std::uint64_t first, std::uint64_t last) {
     both_modes(random_loop(seed), "loop " + std::to_string(seed));
 }
 
+/// Friction turns round somewhere within a step: errors are of order 1 in the mean over many steps.
+void rubbing(std::uint64_t first, std::uint64_t last) {
+  constexpr double compared = 0.3, coarse = 4e-4, fine_step = 5e-5;
+  double logarithm = 0.0;
+  int counted = 0;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    SCOPED_TRACE("rubbing tree " + std::to_string(seed));
+    try {
+      const Scene scene = rubbing_tree(seed);
+      WatchedRun run(scene, exact_run);
+      run.simulation.run_until(compared);
+      const State exact = run.simulation.state();
+      run.simulation.run_until(1.0);
+      const auto mean_error = [&](double step) {
+        double sum = 0.0;
+        for (const double factor : {1.0, 0.93, 0.87, 0.81}) {
+          Simulation stepping(scene.system, TimeStepping{.step = factor * step});
+          JointCheck check(stepping);
+          stepping.run_until(compared);
+          EXPECT_LE(check.gap, gap_limit);
+          EXPECT_LE(check.speed, speed_limit);
+          EXPECT_TRUE(carom_test::ledger_closes(stepping.energy()));
+          sum += difference(stepping.state(), exact);
+        }
+        return sum;
+      };
+      const double error = mean_error(coarse), finer = mean_error(fine_step);
+      if (!(finer > 1e-8)) continue;  // all stuck: the exact run's error is left
+      logarithm += std::log(error / finer);
+      ++counted;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+  const double order = logarithm / counted / std::log(coarse / fine_step);
+  carom_test::note("rubbing trees, mean order", order);
+  EXPECT_GT(order, 0.9);
+}
+
 TEST(RandomMechanisms, Trees) { trees(0, 10); }
 TEST(RandomMechanisms, Loops) { loops(0, 8); }
+TEST(RandomMechanisms, TreesThatRub) { rubbing(0, 3); }
 
 // A share of the seeds; all of them with CAROM_ALL_SEEDS=1, which takes some minutes.
 bool all_seeds() { return std::getenv("CAROM_ALL_SEEDS") != nullptr; }
 TEST(RandomMechanismsLong, Trees) { trees(10, all_seeds() ? 500 : 60); }
+TEST(RandomMechanismsLong, TreesThatRub) { rubbing(3, all_seeds() ? 200 : 15); }
 TEST(RandomMechanismsLong, Loops) { loops(8, all_seeds() ? 200 : 24); }
 
 }  // namespace
