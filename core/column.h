@@ -14,6 +14,8 @@ namespace carom {
 /// Values by slot. `T` is a number or a struct of numbers without padding; values count as equal if all their
 /// bits are, so that what comes out is what went in.
 template <class T>
+// The compiler names variables of the loops by which it copies arrays after this line.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
 class Column {
 public:
   /// Number of values.

@@ -33,7 +33,6 @@ struct Wheel {
   System system;
   BodyId wheel;
   JointId pin, friction;
-  static constexpr double inertia = 1.0;
   explicit Wheel(double spin, JointFriction law) {
     wheel = system.add(RigidBody{.mass = disc(2.0, 1.0), .spin = spin}, "wheel");
     pin = system.add(Revolute{.from = ground, .to = wheel}, "pin");

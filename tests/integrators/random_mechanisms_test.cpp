@@ -28,7 +28,7 @@ double difference(const State& a, const State& b) {
   return largest;
 }
 
-constexpr EventDriven exact_run{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-10};
+const EventDriven exact_run{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-10};
 
 /// How long runs may be compared: up to the time at which a change of 1e-12 at the start has grown to 1e-6,
 /// at most 1 s. Behind it a run tells no more than its rounding.
