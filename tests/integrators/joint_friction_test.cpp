@@ -198,7 +198,6 @@ TEST(JointFriction, BreaksAwayAtItsStaticBound) {
   EXPECT_NEAR(event.simulation.reaction(wheel.friction).moment, -bound, run_limit);
 
   // Away up to a step late, at which the torque is above friction by 0.3 N m.
-  std::vector<double> errors;
   for (const double step : {1e-3, 1e-4}) {
     Simulation stepping(wheel.system, TimeStepping{.step = step});
     stepping.run_until(later);
