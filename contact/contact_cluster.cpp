@@ -140,11 +140,11 @@ void ContactCluster::couple(IslandJoints& joints) {
   couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
 }
 
-void ContactCluster::apply_coupled(double* velocity) const {
+void ContactCluster::apply_coupled(double* velocity, double scale) const {
   for (std::size_t row = 0; row < impulse_.size(); ++row) {
     const double* const response = coupled_.data() + row * coupled_range_.size();
     for (Index i = 0; i < coupled_range_.size(); ++i) {
-      velocity[coupled_range_.begin + i] += response[i] * impulse_[row];
+      velocity[coupled_range_.begin + i] += scale * response[i] * impulse_[row];
     }
   }
 }
@@ -185,6 +185,16 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
     for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       b[row] = contacts_[c].velocity_after(i, velocity_free) + restitution_[row] * before_[row];
+    }
+  }
+}
+
+void ContactCluster::set_velocity(const double* velocity) {
+  set_free_velocity(velocity);
+  for (int row = 0; row < problem_.rows(); ++row) {
+    for (int column = 0; column < problem_.rows(); ++column) {
+      problem_.vector()[static_cast<std::size_t>(row)] -=
+          problem_.w(row, column) * impulse_[static_cast<std::size_t>(column)];
     }
   }
 }

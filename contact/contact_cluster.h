@@ -25,8 +25,9 @@ class CAROM_API ContactCluster {
 public:
   /// Takes contacts that share bodies, and the velocities v^- before the step or impact (all velocities).
   void build(const Assembly& assembly, std::span<const Contact> contacts, const double* velocity_before);
-  /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is symmetric and positive
-  /// definite over the velocities `v`, `solve` overwrites numbers over them by A^-1 times them.
+  /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is positive definite over the
+  /// velocities `v`, `solve` overwrites numbers over them by A^-1 times them. Of a matrix that is only nearly
+  /// symmetric W takes one half; that is good enough for set_velocity().
   void couple(Range v, const std::function<void(double*)>& solve);
   /// Likewise where joints bind the bodies, which must have been located.
   void couple(IslandJoints& joints);
@@ -37,6 +38,8 @@ public:
   /// Makes b from the velocities that the step would end with if no contact acted, against those of the
   /// obstacles then (Contact::velocity_after).
   void set_free_velocity(const double* velocity_free);
+  /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
+  void set_velocity(const double* velocity);
   /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
   /// again since build() keeps to the modes of the answer before as long as they are one of them: an
   /// iteration around it could not settle if it jumped between them.
@@ -47,8 +50,8 @@ public:
   void forget_impulses() { std::fill(impulse_.begin(), impulse_.end(), 0.0); }
   /// Adds M^-1 H^T P to the velocities.
   void apply(double* velocity) const;
-  /// Adds A^-1 H^T P to the velocities, A as given to couple().
-  void apply_coupled(double* velocity) const;
+  /// Adds `scale` A^-1 H^T P to the velocities, A as given to couple().
+  void apply_coupled(double* velocity, double scale = 1.0) const;
   /// Adds `scale` H^T P to the loads.
   void add_loads(double scale, double* load) const;
 

@@ -6,6 +6,7 @@
 #include <carom/core/ids.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,6 @@ namespace carom {
 /// Values by slot. `T` is a number or a struct of numbers without padding; values count as equal if all their
 /// bits are, so that what comes out is what went in.
 template <class T>
-// The compiler names variables of the loops by which it copies arrays after this line.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
 class Column {
 public:
   /// Number of values.
@@ -26,7 +25,7 @@ public:
   [[nodiscard]] const T& operator[](Index slot) const { return uniform() ? common_[0] : values_[slot]; }
   /// Values of neighbouring slots for loops that take them two by two: data()[slot * stride()] and the one
   /// behind it. Uniform columns hold two copies and have stride 0.
-  [[nodiscard]] const T* data() const { return uniform() ? common_ : values_.data(); }
+  [[nodiscard]] const T* data() const { return uniform() ? common_.data() : values_.data(); }
   /// See data().
   [[nodiscard]] Index stride() const { return uniform() ? 0 : 1; }
 
@@ -52,7 +51,7 @@ private:
   }
 
   std::vector<T> values_;  // empty while all values are equal
-  T common_[2]{};
+  std::array<T, 2> common_{};
   Index size_ = 0;
 };
 

@@ -159,8 +159,12 @@ void IslandJoints::place_gaps(const JointView& at) {
 }
 
 void IslandJoints::locate(const JointView& at) {
-  if (empty()) return;
   place(at);
+  factor();
+}
+
+void IslandJoints::factor() {
+  if (empty()) return;
   std::vector<double>& values = factors_.values();
   for (const Product& product : pattern_->products) {
     const double* const a = jacobian_.data() + product.number;

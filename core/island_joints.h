@@ -46,8 +46,10 @@ public:
   void hold_still(Range velocities);
   /// Brings the rows to a configuration and factorises.
   void locate(const JointView& at);
-  /// Brings the rows alone to a configuration: until locate(), the factors are those of another one.
+  /// Brings the rows alone to a configuration: until factor(), the factors are those of another one.
   void place(const JointView& at);
+  /// Factorises with the rows as they are.
+  void factor();
   /// Brings gap() alone to a configuration.
   void place_gaps(const JointView& at);
 

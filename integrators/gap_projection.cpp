@@ -19,6 +19,13 @@ double rounding_depth(const Assembly& assembly, Index island, const State& state
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
+double off(IslandJoints& joints, const State& state, const Evaluation& evaluation) {
+  joints.place_gaps({state.view(), evaluation.rotation.data()});
+  double worst = 0.0;
+  for (std::size_t row = 0; row < joints.size(); ++row) worst = std::max(worst, std::abs(joints.gap(row)));
+  return worst;
+}
+
 }  // namespace
 
 /// Contacts near enough to matter, of those that took part (both lists are in the finder's order).
@@ -80,7 +87,9 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
                                     [&](const Contact& at) { return at.gap < -2.0 * depth; });
       const bool open = moved && std::all_of(of_body.begin(), of_body.end(),
                                              [](const Contact& at) { return at.gap > 0.0; });
-      if (deep || open) {
+      // Where turning bodies have been moved far their joints are off by the square of it.
+      const bool loose = bound && moved && off(joints, state, evaluation) > 2.0 * depth;
+      if (deep || open || loose) {
         const bool better =
             bound ? move_bound(assembly, island, of_body, chain, state, evaluation, depth, joints)
                   : move_body(assembly, of_body, chain, state, depth);

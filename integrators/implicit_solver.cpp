@@ -5,6 +5,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <optional>
@@ -22,7 +23,55 @@ struct ImplicitSolver::Factors {
   std::vector<Eigen::Triplet<double>> triplets;
   Matrix matrix;
   Eigen::SimplicialLDLT<Matrix> factors;
+
+  // With joints.
+  Index rows = 0;
+  Matrix bordered_matrix;
+  Eigen::SparseLU<Matrix> bordered;
+
+  [[nodiscard]] bool surround(const Border& joints);
 };
+
+/// Factors A with the rows of the joints. One that follows from others, whose pivot would vanish, is given a
+/// small one: which of the answers for such rows comes out makes no difference to the bodies.
+bool ImplicitSolver::Factors::surround(const Border& joints) {
+  // Against the row's own diagonal in G M^-1 G^T: small even where stiff couplings make G A^-1 G^T smaller.
+  constexpr double least_pivot = 1e-13;
+  const auto index = [&](Index i) { return static_cast<int>(i - v.begin); };
+  const auto size = static_cast<int>(v.size());
+  rows = static_cast<Index>(joints.held.size());
+  triplets.clear();
+  for (int column = 0; column < size; ++column) {
+    for (Matrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      triplets.emplace_back(static_cast<int>(entry.row()), column, entry.value());
+      if (entry.row() != column) triplets.emplace_back(column, static_cast<int>(entry.row()), entry.value());
+    }
+  }
+  for (Index i = 0; i < rows; ++i) {
+    const JointRow held = joints.held.row(i), pushing = joints.pushing.row(i);
+    const int place = size + static_cast<int>(i);
+    double diagonal = 0.0;
+    for (int b = 0; b < held.bodies; ++b) {
+      const JointRow::Block& block = held.blocks[static_cast<std::size_t>(b)];
+      const JointRow::Block& across = pushing.blocks[static_cast<std::size_t>(b)];
+      for (int c = 0; c < block.columns; ++c) {
+        const double number = block.jacobian[static_cast<std::size_t>(c)];
+        const int column = index(block.v) + c;
+        triplets.emplace_back(place, column, number);
+        triplets.emplace_back(column, place, across.jacobian[static_cast<std::size_t>(c)]);
+        diagonal += number * number / matrix.coeff(column, column);
+      }
+    }
+    triplets.emplace_back(place, place, -least_pivot * diagonal);
+  }
+  const int all = size + static_cast<int>(rows);
+  bordered_matrix.resize(all, all);
+  bordered_matrix.setFromTriplets(triplets.begin(), triplets.end());
+  bordered.isSymmetric(true);  // its pattern
+  bordered.analyzePattern(bordered_matrix);
+  bordered.factorize(bordered_matrix);
+  return bordered.info() == Eigen::Success;
+}
 
 ImplicitSolver::ImplicitSolver() : factors_(std::make_unique<Factors>()) {}
 ImplicitSolver::~ImplicitSolver() = default;
@@ -30,7 +79,8 @@ ImplicitSolver::ImplicitSolver(ImplicitSolver&&) noexcept = default;
 ImplicitSolver& ImplicitSolver::operator=(ImplicitSolver&&) noexcept = default;
 
 ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index island, const StateView& state,
-                                               const Evaluation& evaluation, double step) {
+                                               const Evaluation& evaluation, double step,
+                                               const Border* joints) {
   Factors& self = *factors_;
   self.assembly = &assembly;
   self.island = island;
@@ -86,13 +136,33 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index i
   self.factors.analyzePattern(self.matrix);
   self.factors.factorize(self.matrix);
   if (self.factors.info() != Eigen::Success) return Outcome::singular;
+  self.rows = 0;
+  if (joints != nullptr && !self.surround(*joints)) return Outcome::singular;
   return self.factors.vectorD().minCoeff() > 0.0 ? Outcome::definite : Outcome::indefinite;
 }
 
-void ImplicitSolver::solve(double* x) const {
-  Eigen::Map<Eigen::VectorXd> map(x, static_cast<Eigen::Index>(factors_->v.size()));
-  const Eigen::VectorXd solution = factors_->factors.solve(map);
-  map = solution;
+void ImplicitSolver::solve(double* f, const double* r) const {
+  const auto size = static_cast<Eigen::Index>(factors_->v.size());
+  Eigen::Map<Eigen::VectorXd> map(f, size);
+  if (factors_->rows == 0) {
+    const Eigen::VectorXd solution = factors_->factors.solve(map);
+    map = solution;
+    return;
+  }
+  Eigen::VectorXd right(size + static_cast<Eigen::Index>(factors_->rows));
+  right.head(size) = map;
+  for (Index i = 0; i < factors_->rows; ++i) {
+    right[size + static_cast<Eigen::Index>(i)] = r == nullptr ? 0.0 : -r[i];
+  }
+  const Eigen::VectorXd solution = factors_->bordered.solve(right);
+  map = solution.head(size);
+}
+
+void ImplicitSolver::subtract_matrix(const double* v, double* p) const {
+  const auto size = static_cast<Eigen::Index>(factors_->v.size());
+  const Eigen::Map<const Eigen::VectorXd> of(v + factors_->v.begin, size);
+  Eigen::Map<Eigen::VectorXd> from(p + factors_->v.begin, size);
+  from -= factors_->matrix.selfadjointView<Eigen::Lower>() * of;
 }
 
 void ImplicitSolver::add_stiffness_times(double scale, const double* v, double* y) const {

@@ -86,6 +86,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   stored_ = {};
   coupling_work_ = {};
   projected_ = 0.0;
+  held_ = 0.0;
   report_.contacts.clear();
   report_.joint_impulses.clear();
   rubbing_modes_.clear();
@@ -141,23 +142,39 @@ void TimeStepper::start_loads(const State& state, Companion& companion) {
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
   if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
   find_contacts(island, state);
+  const bool with_joints = jointed(island);
+  FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
+  if (!iterate(island, state, companion, step, judge))
+    fail_contraction(island, state, companion, step, judge);
+  const double contraction = judge.contraction();
+  sweeps_[island] = judge.sweeps();
+
+  book_couplings(island, state, companion, step);
+  if (with_joints) book_joints(island, state, step);
+  book_contacts(state, step);
+  if (options_.project_gaps) project(island, state, step);
+  rate(island, state, step, contraction);
+  report_.sweeps = std::max(report_.sweeps, judge.sweeps());
+  report_.contraction = std::max(report_.contraction, contraction);
+}
+
+bool TimeStepper::iterate(Index island, const State& state, const Companion& companion, double step,
+                          FixedPointJudge& judge) {
+  using Verdict = FixedPointJudge::Verdict;
+  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool with_joints = jointed(island);
   start_iteration(island, state, companion, step);
-  if (options_.iteration == Iteration::linearly_implicit) start_implicit(island, state, companion, step);
+  if (implicit) start_implicit(island, state, companion, step);
 
   // Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only,
   // which is expected after as many sweeps as in the last step.
   const std::vector<int>& before = companion.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
-  const bool implicit = options_.iteration == Iteration::linearly_implicit;
-  const bool with_joints = jointed(island);
-  double violation = std::numeric_limits<double>::infinity();
-  double contraction = 0.0;
   bool confirming = false;
-  FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   for (;;) {
     sweep_all(island, state, companion, step);
     follow_iterate(island, state, step);
-    const bool by_cause = judge.sweeps() + 1 >= expected;
+    bool by_cause = judge.sweeps() + 1 >= expected;
     if (by_cause) {
       evaluate_loads_by_cause(island, state, step);
     } else {
@@ -168,48 +185,30 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
     if (with_joints) {
       const SweepChange seen = joint_change(island, step);
       change.take(seen.change, seen.size);
+      change.size *= joints_[island].magnified;
     }
-    auto verdict = implicit || with_joints ? judge.judge(change.change, change.size)
-                                           : judge.judge_ahead(change.change, change.size);
+    Verdict verdict = implicit || with_joints ? judge.judge(change.change, change.size)
+                                              : judge.judge_ahead(change.change, change.size);
     // Its first is that from t_j: small or not, it says nothing of the guess.
-    if (implicit && judge.sweeps() == 1 && verdict == FixedPointJudge::Verdict::converged) {
-      verdict = FixedPointJudge::Verdict::go_on;
-    }
-    // Sweeps beyond the tolerance, for the joints, say nothing of the contraction.
-    if (std::isinf(violation)) contraction = judge.contraction();
-    if (with_joints && verdict == FixedPointJudge::Verdict::converged) {
-      // A change below the tolerance may leave the constraints above their rounding: on while they improve.
-      constexpr double improved = 0.5;
-      const double left = joint_violation(island);
-      if (left > 1.0 && left < improved * violation && judge.sweeps() < options_.max_sweeps) {
-        verdict = FixedPointJudge::Verdict::go_on;
-      }
-      violation = left;
-    }
+    if (implicit && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
     // Bounds of friction that the last sweep has changed are seen by the next one only.
     const bool changed = with_joints && joints_[island].pressure_change > settled_pressure;
-    if (verdict == FixedPointJudge::Verdict::go_on) confirming = false;
-    if (verdict == FixedPointJudge::Verdict::converged && changed && !confirming) {
+    if (verdict == Verdict::go_on) confirming = false;
+    if (verdict == Verdict::converged && changed && !confirming) {
       confirming = true;
-      const bool more = judge.sweeps() < options_.max_sweeps;
-      verdict = more ? FixedPointJudge::Verdict::go_on : FixedPointJudge::Verdict::failed;
+      verdict = judge.sweeps() < options_.max_sweeps ? Verdict::go_on : Verdict::failed;
     }
-    if (verdict == FixedPointJudge::Verdict::failed) fail_contraction(island, state, companion, step, judge);
-    if (verdict == FixedPointJudge::Verdict::converged) {
+    if (verdict == Verdict::failed) return false;
+    if (verdict == Verdict::converged) {
+      if (with_joints && settle_joints(island, state, companion, step)) {
+        follow_iterate(island, state, step);
+        by_cause = false;
+      }
       if (!by_cause) evaluate_loads_by_cause(island, state, step);
-      break;
+      return true;
     }
     improve_guess(island, judge);
   }
-  sweeps_[island] = judge.sweeps();
-
-  book_couplings(island, state, companion, step);
-  if (with_joints) book_joints(island, state, step);
-  book_contacts(state, step);
-  if (options_.project_gaps) project(island, state, step);
-  rate(island, state, step, contraction);
-  report_.sweeps = std::max(report_.sweeps, judge.sweeps());
-  report_.contraction = std::max(report_.contraction, contraction);
 }
 
 void TimeStepper::start_iteration(Index island, const State& state, const Companion& companion, double step) {
@@ -243,11 +242,13 @@ void TimeStepper::start_iteration(Index island, const State& state, const Compan
 }
 
 void TimeStepper::sweep_all(Index island, const State& state, const Companion& companion, double step) {
+  const bool implicit = options_.iteration == Iteration::linearly_implicit;
   if (jointed(island)) {
+    if (implicit) guess_implicit(island, state, step);
     sweep_joints(island, state, companion, step);
     return;
   }
-  if (options_.iteration == Iteration::linearly_implicit) {
+  if (implicit) {
     solve_implicit(island, state, step);
   } else {
     solve_contacts(island, state, companion, step);

@@ -37,6 +37,7 @@
 #include <carom/integrators/anderson.h>
 #include <carom/integrators/companion.h>
 #include <carom/integrators/coupling_rating.h>
+#include <carom/integrators/crossed_joints.h>
 #include <carom/integrators/fixed_point.h>
 #include <carom/integrators/gap_projection.h>
 #include <carom/integrators/implicit_solver.h>
@@ -56,7 +57,7 @@ CAROM_API void check_options(const TimeStepping& options);
 /// options.
 class CAROM_API TimeStepper {
 public:
-  /// Throws ModelError for impossible options, ones that joints do not go with, or a contact without a law.
+  /// Throws ModelError for impossible options or a contact without a law.
   TimeStepper(const Assembly& assembly, const TimeStepping& options);
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
@@ -71,6 +72,9 @@ private:
   void start_loads(const State& state, Companion& companion);
   void remember_sticking(const Companion& companion);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
+  /// Sweeps until the judge is content; false if the iteration does not contract.
+  [[nodiscard]] bool iterate(Index island, const State& state, const Companion& companion, double step,
+                             FixedPointJudge& judge);
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
   void start_iteration(Index island, const State& state, const Companion& companion, double step);
@@ -80,12 +84,20 @@ private:
   void prepare_joints();
   void start_joints(Index island, const State& state, double step);
   void sweep_joints(Index island, const State& state, const Companion& companion, double step);
+  struct JointWork;
+  static void factor_joints(JointWork& work);
+  static void solve_joints(JointWork& work);
   void correct_joint_impulses(Index island);
+  [[nodiscard]] bool settle_joints(Index island, const State& state, const Companion& companion, double step);
+  void choose_reactions(Index island, const State& state, double step);
   void solve_joint_contacts(Index island, const State& state, double step);
   void place_rubbing(Index island);
   void press_rubbing(Index island, double step);
   void add_contacts_to_joints(Index island);
-  void return_to_joints(Index island);
+  void return_to_joints(Index island, const State& state, double step);
+  /// Brings rows to a configuration; a motion that is not finite there fails the step.
+  static void place_rows(IslandJoints& joints, const JointView& at, const State& state, double step);
+  void place_joints(Index island, const State& state, double step);
   void move(Index island, const std::vector<double>& displacement, State& state) const;
   [[nodiscard]] SweepChange joint_change(Index island, double step) const;
   [[nodiscard]] double joint_violation(Index island);
@@ -108,8 +120,10 @@ private:
   void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,
                  double step);
   void solve_implicit(Index island, const State& state, double step);
+  void guess_implicit(Index island, const State& state, double step);
   void book_couplings(Index island, const State& state, const Companion& companion, double step);
   void project(Index island, const State& state, double step);
+  void hold_velocities(Index island);
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
   void book_rubbing(const ContactCluster& cluster, std::size_t contact);
@@ -190,9 +204,16 @@ private:
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
 
+  // Along which rows the joints of an island push: those halfway, those at the end, or those halfway with the
+  // matrix of both.
+  enum class Reactions : std::uint8_t { halfway, at_end, crossed };
   // The joints of an island.
   struct JointWork {
-    IslandJoints end, mean;          // rows at the end; halfway, with factors where bodies touch
+    Reactions reactions = Reactions::halfway;
+    double magnified = 1.0;  // rounding, near a singular position
+    bool near_singular = false;
+    IslandJoints end, mean;          // rows at the end; of the reactions, with factors where bodies touch
+    CrossedJoints crossed;           // factors of both
     std::vector<double> start_rate;  // of the rows at the start, where they depend on time
     std::vector<double> impulse;     // L
     std::vector<double> total;       // L, and what contact adds
@@ -209,6 +230,7 @@ private:
   EnergyFlows flows_;
   CompensatedSum coupling_work_;
   double projected_ = 0.0;  // energy taken out by moving bodies
+  double held_ = 0.0;       // and by what that changes of their velocities
   StoredEnergies stored_;
   StepReport report_;
   std::vector<CouplingRating> ratings_;    // by island, of the last time it was rated

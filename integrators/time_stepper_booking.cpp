@@ -72,12 +72,14 @@ void TimeStepper::project(Index island, const State& state, double step) {
   if (contacts_.empty()) return;
   const Assembly& assembly = *assembly_;
   evaluate_positions(assembly, island, trial_.view(), evaluation_);
-  IslandJoints joints;  // islands with joints are refused
+  IslandJoints none_there;
+  IslandJoints& joints = jointed(island) ? joints_[island].end : none_there;
   const GapProjection::Result result = projection_.project(assembly, island, finder_, places_after_,
                                                            contacts_, chain_, trial_, evaluation_, joints);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
+  if (jointed(island)) hold_velocities(island);
   const StoredEnergies before = evaluated_energies_;
   if (mean_rule()) {
     // The mean loads are those that acted.
@@ -90,6 +92,26 @@ void TimeStepper::project(Index island, const State& state, double step) {
   for (std::size_t i = 0; i < stored_energy_count; ++i) {
     stored_.values[i] += evaluated_energies_.values[i] - before.values[i];
   }
+}
+
+/// Velocities that the joints allow where bodies have been moved to.
+void TimeStepper::hold_velocities(Index island) {
+  const Assembly& assembly = *assembly_;
+  const auto kinetic = [&] {
+    double sum = 0.0;
+    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      sum += kind.kinetic_energy(slots, trial_.v.data() + v);
+    });
+    return sum;
+  };
+  IslandJoints& joints = joints_[island].end;
+  const double before = kinetic();
+  joints.locate({trial_.view(), evaluation_.rotation.data()});
+  joints.hold(JointLevel::velocity, trial_.v.data());
+  joints.hold(JointLevel::velocity, trial_.v.data());  // what rounding left
+  const double after = kinetic();
+  held_ += before - after;
+  stored_[StoredEnergy::kinetic] += after - before;
 }
 
 void TimeStepper::book_contacts(const State& state, double step) {
@@ -166,7 +188,7 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
 }
 
 void TimeStepper::commit(State& state, Companion& companion, double end_time, StepReport& report) {
-  flows_[EnergyFlow::projection] = projected_;
+  flows_[EnergyFlow::projection] = projected_ + held_;
   flows_[EnergyFlow::coupling_discretisation] =
       -(stored_.potential() + projected_ - companion.ledger.potential() + coupling_work_.value());
   std::swap(state.q, trial_.q);

@@ -148,7 +148,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   }
   if (rating.island_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
-    if (!implicit && !jointed(island)) message += ", as would the linearly implicit iteration";
+    if (!implicit) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the couplings contract (rate " +

@@ -4,6 +4,7 @@
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace carom {
 
@@ -34,14 +35,17 @@ void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
 void TimeStepper::start_implicit(Index island, const State& state, const Companion& companion, double step) {
   const Range v = assembly_->islands()[island].v;
   const Range q = assembly_->islands()[island].q;
-  std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
-  std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
+  if (!jointed(island)) {
+    std::copy(state.q.begin() + q.begin, state.q.begin() + q.end, trial_.q.begin() + q.begin);
+    std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
+  }
   evaluate_loads(*assembly_, island, state.view(), start_,
                  {evaluated_.data(), evaluated_.data(), evaluated_.data()});
   for (Index i = v.begin; i < v.end; ++i) {
     evaluation_.force[i] = mean_rule() ? 0.0 : -companion.loads.total[i];
   }
   for (std::size_t i = 0; i < clusters_in_use_; ++i) clusters_[i].forget_impulses();
+  if (jointed(island)) place_joints(island, state, step);
   linearise(island, state.view(), start_, state, step);
   implicit_.add_stiffness_times(mean_rule() ? 0.5 * step : step, state.v.data(), evaluated_.data());
   stale_ = false;
@@ -49,7 +53,10 @@ void TimeStepper::start_implicit(Index island, const State& state, const Compani
 
 void TimeStepper::linearise(Index island, const StateView& at, const Evaluation& evaluation,
                             const State& state, double step) {
-  const auto outcome = implicit_.factor(*assembly_, island, at, evaluation, step);
+  std::optional<ImplicitSolver::Border> joints;
+  if (jointed(island)) joints.emplace(ImplicitSolver::Border{joints_[island].end, joints_[island].mean});
+  const auto outcome =
+      implicit_.factor(*assembly_, island, at, evaluation, step, joints ? &*joints : nullptr);
   if (outcome == ImplicitSolver::Outcome::singular) {
     fail_linearisation(island, state, step, "is singular");
   }
@@ -57,6 +64,7 @@ void TimeStepper::linearise(Index island, const StateView& at, const Evaluation&
   if (outcome != ImplicitSolver::Outcome::definite) {
     fail_linearisation(island, state, step, "is not definite while bodies touch");
   }
+  if (jointed(island)) return;  // coupled anew by every sweep
   clusters_.front().couple(assembly_->islands()[island].v, [this](double* x) { implicit_.solve(x); });
 }
 
@@ -89,6 +97,33 @@ void TimeStepper::solve_implicit(Index island, const State& state, double step) 
   }
   implicit_.apply_mass(update_.data(), rounding_.data());
   for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] += rounding_[i] / weight;
+}
+
+/// The same step where joints bind bodies,  A d - Gm^T l = w (g - x) + H^T (P' - P),  G (v + d) + rate = 0,
+/// for the guess alone,  x' = g + (M - A) d / w,  which the sweep behind it takes as it takes any other.
+void TimeStepper::guess_implicit(Index island, const State& state, double step) {
+  const Range v = assembly_->islands()[island].v;
+  JointWork& work = joints_[island];
+  place_joints(island, state, step);
+  // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
+  // couplings would be loaded across them.
+  linearise(island, trial_.view(), evaluation_, state, step);
+  const double weight = impulse_weight(step);
+  for (Index i = v.begin; i < v.end; ++i) update_[i] = weight * (evaluated_[i] - evaluation_.force[i]);
+  work.end.residuals(JointLevel::velocity, trial_.v.data(), work.left.data());
+  implicit_.solve(update_.data() + v.begin, work.left.data());
+  if (clusters_in_use_ > 0) {
+    ContactCluster& cluster = clusters_.front();
+    cluster.couple(v, [this](double* x) { implicit_.solve(x); });
+    for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial_.v[i] + update_[i];
+    cluster.set_velocity(scratch_.data());
+    cluster.apply_coupled(update_.data(), -1.0);
+    if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+    cluster.apply_coupled(update_.data());
+  }
+  implicit_.apply_mass(update_.data(), scratch_.data());
+  implicit_.subtract_matrix(update_.data(), scratch_.data());
+  for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] = evaluated_[i] + scratch_[i] / weight;
 }
 
 /// What the last step of Newton's method changed.

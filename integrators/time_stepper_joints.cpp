@@ -4,17 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace carom {
 
 namespace {
-
-[[noreturn]] void refuse(const Assembly& assembly, Index island, const char* option, const char* allowed) {
-  const BodyId body = assembly.layout()->id(assembly.islands()[island].bodies.begin);
-  throw ModelError(std::string("time stepping: ") + option + ", and the island of " +
-                   assembly.system().name(body) + " has joints; allowed: " + allowed);
-}
 
 JointView view_of(const State& state, const Evaluation& evaluation) {
   return {state.view(), evaluation.rotation.data()};
@@ -31,10 +24,6 @@ void TimeStepper::prepare_joints() {
   const auto islands = static_cast<Index>(assembly.islands().size());
   for (Index island = 0; island < islands; ++island) {
     if (!assembly.has_joints(island)) continue;
-    if (options_.iteration == Iteration::linearly_implicit) {
-      refuse(assembly, island, "iteration is linearly implicit", "fixed-point or Anderson");
-    }
-    if (options_.project_gaps) refuse(assembly, island, "project_gaps is set", "not set");
     joints_.resize(islands);
     JointWork& work = joints_[island];
     work.end = IslandJoints(assembly, island);
@@ -59,6 +48,7 @@ void TimeStepper::start_joints(Index island, const State& state, double step) {
   JointWork& work = joints_[island];
   const Range q = assembly_->islands()[island].q;
   const Range v = assembly_->islands()[island].v;
+  work.reactions = Reactions::halfway;
   std::fill(work.impulse.begin(), work.impulse.end(), 0.0);
   for (Contact& contact : contacts_) contact.pressed *= step;
   for (std::vector<double>* const numbers : {&response_, &reaction_, &struck_, &displacement_}) {
@@ -70,11 +60,7 @@ void TimeStepper::start_joints(Index island, const State& state, double step) {
   move(island, scratch_, trial_);
   if (!work.end.depends_on_time()) return;
   evaluate_positions(*assembly_, island, state.view(), start_);
-  try {
-    work.end.place(view_of(state, start_));
-  } catch (const SolverError& error) {
-    fail_motion(error, state, step);
-  }
+  place_rows(work.end, view_of(state, start_), state, step);
   work.start_rate.resize(work.end.size());
   for (std::size_t row = 0; row < work.end.size(); ++row) work.start_rate[row] = work.end.rate(row);
 }
@@ -86,19 +72,10 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   std::copy(trial_.q.begin() + q.begin, trial_.q.begin() + q.end, before_q_.begin() + q.begin);
   std::copy(trial_.v.begin() + v.begin, trial_.v.begin() + v.end, before_v_.begin() + v.begin);
 
-  place_middle(island, state, step);
-  evaluate_positions(*assembly_, island, middle_.view(), middle_evaluation_);
-  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-  try {
-    work.end.locate(view_of(trial_, evaluation_));
-    if (clusters_in_use_ > 0) {
-      work.mean.locate(view_of(middle_, middle_evaluation_));
-    } else {
-      work.mean.place(view_of(middle_, middle_evaluation_));
-    }
-  } catch (const SolverError& error) {
-    fail_motion(error, state, step);
-  }
+  place_joints(island, state, step);
+  if (!swept_) choose_reactions(island, state, step);
+  factor_joints(work);
+  if (clusters_in_use_ > 0) work.mean.factor();
 
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
@@ -109,7 +86,19 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   if (clusters_in_use_ > 0) solve_joint_contacts(island, state, step);
   for (Index i = v.begin; i < v.end; ++i) response_[i] = reaction_[i] + struck_[i];
   sweep(island, state, companion, step);
-  return_to_joints(island);
+  return_to_joints(island, state, step);
+}
+
+/// Brings the rows of joints, and of their reactions, to the iterate.
+void TimeStepper::place_joints(Index island, const State& state, double step) {
+  JointWork& work = joints_[island];
+  place_middle(island, state, step);
+  evaluate_positions(*assembly_, island, middle_.view(), middle_evaluation_);
+  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+  const JointView at_end = view_of(trial_, evaluation_);
+  place_rows(work.end, at_end, state, step);
+  const bool halfway = work.reactions != Reactions::at_end;
+  place_rows(work.mean, halfway ? view_of(middle_, middle_evaluation_) : at_end, state, step);
 }
 
 /// One step of Newton's method for G1 v_{j+1} + rate = 0. With G1 on both sides, instead of Gm on one, the
@@ -119,7 +108,7 @@ void TimeStepper::correct_joint_impulses(Index island) {
   const Range v = assembly_->islands()[island].v;
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
   work.end.residuals(JointLevel::velocity, scratch_.data(), work.left.data());
-  work.end.solve(work.left.data());
+  solve_joints(work);
   clear(reaction_, v);
   for (std::size_t row = 0; row < work.left.size(); ++row) work.impulse[row] += work.left[row];
   work.mean.add_transposed(work.impulse.data(), reaction_.data());
@@ -182,19 +171,40 @@ void TimeStepper::add_contacts_to_joints(Index island) {
   for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
 }
 
-/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before.
-void TimeStepper::return_to_joints(Index island) {
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before, with
+/// the rows there; several with rows of their own near a singular position, where rows change much from one
+/// iterate to the next.
+void TimeStepper::return_to_joints(Index island, const State& state, double step) {
+  constexpr int most_near_singular = 6;
   JointWork& work = joints_[island];
   const Range v = assembly_->islands()[island].v;
+  const bool near_singular = work.reactions != Reactions::halfway;
   move(island, displacement_, trial_);
-  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-  work.end.place_gaps(view_of(trial_, evaluation_));
-  for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] = work.end.gap(row);
-  work.end.solve(work.left.data());
-  clear(scratch_, v);
-  work.end.add_response(work.left.data(), scratch_.data());
-  for (Index i = v.begin; i < v.end; ++i) displacement_[i] += scratch_[i];
-  move(island, scratch_, trial_);
+  for (int turn = 0; turn < (near_singular ? most_near_singular : 1); ++turn) {
+    evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+    const JointView at = view_of(trial_, evaluation_);
+    if (near_singular) {
+      place_rows(work.end, at, state, step);
+      factor_joints(work);
+    } else {
+      work.end.place_gaps(at);
+    }
+    for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] = work.end.gap(row);
+    solve_joints(work);
+    clear(scratch_, v);
+    (work.reactions == Reactions::crossed ? work.mean : work.end)
+        .add_response(work.left.data(), scratch_.data());
+    for (Index i = v.begin; i < v.end; ++i) displacement_[i] += scratch_[i];
+    move(island, scratch_, trial_);
+  }
+}
+
+void TimeStepper::place_rows(IslandJoints& joints, const JointView& at, const State& state, double step) {
+  try {
+    joints.place(at);
+  } catch (const SolverError& error) {
+    fail_motion(error, state, step);
+  }
 }
 
 void TimeStepper::move(Index island, const std::vector<double>& displacement, State& state) const {
@@ -220,6 +230,31 @@ SweepChange TimeStepper::joint_change(Index island, double step) const {
     }
   });
   return change;
+}
+
+/// A change below the tolerance may leave the constraints above their rounding. Sweeps under the same loads
+/// bring the joints there however badly couplings contract. True if there were any.
+bool TimeStepper::settle_joints(Index island, const State& state, const Companion& companion, double step) {
+  constexpr double improved = 0.8;
+  JointWork& work = joints_[island];
+  double left = joint_violation(island);
+  if (!work.near_singular && !(left > 1.0)) return false;
+  for (int sweeps = 0; sweeps < options_.max_sweeps && left > 1.0; ++sweeps) {
+    sweep_joints(island, state, companion, step);
+    const double now = joint_violation(island);
+    if (!(now < improved * left)) break;
+    left = now;
+  }
+  if (work.near_singular) {
+    // There the rounding of positions turns rows too much: velocities once more, where bodies are now.
+    place_rows(work.end, view_of(trial_, evaluation_), state, step);
+    work.end.residuals(JointLevel::velocity, trial_.v.data(), work.left.data());
+    if (!work.crossed.factor(work.end, work.mean)) return true;
+    work.crossed.solve(work.left.data());
+    for (std::size_t row = 0; row < work.left.size(); ++row) work.impulse[row] += work.left[row];
+    work.mean.add_response(work.left.data(), trial_.v.data());
+  }
+  return true;
 }
 
 /// How far positions and velocities are from obeying the joints, in units of what rounding lets them.

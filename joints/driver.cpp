@@ -1,50 +1,11 @@
-#include <carom/core/layout.h>
 #include <carom/core/system.h>
 #include <carom/joints/driver.h>
-#include <carom/joints/revolute.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 namespace carom {
-
-namespace {
-
-/// The coordinate of a joint of an assembly.
-JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at) {
-  const JointTable& table = *layout.joints();
-  const JointTable::Place place = table.place(joint.serial);
-  JointRow row;
-  table.kinds[place.kind]->coordinate(at, place.slot, row);
-  return row;
-}
-
-}  // namespace
-
-std::vector<BodyId> bodies_of(const System& system, JointId joint) {
-  std::vector<BodyId> ends;
-  const auto place = system.joint_kinds().place(joint.serial);
-  system.joint_kinds().entries()[place.entry].kind->ends(place.slot, ends);
-  return ends;
-}
-
-void check_coordinate(const PartCheck& check, JointId joint) {
-  const System& system = check.system();
-  if (!joint.valid()) check.refuse("joint", "not given", "a joint of this system");
-  if (!system.contains(joint)) check.refuse("joint", system.name(joint), "a joint of this system");
-  const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
-  constexpr std::string_view allowed =
-      "a joint with a coordinate (revolute, prismatic, point on line, rolling)";
-  if (!kind.has_coordinate()) check.refuse("joint", system.name(joint), allowed);
-  // Nothing that turns, nothing to push.
-  if (dynamic_cast<const planar::BindingKind<planar::Revolute>*>(&kind) == nullptr) return;
-  const std::vector<BodyId> ends = bodies_of(system, joint);
-  if (std::none_of(ends.begin(), ends.end(), [&](BodyId body) { return system.has_orientation(body); })) {
-    check.refuse("joint", system.name(joint) + ", of particles, which do not turn", allowed);
-  }
-}
 
 void DriverKind::add(const Driver& part, const PartCheck& check) {
   check_coordinate(check, part.joint);
@@ -65,30 +26,17 @@ void DriverKind::add(const Driver& part, const PartCheck& check) {
   check.finite(start.value, "position at time 0", "");
   check.finite(start.rate, "velocity at time 0", "");
   check.finite(start.second, "acceleration at time 0", "");
-  parts_.push_back({part, bodies_of(system, part.joint), check.part()});
-}
-
-std::unique_ptr<JointKind> DriverKind::clone() const { return std::make_unique<DriverKind>(*this); }
-
-std::unique_ptr<JointKind> DriverKind::arranged(std::span<const Index> order, const Layout& layout) const {
-  auto copy = std::make_unique<DriverKind>();
-  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
-  copy->layout_ = &layout;
-  return copy;
-}
-
-void DriverKind::ends(Index joint, std::vector<BodyId>& out) const {
-  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+  store(part, check);
 }
 
 void DriverKind::pattern(Index joint, JointRow* out) const {
   const JointTable& table = *layout_->joints();
-  const JointTable::Place place = table.place(parts_[joint].driver.joint.serial);
+  const JointTable::Place place = table.place(parts_[joint].part.joint.serial);
   table.kinds[place.kind]->coordinate_pattern(place.slot, *out);
 }
 
 void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const {
-  const Driver& driver = parts_[joint].driver;
+  const Driver& driver = parts_[joint].part;
   *out = coordinate_row(*layout_, driver.joint, at);
   const Course<double> now =
       course(driver.position, driver.velocity, driver.acceleration, at.state.time, driver.breaks);
@@ -109,7 +57,7 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
 }
 
 void DriverKind::breaks(Index joint, std::vector<double>& out) const {
-  const std::vector<double>& breaks = parts_[joint].driver.breaks;
+  const std::vector<double>& breaks = parts_[joint].part.breaks;
   out.insert(out.end(), breaks.begin(), breaks.end());
 }
 
@@ -120,9 +68,9 @@ JointReaction DriverKind::reaction(const JointView&, Index, const double* multip
 }
 
 void DriverKind::fingerprint(Fingerprint& print) const {
-  for (const Part& part : parts_) {
-    print.add(std::uint64_t{part.driver.joint.serial});
-    if (!part.driver.breaks.empty()) print.add(part.driver.breaks);
+  for (const Stored& stored : parts_) {
+    print.add(std::uint64_t{stored.part.joint.serial});
+    if (!stored.part.breaks.empty()) print.add(stored.part.breaks);
   }
 }
 
@@ -130,26 +78,13 @@ void MotorKind::add(const Motor& part, const PartCheck& check) {
   check_coordinate(check, part.joint);
   if (!part.torque) check.refuse("torque", "not given", "a function of time, coordinate and rate");
   check.breaks(part.breaks, "breaks");
-  parts_.push_back({part, bodies_of(check.system(), part.joint)});
-}
-
-std::unique_ptr<ForceKind> MotorKind::clone() const { return std::make_unique<MotorKind>(*this); }
-
-std::unique_ptr<ForceKind> MotorKind::arranged(std::span<const Index> order, const Layout& layout) const {
-  auto copy = std::make_unique<MotorKind>();
-  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
-  copy->layout_ = &layout;
-  return copy;
-}
-
-void MotorKind::ends(Index element, std::vector<BodyId>& out) const {
-  out.insert(out.end(), parts_[element].ends.begin(), parts_[element].ends.end());
+  store(part, check);
 }
 
 void MotorKind::evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const {
   const JointView view{at.state, at.evaluation.rotation.data()};
   for (Index i = elements.begin; i < elements.end; ++i) {
-    const Motor& motor = parts_[i].motor;
+    const Motor& motor = parts_[i].part;
     const JointRow row = coordinate_row(*layout_, motor.joint, view);
     const double push = motor.torque(at.state.time, row.gap, row.times(at.state.v) + row.rate);
     row.add_transposed(push, loads.external);
@@ -157,14 +92,14 @@ void MotorKind::evaluate(const EvaluationContext& at, Range elements, const Load
 }
 
 void MotorKind::breaks(Index element, std::vector<double>& out) const {
-  const std::vector<double>& breaks = parts_[element].motor.breaks;
+  const std::vector<double>& breaks = parts_[element].part.breaks;
   out.insert(out.end(), breaks.begin(), breaks.end());
 }
 
 void MotorKind::fingerprint(Fingerprint& print) const {
-  for (const Part& part : parts_) {
-    print.add(std::uint64_t{part.motor.joint.serial});
-    if (!part.motor.breaks.empty()) print.add(part.motor.breaks);
+  for (const Stored& stored : parts_) {
+    print.add(std::uint64_t{stored.part.joint.serial});
+    if (!stored.part.breaks.empty()) print.add(stored.part.breaks);
   }
 }
 
@@ -182,28 +117,15 @@ void StopKind::add(const Stop& part, const PartCheck& check) {
     check.refuse("lower", to_text(part.lower), "less than upper, " + to_text(part.upper));
   }
   check.between(part.restitution, 0.0, 1.0, "restitution");
-  parts_.push_back({part, bodies_of(check.system(), part.joint)});
-}
-
-std::unique_ptr<JointKind> StopKind::clone() const { return std::make_unique<StopKind>(*this); }
-
-std::unique_ptr<JointKind> StopKind::arranged(std::span<const Index> order, const Layout& layout) const {
-  auto copy = std::make_unique<StopKind>();
-  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
-  copy->layout_ = &layout;
-  return copy;
-}
-
-void StopKind::ends(Index joint, std::vector<BodyId>& out) const {
-  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+  store(part, check);
 }
 
 bool StopKind::has_limit(Index joint, Index which) const {
-  return std::isfinite(which == 0 ? parts_[joint].stop.lower : parts_[joint].stop.upper);
+  return std::isfinite(which == 0 ? parts_[joint].part.lower : parts_[joint].part.upper);
 }
 
 void StopKind::limit(const JointView& at, Index joint, Index which, JointLimit& out) const {
-  const Stop& stop = parts_[joint].stop;
+  const Stop& stop = parts_[joint].part;
   out.row = coordinate_row(*layout_, stop.joint, at);
   out.restitution = stop.restitution;
   if (which == 0) {
@@ -219,9 +141,10 @@ void StopKind::limit(const JointView& at, Index joint, Index which, JointLimit& 
 }
 
 void StopKind::fingerprint(Fingerprint& print) const {
-  for (const Part& part : parts_) {
-    print.add(std::uint64_t{part.stop.joint.serial});
-    for (const double number : {part.stop.lower, part.stop.upper, part.stop.restitution}) print.add(number);
+  for (const Stored& stored : parts_) {
+    print.add(std::uint64_t{stored.part.joint.serial});
+    for (const double number : {stored.part.lower, stored.part.upper, stored.part.restitution})
+      print.add(number);
   }
 }
 

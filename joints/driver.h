@@ -6,13 +6,12 @@
 
 #include <carom/core/force_kind.h>
 #include <carom/core/joint_kind.h>
-#include <carom/core/part.h>
 #include <carom/core/time_course.h>
 #include <carom/joints/actuator.h>
+#include <carom/joints/on_coordinate.h>
 
 #include <functional>
 #include <limits>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,12 +20,6 @@ namespace carom {
 class DriverKind;
 class MotorKind;
 class StopKind;
-
-/// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
-CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
-
-/// Bodies that a joint of the system binds.
-[[nodiscard]] CAROM_API std::vector<BodyId> bodies_of(const System& system, JointId joint);
 
 /// Prescribes the coordinate of a joint as a function of time. Its work is external work. Rates that are not
 /// given are found by differences (core/time_difference.h); they must then be smooth between breaks.
@@ -42,24 +35,15 @@ struct Driver {
 };
 
 /// All drivers of a system.
-class CAROM_API DriverKind final : public JointKind {
+class CAROM_API DriverKind final : public OnCoordinate<Driver, DriverKind, JointKind> {
 public:
-  static constexpr int part_dimension() { return 0; }
   static constexpr std::string_view part_label() { return "driver"; }
 
   /// Checks and stores a driver. Throws ModelError.
   void add(const Driver& part, const PartCheck& check);
 
-  [[nodiscard]] std::unique_ptr<JointKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
-                                                    const Layout& layout) const override;
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 0; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] Index rows() const override { return 1; }
-  void ends(Index joint, std::vector<BodyId>& out) const override;
-  [[nodiscard]] JointId on_joint(Index joint) const override { return parts_[joint].driver.joint; }
   void pattern(Index joint, JointRow* out) const override;
   void evaluate(const JointView& at, Index joint, JointRow* out) const override;
   [[nodiscard]] bool depends_on_time() const override { return true; }
@@ -68,15 +52,6 @@ public:
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
                                        const double* multipliers) const override;
   void fingerprint(Fingerprint& print) const override;
-
-private:
-  struct Part {
-    Driver driver;
-    std::vector<BodyId> ends;
-    std::string name;
-  };
-  std::vector<Part> parts_;
-  const Layout* layout_ = nullptr;  // of an arranged kind
 };
 
 /// Pushes along the coordinate of a joint by a law of time, coordinate and rate: the torque on `to` of a
@@ -91,36 +66,19 @@ struct Motor {
 };
 
 /// All motors of a system.
-class CAROM_API MotorKind final : public ForceKind {
+class CAROM_API MotorKind final : public OnCoordinate<Motor, MotorKind, ForceKind> {
 public:
-  static constexpr int part_dimension() { return 0; }
   static constexpr std::string_view part_label() { return "motor"; }
 
   /// Checks and stores a motor. Throws ModelError.
   void add(const Motor& part, const PartCheck& check);
 
-  [[nodiscard]] std::unique_ptr<ForceKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<ForceKind> arranged(std::span<const Index> order,
-                                                    const Layout& layout) const override;
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 0; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
-  void ends(Index element, std::vector<BodyId>& out) const override;
-  [[nodiscard]] JointId on_joint(Index element) const override { return parts_[element].motor.joint; }
   [[nodiscard]] bool books_dissipative() const override { return false; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext&, Range) const override { return 0.0; }
   void breaks(Index element, std::vector<double>& out) const override;
   void fingerprint(Fingerprint& print) const override;
-
-private:
-  struct Part {
-    Motor motor;
-    std::vector<BodyId> ends;
-  };
-  std::vector<Part> parts_;
-  const Layout* layout_ = nullptr;  // of an arranged kind
 };
 
 /// Limits of the coordinate of a joint, lower <= x <= upper: unilateral, with a coefficient of restitution,
@@ -137,24 +95,15 @@ struct Stop {
 };
 
 /// All stops of a system.
-class CAROM_API StopKind final : public JointKind {
+class CAROM_API StopKind final : public OnCoordinate<Stop, StopKind, JointKind> {
 public:
-  static constexpr int part_dimension() { return 0; }
   static constexpr std::string_view part_label() { return "stop"; }
 
   /// Checks and stores a stop. Throws ModelError.
   void add(const Stop& part, const PartCheck& check);
 
-  [[nodiscard]] std::unique_ptr<JointKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
-                                                    const Layout& layout) const override;
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 0; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] Index rows() const override { return 0; }
-  void ends(Index joint, std::vector<BodyId>& out) const override;
-  [[nodiscard]] JointId on_joint(Index joint) const override { return parts_[joint].stop.joint; }
   void pattern(Index, JointRow*) const override {}
   void evaluate(const JointView&, Index, JointRow*) const override {}
   [[nodiscard]] Index limits() const override { return 2; }
@@ -165,14 +114,6 @@ public:
   }
   [[nodiscard]] JointReaction reaction(const JointView&, Index, const double*) const override { return {}; }
   void fingerprint(Fingerprint& print) const override;
-
-private:
-  struct Part {
-    Stop stop;
-    std::vector<BodyId> ends;
-  };
-  std::vector<Part> parts_;
-  const Layout* layout_ = nullptr;  // of an arranged kind
 };
 
 namespace planar {

@@ -24,25 +24,11 @@ void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
     check.refuse("joint", system.name(part.joint) + ", in which " + system.name(other) + " rubs",
                  "a joint without friction");
   }
-  parts_.push_back({part, bodies_of(system, part.joint)});
-}
-
-std::unique_ptr<JointKind> JointFrictionKind::clone() const {
-  return std::make_unique<JointFrictionKind>(*this);
-}
-
-std::unique_ptr<JointKind> JointFrictionKind::arranged(std::span<const Index> order, const Layout&) const {
-  auto copy = std::make_unique<JointFrictionKind>();
-  for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
-  return copy;
-}
-
-void JointFrictionKind::ends(Index joint, std::vector<BodyId>& out) const {
-  out.insert(out.end(), parts_[joint].ends.begin(), parts_[joint].ends.end());
+  store(part, check);
 }
 
 JointRub JointFrictionKind::rub(Index joint) const {
-  const JointFriction& friction = parts_[joint].friction;
+  const JointFriction& friction = parts_[joint].part;
   return {friction.bound, friction.static_factor, friction.coefficient};
 }
 
@@ -53,11 +39,11 @@ JointReaction JointFrictionKind::reaction(const JointView&, Index, const double*
 }
 
 void JointFrictionKind::fingerprint(Fingerprint& print) const {
-  for (const Part& part : parts_) {
-    print.add(std::uint64_t{part.friction.joint.serial});
-    print.add(part.friction.bound);
-    print.add(part.friction.coefficient);
-    print.add(part.friction.static_factor);
+  for (const Stored& stored : parts_) {
+    print.add(std::uint64_t{stored.part.joint.serial});
+    print.add(stored.part.bound);
+    print.add(stored.part.coefficient);
+    print.add(stored.part.static_factor);
   }
 }
 

@@ -4,10 +4,9 @@
 /// Dry friction in joints.
 
 #include <carom/core/joint_kind.h>
-#include <carom/core/part.h>
+#include <carom/joints/on_coordinate.h>
 
 #include <string_view>
-#include <vector>
 
 namespace carom {
 
@@ -30,24 +29,15 @@ struct JointFriction {
 };
 
 /// All friction in joints of a system.
-class CAROM_API JointFrictionKind final : public JointKind {
+class CAROM_API JointFrictionKind final : public OnCoordinate<JointFriction, JointFrictionKind, JointKind> {
 public:
-  static constexpr int part_dimension() { return 0; }
   static constexpr std::string_view part_label() { return "joint friction"; }
 
   /// Checks and stores a part. Throws ModelError.
   void add(const JointFriction& part, const PartCheck& check);
 
-  [[nodiscard]] std::unique_ptr<JointKind> clone() const override;
-  [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
-                                                    const Layout& layout) const override;
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 0; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] Index rows() const override { return 0; }
-  void ends(Index joint, std::vector<BodyId>& out) const override;
-  [[nodiscard]] JointId on_joint(Index joint) const override { return parts_[joint].friction.joint; }
   void pattern(Index, JointRow*) const override {}
   void evaluate(const JointView&, Index, JointRow*) const override {}
   [[nodiscard]] bool rubs() const override { return true; }
@@ -55,13 +45,6 @@ public:
   /// Friction is told by its moment: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView&, Index, const double* multipliers) const override;
   void fingerprint(Fingerprint& print) const override;
-
-private:
-  struct Part {
-    JointFriction friction;
-    std::vector<BodyId> ends;
-  };
-  std::vector<Part> parts_;
 };
 
 namespace planar {

@@ -333,17 +333,4 @@ TEST(JointsTimeStepping, AnIterationThatFailsNamesAJoint) {
   EXPECT_EQ(bits_of(simulation), before);
 }
 
-TEST(JointsTimeStepping, OptionsThatJointsDoNotGoWith) {
-  Scene scene = rod_pendulum(2);
-  const BodyId first = scene.bodies[0];
-  const std::string name = scene.system.name(first);
-  EXPECT_MODEL_ERROR(Simulation(scene.system, TimeStepping{.iteration = Iteration::linearly_implicit}),
-                     "time stepping", "linearly implicit", name, "joints", "allowed");
-  EXPECT_MODEL_ERROR(Simulation(scene.system, TimeStepping{.project_gaps = true}), "time stepping",
-                     "project_gaps", name, "joints", "allowed");
-  System free;
-  free.add(Particle{.mass = 1.0});
-  EXPECT_NO_THROW(Simulation(free, TimeStepping{.iteration = Iteration::linearly_implicit}));
-}
-
 }  // namespace

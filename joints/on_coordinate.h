@@ -1,0 +1,67 @@
+#pragma once
+
+/// \file
+/// What kinds of parts that act on the coordinate of a joint have in common.
+
+#include <carom/core/layout.h>
+#include <carom/core/part.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
+CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
+
+/// Bodies that a joint of the system binds.
+[[nodiscard]] CAROM_API std::vector<BodyId> bodies_of(const System& system, JointId joint);
+
+/// The coordinate of a joint of an assembly.
+[[nodiscard]] CAROM_API JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at);
+
+/// Stores all parts `P` of a system, each with a member `joint`, of the kind `Self`. \tparam Base JointKind
+/// or ForceKind
+template <class P, class Self, class Base>
+class OnCoordinate : public Base {
+public:
+  static constexpr int part_dimension() { return 0; }
+
+  [[nodiscard]] std::unique_ptr<Base> clone() const override {
+    return std::make_unique<Self>(static_cast<const Self&>(*this));
+  }
+  [[nodiscard]] std::unique_ptr<Base> arranged(std::span<const Index> order,
+                                               const Layout& layout) const override {
+    auto copy = std::make_unique<Self>();
+    for (const Index slot : order) copy->parts_.push_back(parts_[slot]);
+    copy->layout_ = &layout;
+    return copy;
+  }
+  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  [[nodiscard]] int dimension() const override { return 0; }
+  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  void ends(Index slot, std::vector<BodyId>& out) const override {
+    out.insert(out.end(), parts_[slot].ends.begin(), parts_[slot].ends.end());
+  }
+  [[nodiscard]] JointId on_joint(Index slot) const override { return parts_[slot].part.joint; }
+
+protected:
+  /// A part, the bodies of its joint, its name in messages.
+  struct Stored {
+    P part;
+    std::vector<BodyId> ends;
+    std::string name;
+  };
+  /// Stores a part that has been checked.
+  void store(const P& part, const PartCheck& check) {
+    parts_.push_back({part, bodies_of(check.system(), part.joint), check.part()});
+  }
+
+  std::vector<Stored> parts_;
+  const Layout* layout_ = nullptr;  // of an arranged kind
+};
+
+}  // namespace carom
