@@ -1,20 +1,26 @@
 #!/usr/bin/env bash
 # Builds carom and runs its tests; the last line is "N passed, M failed".
 #   scripts/test.sh [preset]    release (default: every test), dev, sanitizers, clang (those labelled fast)
+#   scripts/test.sh long        those labelled long alone, in release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${1:-release}
+fast=ON
+label=()
+if [[ $preset == long ]]; then
+  preset=release fast=OFF label=(--label-regex long)
+fi
 jobs=$(nproc)
 log="build/$preset/tests.log"
 
 scripts/setup.sh
-cmake --preset "$preset"
+cmake --preset "$preset" -DCAROM_FAST_TESTS="$fast"
 cmake --build --preset "$preset" --parallel "$jobs"
 
 # Tests that pass go to the log only.
 status=0
-ctest --preset "$preset" --parallel "$jobs" 2>&1 </dev/null |
+ctest --preset "$preset" "${label[@]}" --parallel "$jobs" 2>&1 </dev/null |
   tee "$log" | { grep -vE '^ +Start +[0-9]+:| Passed +[0-9.]+ sec$' || true; } || status=$?
 
 summary=$(grep -E '^[0-9]+% tests passed, [0-9]+ tests failed out of [0-9]+$' "$log" | tail -n 1 || true)
