@@ -294,6 +294,18 @@ void ClosedContacts::margins(std::vector<ForceMargin>& out) {
       lines.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
     }
   };
+  // What wedges has no largest margin: one as large as the forces is enough.
+  const auto bound = [&](std::size_t first, std::size_t last) {
+    const auto rises = [](const Line& line) { return line.slope > 0.0; };
+    const auto falls = [](const Line& line) { return line.slope < 0.0; };
+    if (std::any_of(lines.begin(), lines.end(), rises) && std::any_of(lines.begin(), lines.end(), falls))
+      return;
+    double size = 0.0;
+    for (std::size_t i = first; i < last; ++i) {
+      size += std::abs(contacts_[i].normal) + std::abs(contacts_[i].tangential);
+    }
+    lines.push_back({size, 0.0});
+  };
   const auto least = [&](double shift) {
     double value = std::numeric_limits<double>::infinity();
     for (const Line& line : lines) value = std::min(value, line.at + shift * line.slope);
@@ -309,10 +321,11 @@ void ClosedContacts::margins(std::vector<ForceMargin>& out) {
       const Spread& spread = spreads_[at];
       const double* const vector = null_.data() + spread.vector;
       collect(spread.first, spread.last, vector);
+      bound(spread.first, spread.last);
       double best_shift = 0.0, best = least(0.0);
       for (const Line& a : lines) {
         for (const Line& b : lines) {
-          if (!(a.slope > 0.0 && b.slope < 0.0)) continue;
+          if (!(a.slope >= 0.0 && b.slope <= 0.0 && a.slope > b.slope)) continue;
           const double shift = (b.at - a.at) / (a.slope - b.slope);
           const double value = least(shift);
           if (value > best) {
