@@ -111,11 +111,13 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
 }
 
 /// What the first answer leaves to change: contacts that break loose rub at their sliding coefficient; those
-/// that were taken to lift or slip and do not are put back. True if the problem is to be solved anew.
+/// that were taken to lift or slip and do not, since another one that broke loose took them along, are put
+/// back. True if the problem is to be solved anew.
 bool ModeDecision::revise(std::span<Candidate> candidates) {
   bool changed = false;
-  double size = 0.0;
+  double size = 0.0, farthest = 0.0;
   for (const double b : cluster_.problem().vector()) size = std::max(size, std::abs(b));
+  Slide* astray = nullptr;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     Slide& slide = slides_[i];
@@ -128,13 +130,18 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
                                      candidate.mode == ContactMode::slip_negative)) {
       slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
       changed = true;
-    } else if (candidate.breaks && !slide.back && candidate.mode != ContactMode::open &&
-               slide.sign * rate(1) < -no_acceleration * size) {
-      slide.sign = 0.0;
-      slide.back = changed = true;
+    } else if (candidate.slip == 0.0 && !candidate.slippery && !slide.back &&
+               candidate.mode != ContactMode::open && slide.sign * rate(1) < -no_acceleration * size) {
+      // One at a time: it may be what takes the others along.
+      if (astray != nullptr && std::abs(rate(1)) <= farthest) continue;
+      astray = &slide;
+      farthest = std::abs(rate(1));
     }
   }
-  return changed;
+  if (changed || astray == nullptr) return changed;
+  astray->sign = 0.0;
+  astray->back = true;
+  return true;
 }
 
 void ModeDecision::name_culprit(std::span<Candidate> candidates) {

@@ -57,7 +57,7 @@ private:
   struct Slide {
     double sign = 0.0;  // of the sliding velocity, 0: may stick
     bool out = false;   // taken as open
-    bool back = false;  // was taken to break loose and did not
+    bool back = false;  // was taken to break loose or slip and did not
   };
   Decision solve(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
                  const double* acceleration, SolverChain& chain);
