@@ -102,6 +102,8 @@ void IslandDriver::take_captured(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     if (touches(i)) continue;
     const Contact& contact = work_->contacts[i];
+    // Almost without loads what is slow is far off all the same.
+    if (contact.gap > options_.gap_tolerance) continue;
     const double speed = contact.velocity(0, work.trial.v.data());
     const double fall = contact.acceleration(0, work.acceleration.data());
     if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) work_->touching.push_back(contact);
@@ -115,7 +117,6 @@ void IslandDriver::take_captured(std::size_t first, std::size_t last) {
 void IslandDriver::close_captured(DriverNews& news) {
   MotionWorkspace& work = work_->motion;
   std::vector<ClosedContact>& list = capture_.list();
-  list.clear();
   const double* const velocity = work.trial.v.data();
   // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
   // lifts it by, it falls again.
@@ -124,20 +125,28 @@ void IslandDriver::close_captured(DriverNews& news) {
     fall = std::max(fall, std::abs(contact.acceleration(0, work.acceleration.data())));
   }
   const double rounding = std::sqrt(2.0 * 4.0 * gap_noise_ * fall);
-  for (const Contact& contact : work_->touching) {
-    if (contact.rubs() || contact.velocity(0, velocity) > options_.capture_speed) continue;
-    ClosedContact& closed = list.emplace_back();
-    const bool stops = contact.rows > 1 && contact.sliding_speed(velocity) <= rounding;
-    closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
-    closed.at = contact;
+  for (const bool stopping : {true, false}) {
+    list.clear();
+    for (const Contact& contact : work_->touching) {
+      if (contact.rubs() || contact.velocity(0, velocity) > options_.capture_speed) continue;
+      ClosedContact& closed = list.emplace_back();
+      const bool stops = stopping && contact.rows > 1 && contact.sliding_speed(velocity) <= rounding;
+      closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
+      closed.at = contact;
+    }
+    motion_.closed().list().swap(list);
+    bool changed = false;
+    news.flows[EnergyFlow::accumulation] += motion_.project(y_, changed, news.shift);
+    motion_.closed().list().swap(list);
+    if (!changed) return;
+    motion_.evaluate(time_, y_.data(), false);
+    locate_contacts();
+    // To stop one may be to move another, in almost singular positions: then it may not be stopped.
+    const bool closes = std::all_of(list.begin(), list.end(), [&](const ClosedContact& closed) {
+      return std::abs(closed.at.velocity(0, velocity)) <= speed_noise();
+    });
+    if (closes) return;
   }
-  motion_.closed().list().swap(list);
-  bool changed = false;
-  news.flows[EnergyFlow::accumulation] += motion_.project(y_, changed, news.shift);
-  motion_.closed().list().swap(list);
-  if (!changed) return;
-  motion_.evaluate(time_, y_.data(), false);
-  locate_contacts();
 }
 
 void IslandDriver::book_impact(EventKind kind, double energy_before, DriverNews& news) {
