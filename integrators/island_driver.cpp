@@ -144,37 +144,33 @@ double IslandDriver::longest_step() const {
   return motion_.depends_on_time() ? options_.longest_step : longest_flight;
 }
 
-/// Contacts whose forces outgrow all others where the flow stands: W_nn - s mu W_nt goes to zero there.
-std::vector<std::string> IslandDriver::jammed_contacts() {
-  constexpr double without_bound = 1e3;
-  std::vector<std::string> names;
-  motion_.evaluate(flow_->end(), flow_->state().data(), true);
-  for (const ClosedContact& contact : motion_.closed().list()) {
-    if (std::abs(contact.normal) > without_bound * force_scale_)
-      names.push_back(finder_->name(contact.at.key));
-  }
-  return names;
-}
-
 void IslandDriver::take_step() {
   const std::vector<double>& breaks = motion_.breaks();
   const auto due = std::upper_bound(breaks.begin(), breaks.end(), time_);
   const double until_break = due == breaks.end() ? never : *due - time_;
-  try {
-    flow_->advance(std::min(longest_step(), until_break));
-  } catch (const SolverError& error) {
-    std::vector<std::string> jammed = jammed_contacts();
-    const std::string what = error.what();
-    if (jammed.empty()) fail(what, {});
-    fail(what + "; forces of contact grow without bound, a jam (Painleve)", std::move(jammed));
-  }
-  if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
-  sample_step();
   landed_at_ = never;
-  next_ = find_event();
+  pending_ = true;
+  do {
+    try {
+      flow_->advance(std::min(longest_step(), until_break));
+    } catch (const SolverError& error) {
+      if (!find_jam()) fail(error.what(), {});
+      jam_ = error.what();
+      next_ = {time_, Guard::jam, 0};
+      landed_at_ = time_;
+      landed_ = y_;
+      return;
+    }
+    if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
+    sample_step();
+    landed_at_ = never;
+    next_ = find_event();
+    // Forces that were infinite within the step: nearer to there they are seen to grow.
+    constexpr double nearer = 0.25;
+    if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
+  } while (next_.guard == Guard::jam);
   const bool at_break = until_break < never && flow_->end() >= *due - 2.0 * epsilon * std::abs(*due);
   if (next_.guard == Guard::nothing && at_break) next_ = {*due, Guard::law, 0};
-  pending_ = true;
 }
 
 void IslandDriver::accept_step(DriverNews& news) {
@@ -201,7 +197,8 @@ void IslandDriver::go_to_event(DriverNews& news) {
     flow_->land(std::min(time_, flow_->end()), y_);
   }
   pending_ = in_phase_ = false;
-  step_ = flow_->next_step();
+  // In front of a jam steps have shrunk to nothing.
+  step_ = next_.guard == Guard::jam ? 0.0 : flow_->next_step();
   motion_.evaluate(time_, y_.data(), true);
   count_event();
   // Events of several bodies at one instant are decided one after the other: what gave way goes on doing so.
@@ -241,6 +238,7 @@ void IslandDriver::go_to_event(DriverNews& news) {
   }
   begin_phase(news);
   jumped_ = false;
+  jammed_.clear();
 }
 
 bool IslandDriver::at_rest() {

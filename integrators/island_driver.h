@@ -20,6 +20,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -74,9 +75,9 @@ public:
   [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
 private:
-  // What is found: nothing, an end of a gap, of a force, of slipping; a kink of loads; a break of a law; or
-  // that the flow is to start anew.
-  enum class Guard : std::uint8_t { nothing, gap, force, slip, kink, law, restart };
+  // What is found: nothing, an end of a gap, of a force, of slipping; a kink of loads; a break of a law;
+  // forces without bound; or that the flow is to start anew.
+  enum class Guard : std::uint8_t { nothing, gap, force, slip, kink, law, jam, restart };
   struct Found {
     double time;
     Guard guard = Guard::nothing;
@@ -102,7 +103,6 @@ private:
 
   // Smooth phases.
   void take_step();
-  [[nodiscard]] std::vector<std::string> jammed_contacts();
   void sample_step();
   [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
@@ -135,6 +135,10 @@ private:
   void decide_modes(DriverNews& news);
   bool decide_body(std::size_t first, std::size_t last, DriverNews& news);
   void collect_candidates(std::size_t first, std::size_t last);
+  [[nodiscard]] bool find_jam();
+  [[nodiscard]] Decision decide_candidates(std::size_t first, std::size_t last);
+  [[nodiscard]] bool has_jammed() const;
+  [[nodiscard]] std::size_t heaviest_loss();
   void impact_without_collision(DriverNews& news);
   void tell_changes(DriverNews& news);
   void tell_choice(EventKind kind, DriverNews& news);
@@ -187,6 +191,8 @@ private:
   std::vector<ContactPair> lifting_;
   double gave_way_at_ = 0.0;           // time of both [s]
   ContactPair stopped_;                // has just stopped slipping
+  std::vector<ContactPair> jammed_;    // their forces have outgrown all bounds,
+  std::string jam_;                    // as the flow told
   std::vector<ClosedContact> before_;  // closed before the event
   ClosedContacts capture_;
   SolutionList solutions_;

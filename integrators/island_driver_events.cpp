@@ -145,8 +145,7 @@ bool IslandDriver::decide_body(std::size_t first, std::size_t last, DriverNews& 
   collect_candidates(first, last);
   std::vector<Candidate>& candidates = work_->candidates;
   if (candidates.empty()) return true;
-  const Decision decision = work_->decision.decide(*assembly_, motion_, candidates,
-                                                   work_->motion.acceleration.data(), work_->chain);
+  const Decision decision = decide_candidates(first, last);
   if (decision == Decision::impossible) {
     impact_without_collision(news);
     return false;

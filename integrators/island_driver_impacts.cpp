@@ -1,5 +1,4 @@
-// Problem: impacts at one instant, where they come from and where they lead to: accumulations, impacts
-// without collision, the account.
+// Problem: impacts at one instant, where they come from and where they lead to: accumulations, the account.
 
 #include <carom/integrators/island_driver.h>
 
@@ -246,72 +245,6 @@ void IslandDriver::list_impulses(DriverNews& news) {
           {assembly_->joint_id(k, joint), kind.reaction(at, joint, of_joint), time_});
     }
   }
-}
-
-/// The limit of an impact at vanishing speed: of its answers with impulses the one that takes most energy.
-void IslandDriver::impact_without_collision(DriverNews& news) {
-  std::vector<Candidate>& candidates = work_->candidates;
-  double* const velocity = work_->motion.trial.v.data();
-  std::vector<Contact>& touching = work_->touching;
-  touching.clear();
-  std::vector<std::string> names;
-  std::vector<std::size_t> taking_part;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    // Friction in joints keeps nothing from jamming.
-    if (candidates[i].at.rubs()) continue;
-    taking_part.push_back(i);
-    touching.push_back(candidates[i].at);
-    names.push_back(finder_->name(candidates[i].at.key));
-  }
-  ContactCluster& cluster = work_->cluster;
-  cluster.build(*assembly_, touching, velocity);
-  motion_.couple(cluster);
-  cluster.set_free_velocity(velocity);
-  if (!cluster.solve(work_->chain).usable() ||
-      solutions_.enumerate(cluster.problem()) == Outcome::not_solved) {
-    fail("no forces keep the contact and the impact without collision is not solved", std::move(names),
-         &cluster);
-  }
-  std::vector<double> restitution;
-  restitution.reserve(2 * touching.size());
-  for (const Contact& contact : touching) {
-    restitution.push_back(contact.law.normal_restitution);
-    if (contact.rows > 1) restitution.push_back(contact.law.tangential_restitution);
-  }
-  std::size_t best = solutions_.size();
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < solutions_.size(); ++s) {
-    const auto impulse = solutions_.impulse(s);
-    double size = 0.0, loss = 0.0;
-    for (std::size_t row = 0; row < impulse.size(); ++row) {
-      const double after = solutions_.velocity(s)[row] - restitution[row] * cluster.before()[row];
-      size = std::max(size, std::abs(impulse[row]));
-      loss -= 0.5 * impulse[row] * (cluster.before()[row] + after);
-    }
-    if (size == 0.0 || !(loss > most)) continue;
-    most = loss;
-    best = s;
-  }
-  if (best == solutions_.size()) {
-    fail("no forces keep the contact, and no impact without collision does", std::move(names), &cluster);
-  }
-  cluster.set_impulses(solutions_.impulse(best));
-  const double energy_before = motion_.kinetic_energy(touching.front().body);
-  motion_.apply(cluster, velocity);
-  const Range v = assembly_->islands()[motion_.island()].v;
-  std::copy(velocity + v.begin, velocity + v.end,
-            y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
-  const std::size_t told = news.events.size();
-  book_impact(EventKind::impact_without_collision, energy_before, news);
-  for (std::size_t i = told; i < news.events.size(); ++i) {
-    const Candidate& candidate = candidates[taking_part[i - told]];
-    news.events[i].stiffness = candidate.stiffness;
-    news.events[i].free_acceleration = candidate.free_acceleration;
-  }
-  stopped_ = {};
-  motion_.evaluate(time_, y_.data(), false);
-  locate_contacts();
-  resolve_impacts(news);
 }
 
 void IslandDriver::remember_impact(const ContactKey& contact) {

@@ -17,6 +17,9 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
 constexpr double force_rounding = 1e-11;
 
+// Forces this large against those around them are infinite nearby.
+constexpr double without_bound = 1e3;
+
 // Numbers of kinks this small against their size over the step are zero.
 constexpr double kink_rounding = 1e-13;
 
@@ -273,6 +276,11 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
     double next = by_values ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
     if (!(next > low && next < high) || opens || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
+  }
+  // From large to large of the other sign: no zero of the forces but a pole.
+  const double large = without_bound * force_scale_;
+  if (rough.guard == Guard::force && f_low > large && f_high < -large) {
+    return {low, Guard::jam, rough.which};
   }
   // Nothing there: go on from where it was foretold, for behind it others may have been.
   return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{foretold, Guard::restart, 0};

@@ -41,11 +41,15 @@ bool has_no_solution(const SolverError& error) {
          message.find("an impact is not solved (no solution)") != std::string::npos;
 }
 
-// Open questions, each with an error that says so:
-//   283         a corner slips on one wall and sticks at another: no forces keep the contacts, and the impact
-//               without collision has no solution with an impulse either;
-//   1157, 2083  the force on a sliding contact grows until steps have shrunk to nothing.
-constexpr std::array<std::uint64_t, 3> open_questions{283, 1157, 2083};
+// Open questions, of the scenes 0 to 59,999 (their accounts close to 1e-6 at the default tolerance, all but a
+// dozen to 1e-7, which close to 5e-9 at the tight one):
+//   12873, 13431  two corners of a box at rest but for 1e-5 m/s, one of them pushed into its wall by the
+//   force on
+//                 the other: an error says that the problem of the accelerations is not solved;
+//   22935, 32129  two particles at one place, joined by a spring that is longer: its force has no direction,
+//   and
+//                 what happens hangs on rounding.
+constexpr std::array<std::uint64_t, 4> open_questions{12873, 13431, 22935, 32129};
 
 void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_residual, Findings& findings) {
   const std::string name = "scene " + std::to_string(seed) + ": ";
@@ -124,6 +128,13 @@ TEST(EventScenesLong, NoImpactIsMissedAndTheAccountCloses) {
   EXPECT_LE(findings.without_solution, 20);
 }
 
+// Seen: 3.6e-8.
+TEST(EventScenesLong, LikewiseInOtherScenes) {
+  const Findings findings = run_scenes(3000, 2000, {}, residual_at_default);
+  expect_sound(findings, 2000);
+  EXPECT_LE(findings.without_solution, 40);
+}
+
 TEST(EventScenesLong, LikewiseAtATightTolerance) {
   const Findings findings = run_scenes(100, 1000, tight, residual_at_tight);
   expect_sound(findings, 1000);
@@ -176,6 +187,28 @@ TEST(EventScenes, TwoBodiesGiveWayAtOnce) { expect_sound_scenes({65}); }
 // Friction that falls off within a millisecond of the end of sliding: a step that passed over that end did
 // not see it.
 TEST(EventScenes, StribecksCurveIsSeenToTheEndOfSliding) { expect_sound_scenes({847}); }
+
+// Friction that grows as sliding slows takes W_nn - s mu W_nt to zero: forces grow without bound.
+TEST(EventScenes, ForcesThatGrowWithoutBound) {
+  expect_sound_scenes({1157, 2083, 5419, 5571, 6511, 11963, 12431, 12853, 13970, 16677, 16893, 19216});
+}
+
+// No forces keep two contacts, nor did an impact of unequal tangential restitution.
+TEST(EventScenes, TwoContactsThatNoForcesKeep) { expect_sound_scenes({283, 12307, 33453, 53278}); }
+
+// Almost without loads a corner a hand's breadth off was taken for one that is about to touch.
+TEST(EventScenes, OnlyWhatIsNearIsCaptured) {
+  expect_sound_scenes({5087, 24444, 27857, 32265, 32962, 33560});
+}
+
+// Wedged between two walls: the forces may grow together, and were left where one of them was zero.
+TEST(EventScenes, WedgedContactsShareTheirForces) { expect_sound_scenes({21881, 47985}); }
+
+// Of two contacts that break loose one does not slip once the friction of the other has dropped.
+TEST(EventScenes, WhatBreaksLooseTogether) { expect_sound_scenes({41206}); }
+
+// A corner was stopped at the price of pushing another one off, which came back at once.
+TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({17418, 36733}); }
 
 // Multistep methods at order 1: gaps and their rates contradict each other by the tolerance.
 TEST(EventScenes, LowOrderLetsNoGapFallThatOpens) {

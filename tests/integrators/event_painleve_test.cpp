@@ -216,7 +216,8 @@ TEST(EventPainleve, OfSeveralAnswersThePresentModeIsKept) {
       now.between(wood, stone, {.friction = of(at, "mu"), .normal_restitution = 0.0});
     });
     simulation.clear_events();
-    const double before = simulation.state().velocity(rod)[1];
+    const State start = simulation.state();
+    const double before = start.velocity(rod)[1];
     simulation.run_until(2.0 * short_time);
     ASSERT_EQ(simulation.events().size(), 1u) << at;
     const EventRecord& event = simulation.events()[0];
@@ -231,6 +232,63 @@ TEST(EventPainleve, OfSeveralAnswersThePresentModeIsKept) {
                 1e-3 * force * short_time)
         << at;
     EXPECT_TRUE(ledger.closes()) << at;
+    // A state that is set has no present mode: it lifts off, as at any start.
+    simulation.set_state(start);
+    simulation.clear_events();
+    simulation.run_until(2.0 * short_time);
+    ASSERT_EQ(simulation.events().size(), 1u) << at;
+    EXPECT_EQ(simulation.events()[0].kind, EventKind::several_accelerations) << at;
+    EXPECT_EQ(simulation.events()[0].mode, ContactMode::open) << at;
+  }
+}
+
+// Friction that grows as the sliding slows takes the stiffness to zero while the rod slides: the force on the
+// tip grows without bound within a millionth of a second, and the impact without collision ends the sliding.
+TEST(EventPainleve, ForceThatGrowsWithoutBoundEndsInAnImpactWithoutCollision) {
+  constexpr double kinetic = 1.0, fixed = 2.0;
+  const double theta = std::atan(2.0);
+  const Vec<2> lever(std::cos(theta), std::sin(theta));
+  for (const FlowMethod method :
+       {FlowMethod::explicit_runge_kutta, FlowMethod::one_step, FlowMethod::adams, FlowMethod::bdf}) {
+    for (const double tangential_restitution : {0.0, 0.5}) {
+      for (const double curve : {0.2, 0.5}) {
+        SCOPED_TRACE(testing::Message()
+                     << static_cast<int>(method) << ", " << tangential_restitution << ", " << curve);
+        System system;
+        system.add(Gravity{{0.0, -g}});
+        system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = kinetic,
+                                                            .normal_restitution = 0.0,
+                                                            .tangential_restitution = tangential_restitution,
+                                                            .static_friction = fixed,
+                                                            .stribeck_speed = curve});
+        const BodyId rod = system.add(RigidBody{
+            .mass = planar::rod(1.0, 2.0), .position = lever, .angle = theta, .velocity = {-1.0, 0.0}});
+        system.add(Point{.body = rod, .position = {-1.0, 0.0}});
+        Simulation simulation(std::move(system), tight(method));
+        const LedgerWatch ledger(simulation);
+        simulation.run_until(0.05);
+        const auto impacts = events_of(simulation, EventKind::impact_without_collision);
+        ASSERT_EQ(impacts.size(), 1u);
+        const EventRecord& impact = impacts[0];
+        // p = 0, seen from behind. Steps end at 1e-16 s: p falls like the root of the time left, at rates of
+        // some 1e2 1/(kg s)^(1/2).
+        EXPECT_LT(impact.stiffness, 0.0);
+        EXPECT_GT(impact.stiffness, -1e-5);
+        EXPECT_LT(impact.free_acceleration, -1.0);
+        // At the inclination then, 1 + 3 cos (cos - mu sin) = 0; hence mu, and by the curve the speed.
+        // Gravity alone turns the rod by less than 1e-3 rad until then, and mu by some thousandths.
+        const double critical = (1.0 + 3.0 * lever[0] * lever[0]) / (3.0 * lever[0] * lever[1]);
+        EXPECT_NEAR(impact.velocity_before[1], curve * std::log((critical - kinetic) / (fixed - kinetic)),
+                    1e-3);
+        EXPECT_NEAR(impact.velocity_before[0], 0.0, 1e-11);
+        EXPECT_NEAR(impact.velocity_after[0], 0.0, 1e-11);
+        EXPECT_NEAR(impact.velocity_after[1], -tangential_restitution * impact.velocity_before[1], 1e-9);
+        // Along the edge of the cone, where p is zero: P_t = W_nn/|W_nt| P_n.
+        EXPECT_NEAR(impact.impulse[1], critical * impact.impulse[0], 5e-3 * impact.impulse[1]);
+        EXPECT_GT(simulation.energy().flow(EnergyFlow::impact_without_collision), 0.0);
+        EXPECT_TRUE(ledger.closes(method == FlowMethod::adams || method == FlowMethod::bdf ? 100.0 : 1.0));
+      }
+    }
   }
 }
 
