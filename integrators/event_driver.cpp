@@ -38,6 +38,10 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options)
   }
 }
 
+void EventDriver::demand_start(const State& state) {
+  for (auto& island : islands_) island->demand_start(state);
+}
+
 void EventDriver::start(const State& state, const Companion& companion) {
   for (auto& island : islands_) island->start(state, companion.modes);
   counted_ = {};

@@ -24,6 +24,8 @@ public:
   /// Throws ModelError for impossible options, a contact without a law, contact in space.
   EventDriver(const Assembly& assembly, const EventDriven& options);
 
+  /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start.
+  void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
   /// tells what happened and `events` got what there was; on SolverError none of them has changed. Throws
   /// ModelError where bodies are too deep in obstacles at a start.

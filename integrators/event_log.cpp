@@ -1,9 +1,12 @@
 // Problem: tell events to people and programs.
 
 #include <carom/core/csv.h>
+#include <carom/core/whole_file.h>
 #include <carom/integrators/event_log.h>
+#include <carom/integrators/simulation.h>
 
 #include <ostream>
+#include <sstream>
 
 namespace carom {
 
@@ -51,6 +54,15 @@ void write_events(std::ostream& out, const std::vector<EventRecord>& events,
     add(event.accumulation_time);
     out << line << '\n';
   }
+}
+
+void Simulation::write_events(const std::string& path) const {
+  std::ostringstream text;
+  carom::write_events(text, events(), [this](const EventRecord& event) {
+    if (event.element.valid()) return system().name(event.element);
+    return event.body.valid() ? name(event.contact) : std::string();
+  });
+  write_file(path, text.str(), "events");
 }
 
 }  // namespace carom

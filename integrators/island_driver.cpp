@@ -34,7 +34,22 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
   }
 }
 
+void IslandDriver::demand_start(const State& state) {
+  work_->y.resize(motion_.size());
+  motion_.gather(state, work_->y);
+  motion_.evaluate(state.time, work_->y.data(), false);
+  Contact contact;
+  for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
+    motion_.contact(i, contact);
+    if (contact.gap >= -options_.gap_tolerance) continue;
+    throw ModelError("event-driven mode: gap of " + finder_->name(contact.key) + " is " +
+                     to_text(contact.gap) + " m at the start; allowed: not below -gap_tolerance, " +
+                     to_text(-options_.gap_tolerance) + " m");
+  }
+}
+
 void IslandDriver::start(const State& state, const ContactModes& present) {
+  demand_start(state);
   if (!flow_) flow_ = make_flow(options_.method, motion_, options_.relative_tolerance);
   time_ = looked_at_ = state.time;
   landed_at_ = never;
@@ -56,11 +71,6 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   Contact contact;
   for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
     motion_.contact(i, contact);
-    if (contact.gap < -options_.gap_tolerance) {
-      throw ModelError("event-driven mode: gap of " + finder_->name(contact.key) + " is " +
-                       to_text(contact.gap) + " m at the start; allowed: not below -gap_tolerance, " +
-                       to_text(-options_.gap_tolerance) + " m");
-    }
     const auto known = std::find_if(present.begin(), present.end(),
                                     [&](const auto& entry) { return entry.first == contact.key; });
     if (known == present.end() || known->second == ContactMode::open) continue;

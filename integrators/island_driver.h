@@ -62,7 +62,9 @@ public:
   IslandDriver(const Assembly& assembly, const ContactFinder& finder, const EventDriven& options,
                Index island, DriverWorkspace& work);
 
-  /// Starts at a state. \param present modes of contacts before, if known
+  /// Throws ModelError where a contact is deeper in an obstacle than gap_tolerance: no start.
+  void demand_start(const State& state);
+  /// Starts at a state; throws as demand_start(). \param present modes of contacts before, if known
   void start(const State& state, const ContactModes& present);
   /// Goes on to a time, not before the present; events at that very time included. Throws SolverError: the
   /// driver must then be started anew.
@@ -151,6 +153,7 @@ private:
   void remember_impact(const ContactKey& contact);
   [[nodiscard]] double accumulation_time() const;
 
+  [[nodiscard]] std::string tell_approach(const std::vector<Contact>& contacts, const double* velocity) const;
   [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
                          const ContactCluster* cluster = nullptr) const;
 

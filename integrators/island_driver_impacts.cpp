@@ -23,6 +23,16 @@ EnergyFlow line_of(EventKind kind, int row) {
 
 }  // namespace
 
+/// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
+std::string IslandDriver::tell_approach(const std::vector<Contact>& contacts, const double* velocity) const {
+  const auto slower = [&](const Contact& a, const Contact& b) {
+    return a.velocity(0, velocity) > b.velocity(0, velocity);
+  };
+  const Contact& fastest = *std::max_element(contacts.begin(), contacts.end(), slower);
+  return finder_->name(fastest.key) + " approaches at " + to_text(-fastest.velocity(0, velocity)) +
+         " m/s; allowed: what impulses of all that touch can stop";
+}
+
 /// Impacts at this instant, group by group, until nothing that touches approaches. True if there was one.
 bool IslandDriver::resolve_impacts(DriverNews& news) {
   const auto& pairs = motion_.pairs();
@@ -49,7 +59,9 @@ bool IslandDriver::resolve_impacts(DriverNews& news) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (touches(i)) names.push_back(finder_->name(work_->contacts[i].key));
   }
-  fail("impacts at one instant do not come to an end", std::move(names));
+  fail("impacts at one instant do not come to an end, more than " + std::to_string(most_impacts_at_once) +
+           " (restitution of 1, or unequal ones, where contacts hand on the motion)",
+       std::move(names));
 }
 
 void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fastest, DriverNews& news) {
@@ -82,9 +94,10 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
     std::vector<std::string> names;
     names.reserve(touching.size());
     for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
-    fail("the contact problem of an impact is not solved (" +
-             std::string(to_string(cluster.report().outcome)) + motion_.driven_by() + ")",
-         std::move(names), &cluster);
+    std::string what = "the contact problem of an impact is not solved (" +
+                       std::string(to_string(cluster.report().outcome)) + motion_.driven_by() + ")";
+    if (cluster.report().outcome == Outcome::no_solution) what += "; " + tell_approach(touching, velocity);
+    fail(what, std::move(names), &cluster);
   }
   motion_.apply(cluster, velocity);
   const Range v = assembly_->islands()[motion_.island()].v;

@@ -1,5 +1,4 @@
 #include <carom/core/joint_closure.h>
-#include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/event_driver.h>
 #include <carom/integrators/mode_takeover.h>
@@ -13,7 +12,6 @@
 #include <iostream>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace carom {
@@ -52,6 +50,13 @@ struct Simulation::Impl {
   // Everything made from the model, so that an edit can replace it as a whole.
   struct Model {
     Model(System system, const Mode& mode) : assembly(std::move(system)), machines(assembly, mode) {}
+    /// Brings a state onto the joints, and refuses one that a run cannot start from. The largest
+    /// displacement.
+    [[nodiscard]] double prepare(State& state) const {
+      const double shift = close_joints(assembly, state).shift;
+      if (machines.driver) machines.driver->demand_start(state);
+      return shift;
+    }
 
     Assembly assembly;
     Machines machines;
@@ -60,7 +65,7 @@ struct Simulation::Impl {
   Impl(System system, Mode chosen)
       : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
     state = model->assembly.initial_state();
-    report.projected = close_joints(model->assembly, state).shift;
+    report.projected = model->prepare(state);
     forget_history();
     companion.ledger.open(stored_energies(model->assembly, state));
   }
@@ -281,7 +286,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
     std::copy_n(self.state.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
     std::copy_n(self.state.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
   }
-  self.report.projected = close_joints(edited->assembly, state).shift;
+  self.report.projected = edited->prepare(state);
   self.model = std::move(edited);
   self.state = std::move(state);
   // What stuck goes on sticking: velocities have not changed.
@@ -298,7 +303,7 @@ void Simulation::set_state(const State& state) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
   }
   State closed = state;
-  const double closed_shift = close_joints(self.model->assembly, closed).shift;
+  self.report.projected = self.model->prepare(closed);
   const bool moved_in_time = state.time != self.state.time;
   if (moved_in_time) {
     for (Rhythm& rhythm : self.companion.rhythms) {
@@ -307,7 +312,6 @@ void Simulation::set_state(const State& state) {
       rhythm.fired = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
     }
   }
-  self.report.projected = closed_shift;
   self.state = std::move(closed);
   if (moved_in_time) self.restart_grid();
   self.forget_history();
@@ -321,6 +325,7 @@ void Simulation::switch_to(Mode mode) {
   if (machines.driver && self.model->machines.stepper) {
     take_over(assembly, machines.driver->finder(), self.state, self.companion, self.report, self.events);
   }
+  if (machines.driver && self.model->machines.driver) machines.driver->demand_start(self.state);
   if (machines.stepper && self.model->machines.driver) self.forget_history();
   self.mode = std::move(mode);
   self.model->machines = std::move(machines);
@@ -370,15 +375,6 @@ const Companion& Simulation::companion() const { return impl_->companion; }
 const Mode& Simulation::mode() const { return impl_->mode; }
 const std::vector<EventRecord>& Simulation::events() const { return impl_->events; }
 void Simulation::clear_events() { impl_->events.clear(); }
-
-void Simulation::write_events(const std::string& path) const {
-  std::ostringstream text;
-  carom::write_events(text, impl_->events, [this](const EventRecord& event) {
-    if (event.element.valid()) return system().name(event.element);
-    return event.body.valid() ? name(event.contact) : std::string();
-  });
-  write_file(path, text.str(), "events");
-}
 
 std::string Simulation::name(const ContactKey& key) const {
   return impl_->model->machines.finder().name(key);

@@ -35,7 +35,8 @@ public:
 
   /// Assembles `system`, with its described positions and velocities, at time 0. Where these do not obey the
   /// joints they are corrected (joint_closure.h); report().projected tells the largest displacement. Throws
-  /// ModelError for a model or options that cannot be.
+  /// ModelError for a model or options that cannot be, in the event-driven mode for bodies deeper in
+  /// obstacles than EventDriven::gap_tolerance too; so do edit() and set_state().
   Simulation(System system, Mode mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -59,7 +60,8 @@ public:
   void edit(const std::function<void(System&)>& change);
   /// Replaces the state (time included); positions and velocities are corrected to obey the joints. Throws
   /// ModelError naming the body for numbers that are not finite. Energy brought in or taken out is booked as
-  /// `intervention`.
+  /// `intervention`. Which contacts stuck and slipped is forgotten: in the event-driven mode it is decided
+  /// from the state, in time stepping a contact sticks if its speed is exactly zero.
   void set_state(const State& state);
   /// Goes on in another mode, or with other options, from the same state. From time stepping to the
   /// event-driven mode, bodies may have sunk into obstacles: contacts that approach there are resolved by an

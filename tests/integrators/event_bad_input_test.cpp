@@ -112,17 +112,8 @@ TEST(EventBadInput, AStartWithinAnObstacle) {
   // Within gap_tolerance it touches; deeper it is refused.
   EXPECT_NO_THROW(
       Simulation(ball({.friction = 0.3, .normal_restitution = 0.5}, -0.9e-9), EventDriven{}).step());
-  Simulation deep(ball({.friction = 0.3, .normal_restitution = 0.5}, -1e-3), EventDriven{});
-  const auto before = bits_of(deep);
-  EXPECT_MODEL_ERROR(deep.step(), "particle 'ball'", "half-plane 'floor'", "-0.001", "gap_tolerance",
-                     "allowed");
-  EXPECT_EQ(bits_of(deep), before);
-  // Put right, it runs.
-  State state = deep.state();
-  state.q[1] = 0.5;
-  deep.set_state(state);
-  EXPECT_NO_THROW(deep.run_until(1.0));
-  EXPECT_GT(deep.statistics().impacts, 0);
+  EXPECT_MODEL_ERROR(Simulation(ball({.friction = 0.3, .normal_restitution = 0.5}, -1e-3), EventDriven{}),
+                     "particle 'ball'", "half-plane 'floor'", "-0.001", "gap_tolerance", "allowed");
 }
 
 TEST(EventBadInput, AStateWithinAnObstacleOrNotFinite) {
@@ -136,12 +127,14 @@ TEST(EventBadInput, AStateWithinAnObstacleOrNotFinite) {
   EXPECT_EQ(bits_of(simulation), before);
   state = good;
   state.q[1] = -0.25;
-  simulation.set_state(state);
-  const auto deep = bits_of(simulation);
-  EXPECT_MODEL_ERROR(simulation.run_until(0.4), "ball", "floor", "-0.25");
-  EXPECT_EQ(bits_of(simulation), deep);
-  simulation.set_state(good);
-  EXPECT_NO_THROW(simulation.run_until(1.0));
+  EXPECT_MODEL_ERROR(simulation.set_state(state), "ball", "floor", "-0.25");
+  EXPECT_EQ(bits_of(simulation), before);
+  // It runs on, as if nothing had been.
+  simulation.run_until(1.0);
+  Simulation undisturbed(ball(), EventDriven{});
+  undisturbed.run_until(0.2);
+  undisturbed.run_until(1.0);
+  EXPECT_EQ(bits_of(simulation), bits_of(undisturbed));
 }
 
 TEST(EventBadInput, TimesThatCannotBe) {
