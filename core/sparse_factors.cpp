@@ -1,7 +1,5 @@
+#include <carom/core/elimination.h>
 #include <carom/core/sparse_factors.h>
-
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <array>
@@ -10,32 +8,6 @@
 #include <type_traits>
 
 namespace carom {
-
-namespace {
-
-/// Blocks in the order of their elimination, by minimum degree.
-std::vector<Index> elimination_order(Index blocks, std::span<const std::pair<Index, Index>> entries) {
-  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
-  std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(2 * entries.size());
-  for (const auto& [row, column] : entries) {
-    triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), 1.0);
-    if (row != column) triplets.emplace_back(static_cast<int>(column), static_cast<int>(row), 1.0);
-  }
-  Matrix matrix(static_cast<Eigen::Index>(blocks), static_cast<Eigen::Index>(blocks));
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int> ordering;
-  ordering(matrix, permutation);
-  std::vector<Index> order(blocks);
-  // The ordering tells the block that comes i-th.
-  for (Index i = 0; i < blocks; ++i) {
-    order[i] = static_cast<Index>(permutation.indices()[static_cast<Eigen::Index>(i)]);
-  }
-  return order;
-}
-
-}  // namespace
 
 std::vector<SparseFactors::Place> SparseFactors::analyse(std::span<const Index> sizes,
                                                          std::span<const std::pair<Index, Index>> entries) {
@@ -81,7 +53,7 @@ std::vector<SparseFactors::Place> SparseFactors::analyse(std::span<const Index> 
     ++pattern->entry_begin[entry.row + 1];
   }
   for (Index i = 0; i < blocks; ++i) pattern->entry_begin[i + 1] += pattern->entry_begin[i];
-  pattern->find_fill();
+  pattern->number_fill();
   pattern_ = std::move(pattern);
   for (std::vector<double>* const numbers : {&values_, &lower_, &own_, &pivot_, &relative_pivot_, &work_}) {
     numbers->clear();
@@ -89,40 +61,10 @@ std::vector<SparseFactors::Place> SparseFactors::analyse(std::span<const Index> 
   return places;
 }
 
-/// Rows of L by the elimination tree, and its columns.
-void SparseFactors::Pattern::find_fill() {
-  std::vector<Index> parent(blocks(), none), mark(blocks(), none), counts(blocks(), 0);
-  left_begin.assign(1, 0);
-  std::vector<Index> row;
-  for (Index i = 0; i < blocks(); ++i) {
-    row.clear();
-    mark[i] = i;
-    for (Index p = entry_begin[i]; p < entry_begin[i + 1]; ++p) {
-      for (Index j = entry_column[p]; mark[j] != i; j = parent[j]) {
-        mark[j] = i;
-        row.push_back(j);
-        if (parent[j] == none) parent[j] = i;
-      }
-    }
-    std::sort(row.begin(), row.end());
-    for (const Index j : row) ++counts[j];
-    left_column.insert(left_column.end(), row.begin(), row.end());
-    left_begin.push_back(static_cast<Index>(left_column.size()));
-  }
-  left_column.shrink_to_fit();
-  below_begin.assign(blocks() + 1, 0);
-  for (Index j = 0; j < blocks(); ++j) below_begin[j + 1] = below_begin[j] + counts[j];
-  below_row.assign(left_column.size(), 0);
-  below_number.assign(left_column.size(), 0);
-  left_place.assign(left_column.size(), 0);
-  std::vector<Index> next(below_begin.begin(), below_begin.end() - 1);
-  for (Index i = 0; i < blocks(); ++i) {
-    for (Index p = left_begin[i]; p < left_begin[i + 1]; ++p) {
-      const Index place = next[left_column[p]]++;
-      below_row[place] = i;
-      left_place[p] = place;
-    }
-  }
+/// The fill, and where the numbers of its blocks begin.
+void SparseFactors::Pattern::number_fill() {
+  find_fill(entry_begin, entry_column);
+  below_number.assign(below_row.size(), 0);
   for (Index j = 0; j < blocks(); ++j) {
     for (Index k = below_begin[j]; k < below_begin[j + 1]; ++k) {
       below_number[k] = static_cast<Index>(lower_size);

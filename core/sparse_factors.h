@@ -4,6 +4,7 @@
 /// L D L^T of a sparse symmetric matrix whose pattern does not change: analysed once, factorised often,
 /// without allocation. Rows with the same pattern are given as blocks, which are dense.
 
+#include <carom/core/elimination.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
@@ -57,16 +58,14 @@ public:
 
 private:
   // Places of blocks are those in the factor: in the order of elimination.
-  struct Pattern {
+  struct Pattern : EliminationPattern {
     std::vector<Index> row_begin;  // first row in the factor, by block
     std::vector<Index> given_row;  // first row in the matrix, by block
     // The matrix by rows of blocks of the permuted lower triangle, diagonal last.
     std::vector<Index> entry_begin, entry_column;
     std::size_t values_size = 0;
-    // Blocks of the rows of L, columns ascending, with their places in the list below.
-    std::vector<Index> left_begin, left_column, left_place;
-    // Blocks of L by columns, rows ascending, and where their numbers begin.
-    std::vector<Index> below_begin, below_row, below_number;
+    // Where the numbers of the blocks of L begin, by columns.
+    std::vector<Index> below_number;
     std::size_t lower_size = 0;
     // Numbers of L within the blocks on the diagonal.
     std::vector<Index> own_begin;
@@ -76,7 +75,7 @@ private:
 
     [[nodiscard]] Index blocks() const { return static_cast<Index>(given_row.size()); }
     [[nodiscard]] Index rows(Index block) const { return row_begin[block + 1] - row_begin[block]; }
-    void find_fill();
+    void number_fill();
   };
   template <Index Rows>
   void factor_blocks();
