@@ -199,12 +199,22 @@ std::size_t IslandJoints::joint_of(std::size_t row) const {
   return static_cast<std::size_t>(after - pattern_->joints.begin()) - 1;
 }
 
-JointId IslandJoints::joint(std::size_t row) const {
-  const auto joint = static_cast<Index>(joint_of(row));
+const IslandJoints::OfKind& IslandJoints::kind_of(std::size_t joint) const {
   std::size_t kind = pattern_->kinds.size() - 1;
   while (pattern_->kinds[kind].first > joint) --kind;
-  const OfKind& of = pattern_->kinds[kind];
+  return pattern_->kinds[kind];
+}
+
+JointId IslandJoints::joint(std::size_t row) const {
+  const auto joint = static_cast<Index>(joint_of(row));
+  const OfKind& of = kind_of(joint);
   return assembly_->joint_id(of.kind, of.joints.begin + (joint - of.first));
+}
+
+void IslandJoints::derivatives(const JointView& at, std::size_t joint, JointRowDerivative* out) const {
+  const OfKind& of = kind_of(joint);
+  const Index slot = of.joints.begin + (static_cast<Index>(joint) - of.first);
+  assembly_->joint_kinds()[of.kind]->derivatives(at, slot, out);
 }
 
 JointRow IslandJoints::row(std::size_t row) const {

@@ -55,6 +55,8 @@ public:
 
   /// A row at the configuration where it was brought last.
   [[nodiscard]] JointRow row(std::size_t row) const;
+  /// Writes the derivatives of the rows of a joint.
+  void derivatives(const JointView& at, std::size_t joint, JointRowDerivative* out) const;
   /// Gap of a row.
   [[nodiscard]] double gap(std::size_t row) const { return gap_[row]; }
   /// Rate of a row.
@@ -141,6 +143,7 @@ private:
   };
   void evaluate(const JointView& at, JointNumbers out) const;
   [[nodiscard]] std::size_t joint_of(std::size_t row) const;
+  [[nodiscard]] const OfKind& kind_of(std::size_t joint) const;
   template <class F>
   void for_blocks(F&& f) const;
 

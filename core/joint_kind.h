@@ -62,6 +62,17 @@ struct JointRow {
   }
 };
 
+/// How a row changes with positions and velocities. Numbers are by the velocities of the row's blocks, one
+/// behind the other, a position being moved along that velocity.
+struct JointRowDerivative {
+  static constexpr int most = JointRow::max_bodies * JointRow::max_columns;
+  using Numbers = std::array<double, static_cast<std::size_t>(most)>;
+
+  std::array<Numbers, static_cast<std::size_t>(most)> jacobian{};  ///< dG_i / dq_j
+  Numbers drift_by_position{};                                     ///< of `drift`
+  Numbers drift_by_velocity{};                                     ///< of `drift`
+};
+
 /// Where the rows of many joints are written, numbers of one sort together. What is null is not wanted.
 struct JointNumbers {
   double* jacobian = nullptr;  ///< G: row by row, the blocks of a row one behind the other
@@ -122,6 +133,8 @@ public:
   virtual void evaluate(const JointView& at, Index joint, JointRow* out) const = 0;
   /// Writes the rows of several joints, in order. Unless overridden, one after the other by evaluate().
   virtual void evaluate_all(const JointView& at, Range joints, JointNumbers out) const;
+  /// Writes the derivatives of the rows of a joint.
+  virtual void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const = 0;
   /// True if rows depend on time.
   [[nodiscard]] virtual bool depends_on_time() const { return false; }
   /// Appends the times at which a joint's law of time has a kink or a jump [s].
@@ -131,6 +144,9 @@ public:
   [[nodiscard]] virtual bool has_coordinate() const { return false; }
   /// Writes the coordinate of a joint (gap: its value) as a row.
   virtual void coordinate(const JointView& /*at*/, Index /*joint*/, JointRow& /*out*/) const {}
+  /// Writes the derivatives of that row.
+  virtual void coordinate_derivatives(const JointView& /*at*/, Index /*joint*/,
+                                      JointRowDerivative& /*out*/) const {}
   /// Writes which velocities the coordinate's row has blocks for.
   virtual void coordinate_pattern(Index /*joint*/, JointRow& /*out*/) const {}
   /// Unilateral rows (stops) of each joint, beside rows().

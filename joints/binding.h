@@ -66,6 +66,8 @@ public:
   void evaluate(const JointView& at, Index joint, Index which, JointRow& row) const;
   /// Writes the first `rows` rows of several joints.
   void evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  /// Writes the derivatives of one row of a joint.
+  void derivatives(const JointView& at, Index joint, Index which, JointRowDerivative& out) const;
   /// What multipliers of the first `rows` rows do to `to`.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint, Index rows,
                                        const double* multipliers) const;

@@ -56,6 +56,13 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
   out->drift -= now.second;
 }
 
+// What is prescribed depends on time alone.
+void DriverKind::derivatives(const JointView& at, Index joint, JointRowDerivative* out) const {
+  const JointTable& table = *layout_->joints();
+  const JointTable::Place place = table.place(parts_[joint].driver.joint.serial);
+  table.kinds[place.kind]->coordinate_derivatives(at, place.slot, *out);
+}
+
 void DriverKind::breaks(Index joint, std::vector<double>& out) const {
   const std::vector<double>& breaks = parts_[joint].part.breaks;
   out.insert(out.end(), breaks.begin(), breaks.end());

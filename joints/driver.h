@@ -46,6 +46,7 @@ public:
   [[nodiscard]] Index rows() const override { return 1; }
   void pattern(Index joint, JointRow* out) const override;
   void evaluate(const JointView& at, Index joint, JointRow* out) const override;
+  void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override;
   [[nodiscard]] bool depends_on_time() const override { return true; }
   void breaks(Index joint, std::vector<double>& out) const override;
   /// The force of a driver is told by its moment: it acts along the coordinate.
@@ -106,6 +107,7 @@ public:
   [[nodiscard]] Index rows() const override { return 0; }
   void pattern(Index, JointRow*) const override {}
   void evaluate(const JointView&, Index, JointRow*) const override {}
+  void derivatives(const JointView&, Index, JointRowDerivative*) const override {}
   [[nodiscard]] Index limits() const override { return 2; }
   [[nodiscard]] bool has_limit(Index joint, Index which) const override;
   void limit(const JointView& at, Index joint, Index which, JointLimit& out) const override;

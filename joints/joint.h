@@ -65,9 +65,15 @@ public:
   void evaluate_all(const JointView& at, Range joints, JointNumbers out) const override {
     table_.evaluate(at, joints, row_count, out);
   }
+  void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override {
+    for (Index row = 0; row < row_count; ++row) table_.derivatives(at, joint, row, out[row]);
+  }
   [[nodiscard]] bool has_coordinate() const override { return with_coordinate; }
   void coordinate(const JointView& at, Index joint, JointRow& out) const override {
     if constexpr (with_coordinate) table_.evaluate(at, joint, row_count, out);
+  }
+  void coordinate_derivatives(const JointView& at, Index joint, JointRowDerivative& out) const override {
+    if constexpr (with_coordinate) table_.derivatives(at, joint, row_count, out);
   }
   void coordinate_pattern(Index joint, JointRow& out) const override {
     if constexpr (with_coordinate) table_.pattern(joint, out);

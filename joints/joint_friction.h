@@ -40,6 +40,7 @@ public:
   [[nodiscard]] Index rows() const override { return 0; }
   void pattern(Index, JointRow*) const override {}
   void evaluate(const JointView&, Index, JointRow*) const override {}
+  void derivatives(const JointView&, Index, JointRowDerivative*) const override {}
   [[nodiscard]] bool rubs() const override { return true; }
   [[nodiscard]] JointRub rub(Index joint) const override;
   /// Friction is told by its moment: it acts along the coordinate.
