@@ -8,7 +8,6 @@
 #include <Eigen/SparseLU>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace carom {
@@ -86,20 +85,7 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index i
   self.island = island;
   self.v = assembly.islands()[island].v;
   self.entries.clear();
-  const EvaluationContext at{assembly, state, evaluation, island};
-  std::optional<DifferenceDerivatives> differences;
-  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const ForceKind& force = *assembly.force_kinds()[kind];
-    const Range elements = force.is_field() ? Range{} : assembly.elements(island, kind);
-    for (Index element = elements.begin; element < elements.end; ++element) {
-      if (force.has_derivatives()) {
-        force.derivatives(at, element, self.entries);
-      } else {
-        if (!differences) differences.emplace(at);
-        differences->append(force, element, self.entries);
-      }
-    }
-  }
+  append_derivatives({assembly, state, evaluation, island}, self.entries);
 
   const auto index = [&](Index i) { return static_cast<int>(i - self.v.begin); };
   self.triplets.clear();
