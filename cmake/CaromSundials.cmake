@@ -5,7 +5,7 @@ if(NOT carom_sundials_sources)
   return()
 endif()
 
-set(carom_sundials_components cvode arkode nvecserial sunmatrixdense sunnonlinsolfixedpoint)
+set(carom_sundials_components cvode arkode nvecserial sunnonlinsolfixedpoint)
 # Asked for without a version, since the package of 7.0 refuses a request for 6.4; checked afterwards.
 find_package(SUNDIALS REQUIRED COMPONENTS ${carom_sundials_components})
 if(SUNDIALS_VERSION VERSION_LESS 6.4 OR SUNDIALS_VERSION VERSION_GREATER_EQUAL 8)

@@ -25,17 +25,17 @@ void ClosedContacts::bind(const Assembly& assembly, IslandJoints& joints) {
   joints_ = joints.empty() ? nullptr : &joints;
 }
 
+double ClosedContact::friction_at(const Contact& where, const double* velocities) const {
+  if (slippery) return 0.0;
+  return sticks() ? where.law.sticking_friction()
+                  : where.law.sliding_friction(slip_sign() * where.velocity(1, velocities));
+}
+
 void ClosedContacts::locate(const ContactFinder& finder, const StateView& state, const Evaluation& evaluation,
                             const ObstaclePlaces& places) {
   for (ClosedContact& contact : contacts_) {
     finder.contact(contact.pair, state, evaluation, places, contact.at);
-    const Surface& law = contact.at.law;
-    // A step may look beyond the end of sliding. The curve goes on smoothly there, so that a step that passes
-    // over its end is seen to be too long.
-    contact.friction = contact.slippery ? 0.0
-                       : contact.sticks()
-                           ? law.sticking_friction()
-                           : law.sliding_friction(contact.slip_sign() * contact.at.velocity(1, state.v));
+    contact.friction = contact.friction_at(contact.at, state.v);
   }
 }
 
@@ -94,7 +94,7 @@ void ClosedContacts::lay_out(const Assembly& assembly, std::size_t first, std::s
   }
 }
 
-/// Friction in joints is known where it slips: a load. \param acceleration to add to; may be null
+/// Friction in joints is known where it slips: a load. \param acceleration to add to
 void ClosedContacts::rub(std::size_t first, std::size_t last, double* acceleration) {
   for (std::size_t i = first; i < last; ++i) {
     ClosedContact& contact = contacts_[i];
@@ -102,7 +102,6 @@ void ClosedContacts::rub(std::size_t first, std::size_t last, double* accelerati
     contact.normal = contact.at.pressed;
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
-    if (acceleration == nullptr) continue;
     std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
     contact.at.add_transposed(1, contact.tangential, full_.data());
     joints_->respond(full_.data());
@@ -158,21 +157,24 @@ bool ClosedContacts::solve() {
   return std::all_of(unknown_.begin(), unknown_.end(), [](double number) { return std::isfinite(number); });
 }
 
-bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleration, bool change) {
+bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleration) {
   bool solved = true;
   spreads_.clear();
   null_.clear();
+  pivots_.clear();
   for_groups([&](std::size_t first, std::size_t last) {
     lay_out(assembly, first, last, true);
-    rub(first, last, change ? nullptr : acceleration);
+    rub(first, last, acceleration);
     const std::size_t n = rows_.size();
     unknown_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       const Contact& at = contacts_[rows_[i].contact].at;
-      const int row = rows_[i].tangent ? 1 : 0;
-      unknown_[i] = change ? -at.times(row, acceleration) : -at.acceleration(row, acceleration);
+      unknown_[i] = -at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
     }
     solved = solve() && solved;
+    for (std::size_t k = 0; k < rank_; ++k) {
+      pivots_.push_back({rows_[row_order_[k]], rows_[column_order_[k]]});
+    }
     for (std::size_t i = 0; i < n; ++i) {
       ClosedContact& contact = contacts_[rows_[i].contact];
       if (rows_[i].tangent) {

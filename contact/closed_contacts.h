@@ -40,6 +40,20 @@ struct ClosedContact {
   [[nodiscard]] double slip_sign() const {
     return mode == ContactMode::slip_positive ? 1.0 : mode == ContactMode::slip_negative ? -1.0 : 0.0;
   }
+  /// The coefficient of friction at a configuration and velocities of all bodies. A step may look beyond the
+  /// end of sliding: the curve goes on smoothly there.
+  [[nodiscard]] double friction_at(const Contact& where, const double* velocities) const;
+};
+
+/// One of the equations that forces of closed contacts were found by, and the force that it was solved for.
+struct ContactPivot {
+  /// A direction of a contact.
+  struct Row {
+    std::size_t contact = 0;  ///< its place in the list
+    bool tangent = false;     ///< the tangent if it sticks; else the normal
+  };
+  Row equation;  ///< whose acceleration vanishes
+  Row force;     ///< that of a normal pushes in the direction of the cone of friction where the contact slips
 };
 
 /// How far the forces of the contacts of one body, or of bodies that joints bind, are from where their modes
@@ -64,8 +78,10 @@ public:
               const ObstaclePlaces& places);
   /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in:
   /// a_free False where no forces keep the constraints; the contacts' forces are then not finite.
-  /// \param change the accelerations are a small change of others: the drift of the constraints is none of it
-  bool add_reactions(const Assembly& assembly, double* acceleration, bool change = false);
+  bool add_reactions(const Assembly& assembly, double* acceleration);
+  /// How it found them. Constraints that follow from others are not among them, nor are forces that were
+  /// left zero.
+  [[nodiscard]] const std::vector<ContactPivot>& pivots() const { return pivots_; }
   /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces
   /// are not unique (a brick that sticks at two corners), they are shared out so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);
@@ -77,10 +93,7 @@ public:
                    double* of_velocity);
 
 private:
-  struct Row {
-    std::size_t contact = 0;
-    bool tangent = false;
-  };
+  using Row = ContactPivot::Row;
   template <class F>
   void for_groups(F&& f);
   void lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing);
@@ -105,6 +118,7 @@ private:
   std::vector<double> work_;
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;
+  std::vector<ContactPivot> pivots_;
   std::vector<double> null_;  // null vectors of the systems last solved, by group
   struct Spread {
     std::size_t first = 0, last = 0;  // contacts

@@ -40,6 +40,13 @@ const JointPressure::Bearing* JointPressure::find(const Contact& contact) const 
   return at == bearings_.end() || at->serial != serial ? nullptr : &*at;
 }
 
+Range JointPressure::rows(const Contact& contact) const {
+  const Bearing* const bearing = find(contact);
+  if (bearing == nullptr) return {};
+  const auto first = static_cast<Index>(bearing->row);
+  return {first, first + bearing->joint->rows()};
+}
+
 void JointPressure::take(const double* multipliers, double duration) {
   multipliers_ = multipliers;
   duration_ = duration;

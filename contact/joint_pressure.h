@@ -26,6 +26,8 @@ public:
   [[nodiscard]] bool empty() const { return bearings_.empty(); }
   /// True if that of a contact is.
   [[nodiscard]] bool bears(const Contact& contact) const { return find(contact) != nullptr; }
+  /// The rows, among those of the island, whose multipliers bound that of a contact; empty if none do.
+  [[nodiscard]] Range rows(const Contact& contact) const;
   /// Takes note of the multipliers of all rows of the island's joints: forces, or impulses over a duration
   /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
   void take(const double* multipliers, double duration);

@@ -5,12 +5,29 @@
 /// the last step, so that somebody else can look for events in it.
 
 #include <carom/core/export.h>
+#include <carom/core/ids.h>
 
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace carom {
+
+/// One number of the linear equations that small changes of the rates obey,
+///
+///     sum of_rate d(dy/dt)_column = sum (of_state dy_column + of_integral dY_column),
+///
+/// by rows. Numbers at the same place add up. A column that is not below FlowProblem::size() stands for an
+/// unknown of its own, say the multiplier of a constraint: its number is `of_state`, it has a row of the same
+/// number, and that row has no `of_state` of such columns.
+struct RateDerivative {
+  Index row = 0;             ///< equation: that of the unknown of this number
+  Index column = 0;          ///< unknown
+  double of_rate = 0.0;      ///< factor of its rate: a mass; 1 on the diagonal of  dy/dt = f
+  double of_state = 0.0;     ///< factor of the unknown itself: df/dy
+  double of_integral = 0.0;  ///< factor of the unknown that it is the rate of (FlowProblem::integrals())
+};
 
 /// What is integrated: the numbers y of an island (coordinates, velocities, internal variables, works).
 class CAROM_API FlowProblem {
@@ -23,17 +40,21 @@ public:
   virtual void rates(double time, const double* y, double* rates) = 0;
   /// Absolute tolerance of each unknown, > 0.
   [[nodiscard]] virtual std::span<const double> absolute_tolerances() const = 0;
-  /// True if jacobian() is there.
+  /// True if jacobian() is there. Otherwise bdf finds all of df/dy by differences, size() evaluations.
   [[nodiscard]] virtual bool has_jacobian() const { return false; }
-  /// Writes df/dy, dense, column by column (size() times size() numbers).
-  virtual void jacobian(double /*time*/, const double* /*y*/, double* /*jacobian*/) {}
+  /// Number n of unknowns that jacobian() knows to be integrals:  dy_i/dt = y_(n+i)  for i < n.
+  [[nodiscard]] virtual std::size_t integrals() const { return 0; }
+  /// Appends the derivative of the rates, in any order; the same order again and again spares the analysis of
+  /// its pattern. Integrals have neither rows nor columns. Nor need unknowns have rows whose rates may be
+  /// taken as constant because no other depends on them (works): Newton's method finds them all the same.
+  virtual void jacobian(double /*time*/, const double* /*y*/, std::vector<RateDerivative>& /*out*/) {}
 };
 
 /// Methods of integration.
 enum class FlowMethod : std::uint8_t {
   explicit_runge_kutta,  ///< SUNDIALS' ARKODE, order 5: cheap restarts, for motion that is not stiff
   adams,                 ///< SUNDIALS' CVODE, Adams-Moulton with fixed point: long smooth phases
-  bdf,                   ///< SUNDIALS' CVODE, BDF with Newton's method, dense matrices: stiff couplings
+  bdf,                   ///< SUNDIALS' CVODE, BDF with Newton's method, sparse matrices: stiff couplings
   one_step               ///< our own explicit Runge-Kutta, order 5: the least overhead, for small islands
 };
 

@@ -183,38 +183,6 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
   if (work_count_ == work_lines) rates[work_place(WorkLine::joint_friction)] = in_joints;
 }
 
-void IslandMotion::jacobian(double time, const double* y, double* jacobian) {
-  MotionWorkspace& work = *work_;
-  const Assembly& assembly = *assembly_;
-  evaluate(time, y, true);
-  const Island& all = assembly.islands()[island_];
-  const EvaluationContext at{assembly, work.trial.view(), work.evaluation, island_};
-  derivatives_.clear();
-  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(island_, kind);
-    for (Index element = elements.begin; element < elements.end; ++element) {
-      assembly.force_kinds()[kind]->derivatives(at, element, derivatives_);
-    }
-  }
-  std::fill(jacobian, jacobian + size_ * size_, 0.0);
-  for (const LoadDerivative& entry : derivatives_) {
-    const std::size_t row = q_size_ + (entry.row - all.v.begin), column = entry.column - all.v.begin;
-    jacobian[column * size_ + row] += entry.by_position;
-    jacobian[(q_size_ + column) * size_ + row] += entry.by_velocity;
-  }
-  std::vector<double>& change = work.of_velocity;
-  for (std::size_t column = 0; column < q_size_ + v_size_; ++column) {
-    double* const loads = jacobian + column * size_ + q_size_;
-    assembly.for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      kind.apply_inverse_mass(slots, loads + (v - all.v.begin), change.data() + v);
-    });
-    joints_.hold(JointLevel::change, change.data());
-    if (!closed_.list().empty()) closed_.add_reactions(assembly, change.data(), true);
-    std::copy_n(change.begin() + all.v.begin, v_size_, loads);
-    if (column >= q_size_) jacobian[column * size_ + (column - q_size_)] = 1.0;
-  }
-}
-
 double IslandMotion::project(std::span<double> y, bool& changed, double& shift) {
   changed = false;
   if (closed_.list().empty() && joints_.empty()) return 0.0;

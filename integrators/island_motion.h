@@ -56,12 +56,13 @@ public:
   void rates(double time, const double* y, double* rates) override;
   [[nodiscard]] std::span<const double> absolute_tolerances() const override { return tolerances_; }
 
-  /// Where coordinates and velocities correspond one to one and elements have no internal variables.
-  [[nodiscard]] bool has_jacobian() const override { return q_size_ == v_size_ && z_size_ == 0; }
-  /// By the elements' derivatives; reactions answer to a change of the loads, but for that of their
-  /// directions. The works' rows are zero: nothing depends on works, and Newton's method finds them as they
-  /// are.
-  void jacobian(double time, const double* y, double* jacobian) override;
+  /// Where coordinates and velocities correspond one to one.
+  [[nodiscard]] bool has_jacobian() const override { return q_size_ == v_size_; }
+  /// Coordinates are the integrals of velocities.
+  [[nodiscard]] std::size_t integrals() const override { return has_jacobian() ? q_size_ : 0; }
+  /// The derivative of the equations of motion (island_motion_jacobian.cpp), with a multiplier for each row
+  /// of joints and each force of a closed contact that is a constraint. Works have no rows.
+  void jacobian(double time, const double* y, std::vector<RateDerivative>& out) override;
 
   /// Contacts that are closed.
   [[nodiscard]] ClosedContacts& closed() { return closed_; }
@@ -137,6 +138,16 @@ public:
 
 private:
   bool add_pressed_reactions();
+  // Parts of the Jacobian.
+  struct ContactChange;
+  [[nodiscard]] std::size_t unknown(Index v) const {
+    return q_size_ + (v - assembly_->islands()[island_].v.begin);
+  }
+  void differentiate_internals(std::vector<RateDerivative>& out);
+  void differentiate_joints(std::vector<RateDerivative>& out, Index& multiplier);
+  void differentiate_contacts(std::vector<RateDerivative>& out, Index& multiplier);
+  void differentiate_pressure(const ClosedContact& contact, std::vector<RateDerivative>& out);
+  [[nodiscard]] ContactChange change_of(const ClosedContact& contact);
 
   const Assembly* assembly_;
   const ContactFinder* finder_;
@@ -150,6 +161,7 @@ private:
   JointPressure pressure_;
   ClosedContacts closed_;
   std::vector<LoadDerivative> derivatives_;
+  std::vector<Index> row_multipliers_;  // unknowns of the Jacobian, by row of joints_; none: without force
   std::vector<ElementId> kink_elements_;
   std::vector<double> breaks_;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false, only_fields_ = true;

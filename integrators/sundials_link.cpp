@@ -2,15 +2,16 @@
 
 #include <carom/integrators/flow_checks.h>
 #include <carom/integrators/sundials_link.h>
+#include <carom/integrators/sundials_newton.h>
 
 #include <carom/core/part_check.h>
 #include <carom/integrators/sundials_loops.h>
 
 #include <arkode/arkode.h>
 #include <cvode/cvode.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -169,21 +170,55 @@ int SundialsLink::weights(N_Vector y, N_Vector weights, void* link) noexcept {
   }
 }
 
-int SundialsLink::jacobian(sunrealtype time, N_Vector y, N_Vector, SUNMatrix jacobian, void* link, N_Vector,
-                           N_Vector, N_Vector) noexcept {
+int SundialsLink::linear_system(sunrealtype time, N_Vector y, N_Vector rates, SUNMatrix matrix,
+                                sunbooleantype keep, sunbooleantype* renewed, sunrealtype gamma, void* link,
+                                N_Vector, N_Vector, N_Vector) noexcept {
   auto& self = *static_cast<SundialsLink*>(link);
   if (self.thrown()) return -1;
   try {
-    double* const numbers = SM_DATA_D(jacobian);
-    self.problem_->jacobian(time, NV_DATA_S(y), numbers);
-    if (loops::all_finite(self.size_ * self.size_, numbers)) return 0;
-    self.not_finite_ = true;
-    self.not_finite_at_ = time;
-    return 1;
+    NewtonMatrix& system = newton_matrix(matrix);
+    *renewed = keep ? 0 : 1;
+    if (!keep && !self.linearise(time, NV_DATA_S(y), NV_DATA_S(rates), system)) return 1;
+    return system.factor(gamma) ? 0 : 1;  // 1: perhaps with another gamma
   } catch (...) {
     self.exception_ = std::current_exception();
     return -1;
   }
+}
+
+bool SundialsLink::linearise(double time, double* y, const double* rates, NewtonMatrix& matrix) {
+  std::vector<RateDerivative>& entries = matrix.entries();
+  entries.clear();
+  if (problem_->has_jacobian()) {
+    problem_->jacobian(time, y, entries);
+  } else if (!difference_rates(time, y, rates, entries)) {
+    return false;
+  }
+  if (matrix.take()) return true;
+  not_finite_ = true;
+  not_finite_at_ = time;
+  return false;
+}
+
+bool SundialsLink::difference_rates(double time, double* y, const double* rates,
+                                    std::vector<RateDerivative>& out) {
+  const std::span<const double> absolute = problem_->absolute_tolerances();
+  const double part = std::sqrt(std::numeric_limits<double>::epsilon());
+  moved_rates_.resize(size_);
+  for (std::size_t column = 0; column < size_; ++column) {
+    const double at = y[column];
+    // A number below the second counts as zero.
+    y[column] = at + part * std::max(std::abs(at), absolute[column] / relative_tolerance_);
+    const double step = y[column] - at;
+    const bool finite = evaluate(time, y, moved_rates_.data());
+    y[column] = at;
+    if (!finite) return false;
+    for (std::size_t row = 0; row < size_; ++row) {
+      out.push_back({static_cast<Index>(row), static_cast<Index>(column), row == column ? 1.0 : 0.0,
+                     (moved_rates_[row] - rates[row]) / step, 0.0});
+    }
+  }
+  return true;
 }
 
 #if SUNDIALS_VERSION_MAJOR < 7

@@ -6,6 +6,7 @@
 
 #include <carom/core/errors.h>
 #include <carom/integrators/flow.h>
+#include <carom/integrators/newton_matrix.h>
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
@@ -84,8 +85,10 @@ public:
   /// Callbacks of CVODE and ARKODE; `link` is a SundialsLink.
   static int rates(sunrealtype time, N_Vector y, N_Vector rates, void* link) noexcept;
   static int weights(N_Vector y, N_Vector weights, void* link) noexcept;
-  static int jacobian(sunrealtype time, N_Vector y, N_Vector rates, SUNMatrix jacobian, void* link, N_Vector,
-                      N_Vector, N_Vector) noexcept;
+  /// Fills and factorises a matrix of make_newton_matrix().
+  static int linear_system(sunrealtype time, N_Vector y, N_Vector rates, SUNMatrix matrix,
+                           sunbooleantype keep, sunbooleantype* renewed, sunrealtype gamma, void* link,
+                           N_Vector, N_Vector, N_Vector) noexcept;
 #if SUNDIALS_VERSION_MAJOR < 7
   /// Takes messages in place of stderr; set for each integrator.
   static void take_message(int code, const char* module, const char* function, char* message,
@@ -93,6 +96,8 @@ public:
 #endif
 
 private:
+  bool linearise(double time, double* y, const double* rates, NewtonMatrix& matrix);
+  bool difference_rates(double time, double* y, const double* rates, std::vector<RateDerivative>& out);
   void keep_message(int code, const char* message) noexcept;
 
   FlowProblem* problem_;
@@ -100,6 +105,7 @@ private:
   double relative_tolerance_;
   SUNContext context_ = nullptr;
   std::int64_t evaluations_ = 0;
+  std::vector<double> moved_rates_;
   bool not_finite_ = false;
   double not_finite_at_ = -std::numeric_limits<double>::infinity();
   std::exception_ptr exception_{};

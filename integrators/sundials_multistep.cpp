@@ -1,14 +1,15 @@
 // Problem: methods that remember earlier steps, for long smooth motion (Adams-Moulton) and for stiff
 // couplings (BDF). Steps are those of CVODE.
 
-#include <carom/integrators/sundials_dense.h>
 #include <carom/integrators/sundials_flow.h>
+#include <carom/integrators/sundials_newton.h>
 
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 namespace carom {
 
@@ -37,6 +38,7 @@ private:
 
   void* memory_;
   SUNNonlinearSolver fixed_point_ = nullptr;
+  std::unique_ptr<NewtonMatrix> newton_;
   SUNMatrix matrix_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
   bool restart_ = true;
@@ -60,11 +62,12 @@ MultistepFlow::MultistepFlow(FlowMethod method, FlowProblem& problem, double rel
     link_.demand(fixed_point_ != nullptr, "SUNNonlinSol_FixedPoint");
     demand(CVodeSetNonlinearSolver(memory_, fixed_point_));
   } else {
-    matrix_ = make_dense_matrix(link_.size(), link_.context());
-    linear_solver_ = make_dense_solver(link_.size(), link_.context());
-    link_.demand(matrix_ != nullptr && linear_solver_ != nullptr, "making a dense solver");
+    newton_ = std::make_unique<NewtonMatrix>(link_.size(), problem.integrals());
+    matrix_ = make_newton_matrix(*newton_, link_.context());
+    linear_solver_ = make_newton_solver(*newton_, link_.context());
+    link_.demand(matrix_ != nullptr && linear_solver_ != nullptr, "making a linear solver");
     demand(CVodeSetLinearSolver(memory_, linear_solver_, matrix_));
-    if (problem.has_jacobian()) demand(CVodeSetJacFn(memory_, SundialsLink::jacobian));
+    demand(CVodeSetLinSysFn(memory_, SundialsLink::linear_system));
   }
 }
 

@@ -3,16 +3,15 @@
 
 #include <carom/core/errors.h>
 #include <carom/integrators/flow.h>
-#include <carom/integrators/sundials_loops.h>
 
 #include "tests/allocation_counter.h"
+#include "tests/integrators/flow_problems.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -24,69 +23,11 @@
 
 namespace {
 
-using carom::Flow;
+using namespace flow_problems;
 using carom::FlowMethod;
 using carom::make_flow;
 using carom::ModelError;
 using carom::SolverError;
-using Function = std::function<void(double, const double*, double*)>;
-
-// dy/dt = f(t, y) from a lambda.
-class Problem : public carom::FlowProblem {
-public:
-  Problem(std::size_t size, double tolerance, Function rates)
-      : tolerances_(size, tolerance), rates_(std::move(rates)) {}
-  Problem(std::size_t size, double tolerance, Function rates, Function jacobian)
-      : tolerances_(size, tolerance), rates_(std::move(rates)), jacobian_(std::move(jacobian)) {}
-
-  [[nodiscard]] std::size_t size() const override { return tolerances_.size(); }
-  void rates(double time, const double* y, double* rates) override {
-    ++evaluations;
-    rates_(time, y, rates);
-  }
-  [[nodiscard]] std::span<const double> absolute_tolerances() const override { return tolerances_; }
-  [[nodiscard]] bool has_jacobian() const override { return static_cast<bool>(jacobian_); }
-  void jacobian(double time, const double* y, double* jacobian) override {
-    ++jacobians;
-    jacobian_(time, y, jacobian);
-  }
-
-  int evaluations = 0;
-  int jacobians = 0;
-
-private:
-  std::vector<double> tolerances_;
-  Function rates_, jacobian_;
-};
-
-Problem oscillator(double tolerance) {
-  return {2, tolerance, [](double, const double* y, double* rates) {
-            rates[0] = y[1];
-            rates[1] = -y[0];
-          }};
-}
-
-// Where the oscillator is, a time t after y.
-std::array<double, 2> turned(std::span<const double> y, double t) {
-  return {std::cos(t) * y[0] + std::sin(t) * y[1], -std::sin(t) * y[0] + std::cos(t) * y[1]};
-}
-
-Problem pendulum(double tolerance) {
-  return {2, tolerance, [](double, const double* y, double* rates) {
-            rates[0] = y[1];
-            rates[1] = -std::sin(y[0]);
-          }};
-}
-
-double distance(std::span<const double> a, std::span<const double> b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
-void go_to(Flow& flow, double time) {
-  while (flow.end() < time) flow.advance(time - flow.end());
-}
 
 std::string message_of(Flow& flow, double time) {
   try {
@@ -421,96 +362,6 @@ TEST(RungeKuttaFlow, SamplingCostsThreeEvaluationsForAStepAndLandingSeven) {
   before = problem.evaluations;
   flow->land(0.5 * flow->end(), y);
   EXPECT_EQ(problem.evaluations - before, 7);
-}
-
-TEST(BdfFlow, StiffOscillatorOfVanDerPol) {
-  // y'' = 1000 (1 - y^2) y' - y, y(0) = 2, y'(0) = 0; at t = 2000 from E. Hairer, G. Wanner, Test Set for IVP
-  // Solvers (problem VDPOL, in time scaled by 1000).
-  const Function rates = [](double, const double* y, double* out) {
-    out[0] = y[1];
-    out[1] = 1e3 * (1.0 - y[0] * y[0]) * y[1] - y[0];
-  };
-  const Function jacobian = [](double, const double* y, double* out) {
-    out[0] = 0.0;
-    out[1] = -2e3 * y[0] * y[1] - 1.0;
-    out[2] = 1.0;
-    out[3] = 1e3 * (1.0 - y[0] * y[0]);
-  };
-  Problem with(2, 1e-11, rates, jacobian), without(2, 1e-11, rates);
-  for (Problem* problem : {&with, &without}) {
-    const auto flow = make_flow(FlowMethod::bdf, *problem, 1e-8);
-    flow->start(0.0, std::array{2.0, 0.0}, 0.0);
-    go_to(*flow, 2000.0);
-    EXPECT_NEAR(flow->state()[0], 1.706167732170483, 3e-6);  // errors of the jumps between add up: 4e-7
-    EXPECT_LE(flow->counts().steps, 5000);                   // an explicit method makes a million
-  }
-  EXPECT_GT(with.jacobians, 10);
-}
-
-// The loops beside the plainest ones, for lengths around those that they are cut into.
-TEST(SundialsLoops, DoWhatTheySay) {
-  namespace loops = carom::sundials_loops;
-  for (const std::size_t n : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 130U}) {
-    std::vector<double> x(n), y(n), z(n), w(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] = std::sin(1.0 + static_cast<double>(i));
-      y[i] = 1.5 + std::cos(3.0 * static_cast<double>(i));
-    }
-    double sum = 0.0, largest = 0.0, weighted = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      sum += x[i] * y[i];
-      largest = std::max(largest, std::abs(x[i]));
-      weighted = std::max(weighted, std::abs(x[i] * y[i]));
-    }
-    EXPECT_NEAR(loops::dot(n, x.data(), y.data()), sum, 1e-13 * static_cast<double>(n));  // another order
-    EXPECT_EQ(loops::maximum(n, x.data()), largest);
-    EXPECT_EQ(loops::weighted_maximum(n, x.data(), y.data()), weighted);
-    EXPECT_EQ(loops::minimum(n, y.data()), *std::min_element(y.begin(), y.end()));
-
-    const std::array<double, 3> c{0.5, -2.0, 3.0};
-    const std::array<const double*, 3> vectors{x.data(), y.data(), z.data()};
-    z = x;
-    loops::combine(
-        n, 3, c.data(), [&](std::size_t j) { return vectors[j]; }, z.data());  // over an operand
-    for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(z[i], (0.5 * x[i] - 2.0 * y[i]) + 3.0 * x[i]) << n;
-
-    const auto check = [&](auto&& expected) {
-      for (std::size_t i = 0; i < n; ++i) ASSERT_DOUBLE_EQ(w[i], expected(i)) << n << ' ' << i;
-    };
-    loops::linear_sum(n, 2.0, x.data(), -3.0, y.data(), w.data());
-    check([&](std::size_t i) { return 2.0 * x[i] - 3.0 * y[i]; });
-    loops::multiply(n, x.data(), y.data(), w.data());
-    check([&](std::size_t i) { return x[i] * y[i]; });
-    loops::divide(n, x.data(), y.data(), w.data());
-    check([&](std::size_t i) { return x[i] / y[i]; });
-    loops::scale(n, 1.0, x.data(), w.data());
-    check([&](std::size_t i) { return x[i]; });
-    loops::scale(n, -4.0, w.data(), w.data());
-    check([&](std::size_t i) { return -4.0 * x[i]; });
-    loops::absolute(n, x.data(), w.data());
-    check([&](std::size_t i) { return std::abs(x[i]); });
-    loops::invert(n, y.data(), w.data());
-    check([&](std::size_t i) { return 1.0 / y[i]; });
-    loops::add_constant(n, x.data(), 7.0, w.data());
-    check([&](std::size_t i) { return x[i] + 7.0; });
-    loops::tolerance_weights(n, 0.1, x.data(), y.data(), w.data());
-    check([&](std::size_t i) { return 1.0 / (0.1 * std::abs(x[i]) + y[i]); });
-    loops::fill(n, 2.5, w.data());
-    check([](std::size_t) { return 2.5; });
-
-    // Not a number in any place is never overlooked.
-    EXPECT_TRUE(loops::all_finite(n, x.data()));
-    for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-      for (const std::size_t place : {std::size_t{0}, n / 2, n - 1}) {
-        z = x;
-        z[place] = bad;
-        EXPECT_FALSE(loops::all_finite(n, z.data()));
-        EXPECT_TRUE(std::isnan(loops::maximum(n, z.data())));
-        EXPECT_TRUE(std::isnan(loops::weighted_maximum(n, z.data(), y.data())));
-      }
-    }
-  }
 }
 
 }  // namespace
