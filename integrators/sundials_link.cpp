@@ -164,6 +164,7 @@ int SundialsLink::weights(N_Vector y, N_Vector weights, void* link) noexcept {
   try {
     loops::tolerance_weights(self.size_, self.relative_tolerance_, NV_DATA_S(y),
                              self.problem_->absolute_tolerances().data(), NV_DATA_S(weights));
+    loops::scale(self.size_, 1.0 / self.part_, NV_DATA_S(weights), NV_DATA_S(weights));
     return 0;
   } catch (...) {
     return -1;

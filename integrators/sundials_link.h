@@ -60,6 +60,8 @@ public:
   /// Makes a vector over size() numbers.
   [[nodiscard]] SundialsVector vector(double* numbers) const;
 
+  /// Holds the errors of steps to this part of the tolerances, > 0.
+  void tighten(double part) { part_ = part; }
   /// Largest component of x, each measured by its tolerance at y.
   [[nodiscard]] double in_tolerances(const double* x, const double* y) const;
   /// Evaluates f outside SUNDIALS. False: not finite.
@@ -103,6 +105,7 @@ private:
   FlowProblem* problem_;
   std::size_t size_;
   double relative_tolerance_;
+  double part_ = 1.0;
   SUNContext context_ = nullptr;
   std::int64_t evaluations_ = 0;
   std::vector<double> moved_rates_;

@@ -40,9 +40,9 @@ public:
   [[nodiscard]] double worst() const { return worst_; }
   /// The largest residual against the scale.
   [[nodiscard]] double largest() const { return largest_; }
-  /// \param factor times what is allowed
-  [[nodiscard]] testing::AssertionResult closes(double factor = 1.0) const {
-    if (seen_ > 0 && worst_ <= factor) return testing::AssertionSuccess();
+  /// Whether none was too large.
+  [[nodiscard]] testing::AssertionResult closes() const {
+    if (seen_ > 0 && worst_ <= 1.0) return testing::AssertionSuccess();
     return testing::AssertionFailure()
            << "the residual is " << worst_ << " times what is allowed, at t = " << when_ << " s";
   }
