@@ -2,6 +2,11 @@
 // make_flow(), started anew after each impact, beside a loop with the classical Runge-Kutta method of order 4
 // written by hand for this purpose, without error control. Impacts are found on the flow's interpolation by
 // Newton's method on the height. `per_impact` in seconds.
+//
+// Stiff motion by bdf: square nets of particles with springs and dashpots along sides and diagonals, and
+// chains of pinned rods with torsional springs, by their numbers of coordinates and velocities.
+// `per_unknown`, seconds of a step and number, must hardly grow for chains, and no faster than with the root
+// of the numbers for nets. explicit_runge_kutta beside it, whose steps are many.
 
 #include <carom/carom.h>
 
@@ -9,11 +14,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace {
 
@@ -176,5 +184,93 @@ BENCHMARK(bounce_by_hand);
 BENCHMARK(bounce_runge_kutta);
 BENCHMARK(bounce_adams);
 BENCHMARK(bounce_bdf);
+
+namespace planar = carom::planar;
+
+/// Turns and falls.
+carom::System stiff_net(int side) {
+  carom::System system;
+  system.add(planar::Gravity{{0.0, -gravity}});
+  std::vector<carom::BodyId> bodies;
+  for (int i = 0; i < side * side; ++i) {
+    const double x = i / side, y = i % side;
+    bodies.push_back(
+        system.add(planar::Particle{.mass = 1.0, .position = {x, y}, .velocity = {-0.5 * y, 0.5 * x}}));
+  }
+  const auto tie = [&](int from, int to, double length) {
+    system.add(planar::SpringDamper{.from = bodies[static_cast<std::size_t>(from)],
+                                    .to = bodies[static_cast<std::size_t>(to)],
+                                    .stiffness = 1e7,
+                                    .damping = 1e5,
+                                    .free_length = length});
+  };
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const int here = i * side + j;
+      if (i + 1 < side) tie(here, here + side, 1.0);
+      if (j + 1 < side) tie(here, here + 1, 1.0);
+      if (i + 1 == side || j + 1 == side) continue;
+      tie(here, here + side + 1, std::numbers::sqrt2);
+      tie(here + side, here + 1, std::numbers::sqrt2);
+    }
+  }
+  return system;
+}
+
+/// Falls from level, one end pinned to the ground.
+carom::System stiff_chain(int links) {
+  carom::System system;
+  system.add(planar::Gravity{{0.0, -gravity}});
+  carom::BodyId last = carom::ground;
+  for (int i = 0; i < links; ++i) {
+    const carom::BodyId link =
+        system.add(planar::RigidBody{.mass = planar::rod(1.0, 1.0), .position = {i + 0.5, 0.0}});
+    const carom::End<2> before = i == 0 ? carom::End<2>(last) : carom::End<2>(last, {0.5, 0.0});
+    system.add(planar::Revolute{.from = before, .to = {link, {-0.5, 0.0}}});
+    if (i > 0) {
+      system.add(planar::TorsionalSpring{.from = last, .to = link, .stiffness = 1e6, .damping = 1e4});
+    }
+    last = link;
+  }
+  return system;
+}
+
+void time_steps(benchmark::State& state, const carom::System& system, carom::FlowMethod method, double end) {
+  double steps = 0.0, unknowns = 0.0, seconds = 0.0;
+  for (auto _ : state) {
+    carom::Simulation simulation(
+        system, carom::EventDriven{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-8, .method = method});
+    const auto start = std::chrono::steady_clock::now();
+    simulation.run_until(end);
+    const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    state.SetIterationTime(taken);
+    seconds += taken;
+    steps += static_cast<double>(simulation.statistics().flow_steps);
+    unknowns = static_cast<double>(simulation.state().q.size() + simulation.state().v.size());
+    const double energy = simulation.energy().kinetic();
+    if (!(energy > 0.0) || !(std::abs(simulation.energy().residual()) <= 1e-2 * energy)) {
+      throw std::logic_error("the energy account of stiff motion does not close");
+    }
+  }
+  state.counters["unknowns"] = unknowns;
+  state.counters["steps"] = steps / static_cast<double>(state.iterations());
+  state.counters["per_unknown"] = seconds / (steps * unknowns);
+}
+
+void net_bdf(benchmark::State& state) {
+  time_steps(state, stiff_net(static_cast<int>(state.range(0))), carom::FlowMethod::bdf, 0.02);
+}
+void net_runge_kutta(benchmark::State& state) {
+  const auto side = static_cast<int>(state.range(0));
+  time_steps(state, stiff_net(side), carom::FlowMethod::explicit_runge_kutta, 0.02);
+}
+void chain_bdf(benchmark::State& state) {
+  time_steps(state, stiff_chain(static_cast<int>(state.range(0))), carom::FlowMethod::bdf, 0.02);
+}
+
+// 100, 1,000 and 10,000 unknowns.
+BENCHMARK(net_bdf)->Arg(5)->Arg(16)->Arg(50)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(net_runge_kutta)->Arg(5)->Arg(16)->Arg(50)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(chain_bdf)->Arg(17)->Arg(167)->Arg(1667)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
