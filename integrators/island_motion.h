@@ -18,6 +18,8 @@
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -138,8 +140,18 @@ public:
 
 private:
   bool add_pressed_reactions();
-  // Parts of the Jacobian.
-  struct ContactChange;
+  // Parts of the Jacobian: changes of a contact's load, its forces as they are, and of the accelerations
+  // along its rows, those of the bodies as they are.
+  struct ContactChange {
+    static constexpr std::size_t most = Contact::max_columns;
+    template <std::size_t N>
+    using ByMove = std::array<std::array<double, N>, most>;  // by what is moved
+
+    std::array<Index, most> columns{};
+    std::size_t count = 0;
+    ByMove<most> load_by_position{}, load_by_velocity{};
+    ByMove<2> row_by_position{}, row_by_velocity{};
+  };
   [[nodiscard]] std::size_t unknown(Index v) const {
     return q_size_ + (v - assembly_->islands()[island_].v.begin);
   }
@@ -161,6 +173,7 @@ private:
   JointPressure pressure_;
   ClosedContacts closed_;
   std::vector<LoadDerivative> derivatives_;
+  std::vector<ContactChange> contact_changes_;
   std::vector<Index> row_multipliers_;  // unknowns of the Jacobian, by row of joints_; none: without force
   std::vector<ElementId> kink_elements_;
   std::vector<double> breaks_;

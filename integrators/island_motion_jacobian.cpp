@@ -154,15 +154,6 @@ void IslandMotion::differentiate_joints(std::vector<RateDerivative>& out, Index&
   }
 }
 
-/// Changes of a contact's load, its forces as they are, and of the accelerations along its rows, those of the
-/// bodies as they are.
-struct IslandMotion::ContactChange {
-  std::array<Index, most_columns> columns{};
-  std::size_t count = 0;
-  std::array<OfContact, most_columns> load_by_position{}, load_by_velocity{};  // by what is moved
-  std::array<std::array<double, 2>, most_columns> row_by_position{}, row_by_velocity{};
-};
-
 /// By central differences: the shapes of obstacles and laws of friction know no derivatives.
 IslandMotion::ContactChange IslandMotion::change_of(const ClosedContact& contact) {
   MotionWorkspace& work = *work_;
@@ -250,35 +241,31 @@ void IslandMotion::differentiate_pressure(const ClosedContact& contact, std::vec
 
 void IslandMotion::differentiate_contacts(std::vector<RateDerivative>& out, Index& multiplier) {
   const std::vector<ClosedContact>& contacts = closed_.list();
-  const Index first = multiplier;
-  const std::vector<ContactPivot>& pivots = closed_.pivots();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const ContactChange change = change_of(contacts[c]);
-    if (!contacts[c].sticks()) differentiate_pressure(contacts[c], out);
+  contact_changes_.clear();
+  for (const ClosedContact& contact : contacts) {
+    const ContactChange& change = contact_changes_.emplace_back(change_of(contact));
+    if (!contact.sticks()) differentiate_pressure(contact, out);
     for (std::size_t i = 0; i < change.count; ++i) {
       for (std::size_t j = 0; j < change.count; ++j) {
         out.push_back({change.columns[i], change.columns[j], 0.0, change.load_by_velocity[j][i],
                        change.load_by_position[j][i]});
       }
     }
-    for (std::size_t k = 0; k < pivots.size(); ++k) {
-      const Index number = first + static_cast<Index>(k);
-      const auto& [equation, force] = pivots[k];
-      if (equation.contact == c) {
-        const std::size_t row = equation.tangent ? 1 : 0;
-        for (std::size_t j = 0; j < change.count; ++j) {
-          out.push_back({number, change.columns[j], contacts[c].at.row(static_cast<int>(row))[j],
-                         -change.row_by_velocity[j][row], -change.row_by_position[j][row]});
-        }
-      }
-      if (force.contact != c) continue;
-      const OfContact along = direction(contacts[c], force.tangent);
-      for (std::size_t i = 0; i < change.count; ++i) {
-        out.push_back({.row = change.columns[i], .column = number, .of_state = along[i]});
-      }
-    }
   }
-  multiplier += static_cast<Index>(pivots.size());
+  for (const auto& [equation, force] : closed_.pivots()) {
+    const ContactChange& held = contact_changes_[equation.contact];
+    const std::size_t row = equation.tangent ? 1 : 0;
+    for (std::size_t j = 0; j < held.count; ++j) {
+      out.push_back({multiplier, held.columns[j], contacts[equation.contact].at.row(static_cast<int>(row))[j],
+                     -held.row_by_velocity[j][row], -held.row_by_position[j][row]});
+    }
+    const ContactChange& pushed = contact_changes_[force.contact];
+    const OfContact along = direction(contacts[force.contact], force.tangent);
+    for (std::size_t i = 0; i < pushed.count; ++i) {
+      out.push_back({.row = pushed.columns[i], .column = multiplier, .of_state = along[i]});
+    }
+    ++multiplier;
+  }
 }
 
 }  // namespace carom

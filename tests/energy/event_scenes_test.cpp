@@ -144,8 +144,8 @@ TEST(EventScenesLong, LikewiseAtATightTolerance) {
 TEST(EventScenesLong, LikewiseWithEachMethod) {
   for (const FlowMethod method : {FlowMethod::adams, FlowMethod::bdf, FlowMethod::one_step}) {
     SCOPED_TRACE(static_cast<int>(method));
-    // Multistep methods spend more of their tolerance: seen 1.3e-6 with bdf.
-    const double allowed = method == FlowMethod::one_step ? residual_at_default : 2e-6;
+    // Multistep methods spend more of their tolerance: seen 3.4e-7 with bdf.
+    const double allowed = method == FlowMethod::one_step ? residual_at_default : 5e-7;
     expect_sound(run_scenes(2000, 200, {.method = method}, allowed), 200);
   }
 }
