@@ -59,7 +59,7 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
 // What is prescribed depends on time alone.
 void DriverKind::derivatives(const JointView& at, Index joint, JointRowDerivative* out) const {
   const JointTable& table = *layout_->joints();
-  const JointTable::Place place = table.place(parts_[joint].driver.joint.serial);
+  const JointTable::Place place = table.place(parts_[joint].part.joint.serial);
   table.kinds[place.kind]->coordinate_derivatives(at, place.slot, *out);
 }
 
