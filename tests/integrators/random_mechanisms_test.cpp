@@ -4,6 +4,7 @@
 #include "tests/integrators/random_mechanisms.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/joint_run.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -132,9 +133,8 @@ TEST(RandomMechanisms, Loops) { loops(0, 8); }
 TEST(RandomMechanisms, TreesThatRub) { rubbing(0, 3); }
 
 // A share of the seeds; all of them with CAROM_ALL_SEEDS=1, which takes some minutes.
-bool all_seeds() { return std::getenv("CAROM_ALL_SEEDS") != nullptr; }
-TEST(RandomMechanismsLong, Trees) { trees(10, all_seeds() ? 500 : 60); }
-TEST(RandomMechanismsLong, TreesThatRub) { rubbing(3, all_seeds() ? 200 : 15); }
-TEST(RandomMechanismsLong, Loops) { loops(8, all_seeds() ? 200 : 24); }
+TEST(RandomMechanismsLong, Trees) { trees(10, carom_test::all_seeds() ? 500 : 60); }
+TEST(RandomMechanismsLong, TreesThatRub) { rubbing(3, carom_test::all_seeds() ? 200 : 15); }
+TEST(RandomMechanismsLong, Loops) { loops(8, carom_test::all_seeds() ? 200 : 24); }
 
 }  // namespace
