@@ -157,6 +157,10 @@ private:
   [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
                          const ContactCluster* cluster = nullptr) const;
 
+  // Forces that have outgrown all others by this are infinite nearby: W_nn - s mu W_nt has fallen to the
+  // inverse part of what it was.
+  static constexpr double without_bound = 1e3;
+
   const Assembly* assembly_;
   const ContactFinder* finder_;
   EventDriven options_;

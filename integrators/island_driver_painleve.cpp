@@ -11,10 +11,6 @@ namespace carom {
 
 namespace {
 
-// Forces that have outgrown all others by this are on their way to infinity: W_nn - s mu W_nt has fallen to
-// the inverse part of what it was.
-constexpr double without_bound = 1e3;
-
 /// Restitution along a row of a contact.
 double restitution(const Contact& contact, int row) {
   return row == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;

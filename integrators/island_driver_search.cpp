@@ -17,9 +17,6 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
 constexpr double force_rounding = 1e-11;
 
-// Forces this large against those around them are infinite nearby.
-constexpr double without_bound = 1e3;
-
 // Numbers of kinks this small against their size over the step are zero.
 constexpr double kink_rounding = 1e-13;
 
