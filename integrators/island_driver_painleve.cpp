@@ -79,6 +79,7 @@ Decision IslandDriver::decide_candidates(std::size_t first, std::size_t last) {
   }
   if (!jammed) return Decision::failed;
   std::vector<std::string> names;
+  names.reserve(candidates.size());
   for (const Candidate& candidate : candidates) names.push_back(finder_->name(candidate.at.key));
   fail(jam_ + "; forces of contact grow without bound, a jam (Painleve)", std::move(names));
 }

@@ -34,7 +34,7 @@ void NewtonMatrix::analyse() {
     throw ModelError("derivative of the rates: " + std::string(what) + " " + std::to_string(number) +
                      "; allowed: " + allowed);
   };
-  Index last = static_cast<Index>(size_);
+  auto last = static_cast<Index>(size_);
   pattern_.clear();
   for (const RateDerivative& entry : entries_) {
     if (entry.row < integrals_) refuse("row", entry.row, "none of an integral");

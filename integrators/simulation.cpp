@@ -52,9 +52,9 @@ struct Simulation::Impl {
     Model(System system, const Mode& mode) : assembly(std::move(system)), machines(assembly, mode) {}
     /// Brings a state onto the joints, and refuses one that a run cannot start from. The largest
     /// displacement.
-    [[nodiscard]] double prepare(State& state) const {
-      const double shift = close_joints(assembly, state).shift;
-      if (machines.driver) machines.driver->demand_start(state);
+    [[nodiscard]] double prepare(State& start) const {
+      const double shift = close_joints(assembly, start).shift;
+      if (machines.driver) machines.driver->demand_start(start);
       return shift;
     }
 
