@@ -15,14 +15,13 @@ case "${1:-}" in
     ;;
 esac
 
-build=build/demo
-data=$build/data
-figures=$build/figures
+programs=build/release/examples
+data=build/demo/data
+figures=build/demo/figures
 
 scripts/setup.sh
-cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCAROM_BUILD_TESTS=OFF -DCAROM_BUILD_BENCHMARKS=OFF \
-  -DCAROM_BUILD_VALIDATION=OFF
-cmake --build "$build" --parallel "$(nproc)"
+cmake --preset release
+cmake --build --preset release --parallel "$(nproc)" --target all_examples
 
 # The first python in PATH may know nothing of the system's packages.
 python=python3
@@ -36,7 +35,7 @@ run_example() {
   local program=$1 plot=$2
   mkdir -p "$data/$program" "$figures"
   echo "== $program"
-  "$build/examples/$program" "$data/$program"
+  "$programs/$program" "$data/$program"
   if [[ -f $plot ]]; then
     "$python" "$plot" "$data/$program" "$figures"
   fi
