@@ -28,11 +28,13 @@ CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
 template <class P, class Self, class Base>
 class OnCoordinate : public Base {
 public:
-  static constexpr int part_dimension() { return 0; }
+  static constexpr int part_dimension() { return 0; }  ///< of planes and of space
 
+  /// A copy of all parts.
   [[nodiscard]] std::unique_ptr<Base> clone() const override {
     return std::make_unique<Self>(static_cast<const Self&>(*this));
   }
+  /// A copy with the parts in this order, for an assembly with this layout, which must outlive it.
   [[nodiscard]] std::unique_ptr<Base> arranged(std::span<const Index> order,
                                                const Layout& layout) const override {
     auto copy = std::make_unique<Self>();
@@ -40,28 +42,33 @@ public:
     copy->layout_ = &layout;
     return copy;
   }
+  /// Removes a part; later ones move up.
   void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
-  [[nodiscard]] int dimension() const override { return 0; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
+  [[nodiscard]] int dimension() const override { return 0; }  ///< likewise
+  [[nodiscard]] Index size() const override {
+    return static_cast<Index>(parts_.size());
+  }  ///< number of parts
+  /// Appends the bodies of a part's joint.
   void ends(Index slot, std::vector<BodyId>& out) const override {
     out.insert(out.end(), parts_[slot].ends.begin(), parts_[slot].ends.end());
   }
+  /// The joint that a part acts on.
   [[nodiscard]] JointId on_joint(Index slot) const override { return parts_[slot].part.joint; }
 
 protected:
   /// A part, the bodies of its joint, its name in messages.
   struct Stored {
-    P part;
-    std::vector<BodyId> ends;
-    std::string name;
+    P part;                    ///< as described
+    std::vector<BodyId> ends;  ///< of its joint
+    std::string name;          ///< in messages
   };
   /// Stores a part that has been checked.
   void store(const P& part, const PartCheck& check) {
     parts_.push_back({part, bodies_of(check.system(), part.joint), check.part()});
   }
 
-  std::vector<Stored> parts_;
-  const Layout* layout_ = nullptr;  // of an arranged kind
+  std::vector<Stored> parts_;       ///< in the order of slots
+  const Layout* layout_ = nullptr;  ///< of an arranged kind
 };
 
 }  // namespace carom
