@@ -19,6 +19,7 @@ double rounding_depth(const Assembly& assembly, Index island, const State& state
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
+/// The largest gap of the joints.
 double off(IslandJoints& joints, const State& state, const Evaluation& evaluation) {
   joints.place_gaps({state.view(), evaluation.rotation.data()});
   double worst = 0.0;

@@ -73,8 +73,9 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   std::copy(trial_.v.begin() + v.begin, trial_.v.begin() + v.end, before_v_.begin() + v.begin);
 
   place_joints(island, state, step);
+  // Choosing factors the rows at the end.
   if (!swept_) choose_reactions(island, state, step);
-  factor_joints(work);
+  if (swept_ || work.reactions == Reactions::crossed) factor_joints(work);
   if (clusters_in_use_ > 0) work.mean.factor();
 
   const double half = 0.5 * step;
