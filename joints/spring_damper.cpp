@@ -2,6 +2,7 @@
 #include <carom/core/compensated_sum.h>
 #include <carom/joints/line_of_action.h>
 #include <carom/joints/spring_damper.h>
+#include <carom/joints/spring_pull.h>
 
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,11 @@ void SpringDamperKind<D>::sweep_centres(const StateView& state, Range elements, 
   const double* const v = state.v;
   Index i = elements.begin;
   if constexpr (D == 2) {
+    const PlanarSprings springs{from_.data(),      to_.data(),           stiffness_.data(),
+                                damping_.data(),   free_length_.data(),  stiffness_.stride(),
+                                damping_.stride(), free_length_.stride()};
+    i = pull_by_fours(springs, i, elements.end, q, v, loads.conservative,
+                      Together ? nullptr : loads.dissipative, WithPotential ? &potential : nullptr);
     // Two springs at once: root and divisions, which cost most, serve both.
     const auto at = [](const Column<double>& column, Index slot) {
       return load_pair(column.data() + slot * column.stride());

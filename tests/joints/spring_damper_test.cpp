@@ -287,6 +287,57 @@ TEST_F(ZeroLengthTest, WithoutFreeLengthTheForceIsLinearThroughZero) {
   }
 }
 
+TEST(SpringDamper, ManyAtOnceAreTheSameBitsAsTwoByTwo) {
+  // Long ranges go four by four where the processor can; ranges of two never do. 23 springs leave a pair and
+  // one over; some bodies are shared by neighbouring springs, one spring has no length, properties vary.
+  Random random(71);
+  for (const bool alike : {false, true}) {
+    System system;
+    std::vector<BodyId> ids;
+    const Vec<2> start(0.3, -0.2);
+    for (int i = 0; i < 10; ++i) {
+      const bool at_start = i == 0 || i == 9;
+      const Vec<2> elsewhere(random.uniform(-1, 1), random.uniform(-1, 1));
+      ids.push_back(system.add(planar::Particle{.mass = 1.0,
+                                                .position = at_start ? start : elsewhere,
+                                                .velocity = {random.uniform(-1, 1), random.uniform(-1, 1)}}));
+    }
+    constexpr Index springs = 23;
+    for (Index i = 0; i < springs; ++i) {
+      const std::size_t from = i == 5 ? 0 : i / 4, to = i == 5 ? 9 : from + 1 + i % 3;
+      system.add(planar::SpringDamper{.from = ids[from],
+                                      .to = ids[to],
+                                      .stiffness = alike ? 300.0 : random.uniform(0, 1000),
+                                      .damping = alike ? 2.0 : random.uniform(0, 10),
+                                      .free_length = alike ? 0.7 : random.uniform(0, 1)});
+    }
+    LoadedModel model(std::move(system));
+    const ForceKind& kind = *model.assembly.force_kinds()[0];
+    const EvaluationContext at{model.assembly, model.state.view(), model.evaluation, 0};
+    const std::size_t size = model.state.v.size();
+    for (const bool by_cause : {false, true}) {
+      std::vector<double> all(size), pairs(size), plain(size);
+      std::vector<double> all_losses(size), pair_losses(size), plain_losses(size);
+      const auto loads = [&](std::vector<double>& total, std::vector<double>& losses) {
+        return Loads{total.data(), by_cause ? losses.data() : total.data(), total.data()};
+      };
+      const double potential = kind.evaluate_with_potential(at, {0, springs}, loads(all, all_losses));
+      kind.evaluate(at, {0, springs}, loads(plain, plain_losses));
+      double sum = 0.0;
+      for (Index i = 0; i < springs; i += 2) {
+        sum += kind.evaluate_with_potential(at, {i, std::min(i + 2, springs)}, loads(pairs, pair_losses));
+      }
+      EXPECT_EQ(all, pairs);
+      EXPECT_EQ(all_losses, pair_losses);
+      EXPECT_EQ(all, plain);
+      EXPECT_EQ(all_losses, plain_losses);
+      EXPECT_GT(largest(all), 1.0);
+      EXPECT_NEAR(potential, sum,
+                  springs * epsilon * sum);  // the sum over pairs is rounded in every addition
+    }
+  }
+}
+
 TEST(SpringDamper, WithoutStiffnessOrDampingDoesNothing) {
   using namespace planar;
   System system;
