@@ -14,6 +14,13 @@ function(carom_add_build_flags target)
   # Results must not depend on whether the compiler fuses a multiplication with an addition.
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
 
+  # Calls within a shared library go straight to their function; nobody is to put another in its place.
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY" AND NOT APPLE)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+    target_link_options(${target} PRIVATE -Wl,-Bsymbolic-functions)
+  endif()
+
   target_compile_options(
     ${target}
     PRIVATE -Wall
