@@ -99,7 +99,7 @@ inline void sweep_number(const SweepArrays& a, Index at, double half, double inv
   const double change_of_v =
       inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
   const double v = a.v0[at] + change_of_v;
-  a.cut[at] = change_of_v - (v - a.v0[at]);
+  a.cut[at] = static_cast<float>(change_of_v - (v - a.v0[at]));
   a.q1[at] = a.q0[at] + half * (a.v0[at] + v);
   a.v1[at] = v;
 }

@@ -79,7 +79,7 @@ void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a) con
       const double v = a.v0[at] + change_of_v;
       double move = half * (a.v0[at] + v);
       if (i == 2 && a.rational_turn) move = Space<2>::rational_turn(move);
-      a.cut[at] = change_of_v - (v - a.v0[at]);
+      a.cut[at] = static_cast<float>(change_of_v - (v - a.v0[at]));
       a.q1[at] = a.q0[at] + move;
       a.v1[at] = v;
     }

@@ -161,8 +161,10 @@ Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) const {
   Index part = none;
   for (const BodyId end : ends) {
     const Index body = layout_->index(end);
-    Index of_end = 0;
-    while (body >= blocks_[blocks.begin + of_end].bodies.end) ++of_end;
+    const auto found =
+        std::upper_bound(blocks_.begin() + blocks.begin, blocks_.begin() + blocks.end, body,
+                         [](Index wanted, const Block& block) { return wanted < block.bodies.end; });
+    const auto of_end = static_cast<Index>(found - (blocks_.begin() + blocks.begin));
     if (part != none && part != of_end) return blocks.size();
     part = of_end;
   }

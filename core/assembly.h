@@ -58,8 +58,8 @@ public:
   }
   /// Blocks of all islands.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Bodies of a block, and the most there are in one island.
-  static constexpr Index block_size = 8192, most_blocks = 16;
+  /// Bodies of a block, whose numbers the cache next to a core can hold; and the most blocks of one island.
+  static constexpr Index block_size = 2048, most_blocks = 1024;
 
   /// Kinds of force elements, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
@@ -154,16 +154,20 @@ private:
 CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state,
                                   Evaluation& out);
 
+/// What is done with a block before its loads are evaluated, while its numbers are at hand.
+using BlockTask = FunctionRef<void(const Block&)>;
+
 /// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
-/// `evaluation` must be up to date. Arrays may coincide.
+/// `evaluation` must be up to date. Arrays may coincide. `first` is called with each block first.
 CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                               const Evaluation& evaluation, const Loads& loads,
-                              const Workers& workers = Workers());
+                              const Workers& workers = Workers(), BlockTask first = {});
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
 CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
                                              const Evaluation& evaluation, const Loads& loads,
-                                             StoredEnergies& stored, const Workers& workers = Workers());
+                                             StoredEnergies& stored, const Workers& workers = Workers(),
+                                             BlockTask first = {});
 
 /// Adds the kinetic energy of one island.
 CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,

@@ -39,12 +39,14 @@ void for_kinds(const Assembly& assembly, Index island, F&& f) {
 /// Zeroes the loads of an island and calls f(kind, elements, bodies, part): for the elements within each
 /// block, which write there alone, then for those between blocks, part by part.
 template <class F>
-void for_loads(const Assembly& assembly, Index island, const Loads& loads, const Workers& workers, F&& f) {
+void for_loads(const Assembly& assembly, Index island, const Loads& loads, const Workers& workers,
+               BlockTask first, F&& f) {
   const Island& all = assembly.islands()[island];
   const auto kinds = static_cast<Index>(assembly.force_kinds().size());
   workers.for_each(all.blocks.size(), [&](Index part) {
     const Index index = all.blocks.begin + part;
     const Block& block = assembly.blocks()[index];
+    if (first) first(block);
     zero(block.v, loads);
     for (Index kind = 0; kind < kinds; ++kind) {
       const Range elements = assembly.elements_within(index, kind);
@@ -60,8 +62,9 @@ void for_loads(const Assembly& assembly, Index island, const Loads& loads, const
 }  // namespace
 
 void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
-                    const Evaluation& evaluation, const Loads& loads, const Workers& workers) {
-  for_loads(assembly, island, loads, workers,
+                    const Evaluation& evaluation, const Loads& loads, const Workers& workers,
+                    BlockTask first) {
+  for_loads(assembly, island, loads, workers, first,
             [&](const ForceKind& kind, Range elements, Range bodies, Index) {
               kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
             });
@@ -69,9 +72,9 @@ void evaluate_loads(const Assembly& assembly, Index island, const StateView& sta
 
 void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
                                    const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored,
-                                   const Workers& workers) {
+                                   const Workers& workers, BlockTask first) {
   if (assembly.islands()[island].blocks.size() == 1) {
-    for_loads(assembly, island, loads, workers,
+    for_loads(assembly, island, loads, workers, first,
               [&](const ForceKind& kind, Range elements, Range bodies, Index) {
                 const EvaluationContext at{assembly, state, evaluation, island, bodies};
                 stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
@@ -79,7 +82,7 @@ void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const
     return;
   }
   std::array<StoredEnergies, Assembly::most_blocks + 1> parts{};
-  for_loads(assembly, island, loads, workers,
+  for_loads(assembly, island, loads, workers, first,
             [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
               const EvaluationContext at{assembly, state, evaluation, island, bodies};
               parts[part][kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
@@ -91,7 +94,7 @@ void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const
 
 void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step, const Loads& loads,
                          const Workers& workers) {
-  for_loads(assembly, island, loads, workers,
+  for_loads(assembly, island, loads, workers, {},
             [&](const ForceKind& kind, Range elements, Range bodies, Index) {
               const auto within = [bodies](const EvaluationContext& at) {
                 return EvaluationContext{at.assembly, at.state, at.evaluation, at.island, bodies};

@@ -18,13 +18,13 @@ namespace carom {
 struct SweepArrays {
   const double* q0 = nullptr;        ///< coordinates at the start of the step
   const double* v0 = nullptr;        ///< velocities at the start
-  const double* carried = nullptr;   ///< rounding carried by the velocities
+  const float* carried = nullptr;    ///< rounding carried by the velocities
   const double* load0 = nullptr;     ///< loads at the start
   const double* load1 = nullptr;     ///< loads at the end, of the iterate before
   const double* response = nullptr;  ///< change of velocity by contact, null where nothing touches
   double* q1 = nullptr;              ///< out: coordinates at the end
   double* v1 = nullptr;              ///< out: velocities at the end
-  double* cut = nullptr;             ///< out: what rounding cuts off v1
+  float* cut = nullptr;              ///< out: what rounding cuts off v1
   /// Turn by 2 atan(h w/2) instead of h w, w the mean spin. A lever r then moves by h w x (r0 + r1)/2
   /// exactly, so that a force at the mean lever does the work of its own displacement.
   bool rational_turn = false;

@@ -80,6 +80,8 @@ public:
   [[nodiscard]] virtual bool books_dissipative() const { return true; }
   /// True if elements look at the rotations of bodies (Evaluation::rotation).
   [[nodiscard]] virtual bool needs_rotations() const { return true; }
+  /// True if every evaluation adds the same loads to a body, wherever it is and however it moves.
+  [[nodiscard]] virtual bool is_constant() const { return false; }
   /// Form of energy that potential() counts as.
   [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
 

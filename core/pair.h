@@ -22,6 +22,12 @@ inline Pair load_pair(const double* from) {
 }
 /// Writes two neighbouring numbers.
 inline void store_pair(double* to, Pair pair) { std::memcpy(to, &pair, sizeof(Pair)); }
+/// Likewise numbers kept with the digits of a float.
+inline Pair load_pair(const float* from) { return Pair{from[0], from[1]}; }
+inline void store_pair(float* to, Pair pair) {
+  to[0] = static_cast<float>(pair[0]);
+  to[1] = static_cast<float>(pair[1]);
+}
 /// The same number twice.
 inline Pair both(double number) { return Pair{number, number}; }
 /// First numbers of two pairs.

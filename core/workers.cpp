@@ -21,10 +21,10 @@ Workers::Workers(int threads) {
 
 bool Workers::several_available() { return true; }
 
-void Workers::run(Index count, void* function, void (*call)(void*, Index)) const {
+void Workers::run(Index count, FunctionRef<void(Index)> function) const {
   arena_->arena.execute([&] {
     oneapi::tbb::parallel_for(
-        Index{0}, count, [&](Index i) { call(function, i); }, oneapi::tbb::simple_partitioner());
+        Index{0}, count, [&](Index i) { function(i); }, oneapi::tbb::simple_partitioner());
   });
 }
 
@@ -36,8 +36,8 @@ Workers::Workers(int) {}
 
 bool Workers::several_available() { return false; }
 
-void Workers::run(Index count, void* function, void (*call)(void*, Index)) const {
-  for (Index i = 0; i < count; ++i) call(function, i);
+void Workers::run(Index count, FunctionRef<void(Index)> function) const {
+  for (Index i = 0; i < count; ++i) function(i);
 }
 
 #endif

@@ -5,10 +5,10 @@
 /// the same bits come out for any number of threads.
 
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 #include <carom/core/ids.h>
 
 #include <memory>
-#include <type_traits>
 
 namespace carom {
 
@@ -31,13 +31,13 @@ public:
       for (Index i = 0; i < count; ++i) f(i);
       return;
     }
-    run(count, &f, [](void* function, Index i) { (*static_cast<std::remove_reference_t<F>*>(function))(i); });
+    run(count, FunctionRef<void(Index)>(f));
   }
 
 private:
   struct Arena;
 
-  void run(Index count, void* function, void (*call)(void*, Index)) const;
+  void run(Index count, FunctionRef<void(Index)> function) const;
 
   std::shared_ptr<Arena> arena_;  // null for one thread
 };

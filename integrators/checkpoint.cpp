@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 3\n";
+constexpr std::string_view mark = "carom checkpoint 4\n";
 
 /// Numbers as bytes, lowest first, whatever the machine.
 class Writer {
@@ -26,9 +26,10 @@ public:
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
   void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
   void add(int number) { add(std::int64_t{number}); }
-  void add(const std::vector<double>& numbers) {
+  template <class Real>
+  void add(const std::vector<Real>& numbers) {
     add(std::uint64_t{numbers.size()});
-    for (const double number : numbers) add(number);
+    for (const Real number : numbers) add(static_cast<double>(number));
   }
   [[nodiscard]] const std::vector<char>& bytes() const { return bytes_; }
 
@@ -69,9 +70,14 @@ public:
     if (number > bytes_.size() / 8) damaged("a count does not fit");
     return static_cast<std::size_t>(number);
   }
-  void get(std::vector<double>& numbers) {
+  template <class Real>
+  void get(std::vector<Real>& numbers) {
     numbers.resize(count());
-    for (double& number : numbers) get(number);
+    for (Real& kept : numbers) {
+      double number = 0.0;
+      get(number);
+      kept = static_cast<Real>(number);
+    }
   }
   void finish() const {
     if (!bytes_.empty()) damaged("goes on after its end");
@@ -161,8 +167,9 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
-  if (companion.history.known > 0) out.add(companion.history.before);
-  if (companion.history.known > 1) out.add(companion.history.earlier);
+  if (companion.history.known > 0) out.add(companion.history.first);
+  if (companion.history.known > 1) out.add(companion.history.second);
+  if (companion.history.known > 2) out.add(companion.history.third);
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
   out.add(std::uint64_t{companion.loads.valid && companion.loads.mean});
@@ -227,12 +234,16 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   LoadHistory& history = other.history;
   in.get(history.known);
-  if (history.known < 0 || history.known > 2) in.damaged("its history of loads is of unknown length");
+  if (history.known < 0 || history.known > 3) in.damaged("its history of loads is of unknown length");
   in.get(history.step);
-  if (history.known > 0) in.get(history.before);
-  if (history.known > 1) in.get(history.earlier);
-  for (const auto* loads : {&history.before, &history.earlier}) {
-    if (!loads->empty() && loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
+  int differences = 0;
+  for (auto* const loads : {&history.first, &history.second, &history.third}) {
+    if (differences++ < history.known) {
+      in.get(*loads);
+      if (loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
+    } else if (history.known > 0) {
+      loads->resize(state.v.size());
+    }
   }
   history.sweeps.resize(in.count());
   for (int& sweeps : history.sweeps) in.get(sweeps);

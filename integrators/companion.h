@@ -26,13 +26,15 @@ struct PresentLoads {
   std::vector<double> external;     ///< part of the total; empty if no element books any
 };
 
-/// Loads at the starts of the last steps, by which those at the end of the next are guessed.
+/// Backward differences of the loads over the last steps, by which those at the end of the next are guessed.
+/// A guess needs no more digits than floats have.
 struct LoadHistory {
-  int known = 0;                ///< how many of the two are known
-  double step = 0.0;            ///< length of the last step; of the last two if both are known [s]
-  std::vector<double> before;   ///< loads one step ago [N, N m]
-  std::vector<double> earlier;  ///< loads two steps ago
-  std::vector<int> sweeps;      ///< of the last step, by island; empty if there was none
+  int known = 0;              ///< how many of the differences are known
+  double step = 0.0;          ///< length of the last step; of the last `known` if there are several [s]
+  std::vector<float> first;   ///< loads less those one step ago [N, N m]; empty before the first step
+  std::vector<float> second;  ///< the first differences less those one step ago
+  std::vector<float> third;   ///< likewise the second ones
+  std::vector<int> sweeps;    ///< of the last step, by island; empty if there was none
 };
 
 /// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.
@@ -50,7 +52,7 @@ struct Companion {
   EnergyLedger ledger;                 ///< the energy account
   Statistics statistics;               ///< counts since the start
   ChainStatistics contact_statistics;  ///< of the contact solvers in accepted steps
-  std::vector<double>
+  std::vector<float>
       rounding;             ///< what rounding cut off the velocities: carried on, so that it does not add up
   LoadHistory history;      ///< for the guess at the loads of the next step
   double grid_start = 0.0;  ///< times of steps are grid_start + n h, so that rounding does not add up [s]

@@ -56,6 +56,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   ratings_.resize(assembly.islands().size());
   rated_contraction_.assign(assembly.islands().size(), -1.0);
   prepare_joints();
+  sort_islands();
   if (mean_rule() || assembly.layout()->z_size() > 0 || !joints_.empty()) {
     middle_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
@@ -66,7 +67,10 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   for (const Island& island : assembly.islands()) most_blocks = std::max(most_blocks, island.blocks.size());
   changes_.resize(most_blocks);
   works_.resize(most_blocks);
-  if (options.iteration == Iteration::linearly_implicit) update_.resize(size);
+  if (options.iteration == Iteration::linearly_implicit) {
+    update_.resize(size);
+    free_.resize(size);
+  }
   if (options.iteration == Iteration::anderson) {
     const std::vector<double> ones(size, 1.0);
     weights_.resize(size);
@@ -161,9 +165,16 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
 bool TimeStepper::iterate(Index island, const State& state, const Companion& companion, double step,
                           FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
+  if (needed_sweeps_[island] == Sweeps::unneeded) {
+    advance_under_constant_loads(island, state, companion, step);
+    return judge.judge(0.0, 0.0) == Verdict::converged;
+  }
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
   const bool with_joints = jointed(island);
-  start_iteration(island, state, companion, step);
+  const bool in_one = needed_sweeps_[island] == Sweeps::in_one_pass;
+  start_iteration(island, state, step);
+  if (!in_one || clusters_in_use_ > 0) guess_loads(island, companion, step);
+  bool guessing = in_one && clusters_in_use_ == 0;
   if (implicit) start_implicit(island, state, companion, step);
 
   // Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only,
@@ -171,17 +182,30 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   const std::vector<int>& before = companion.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   bool confirming = false;
+  const auto sweep_first = [&](const Block& block) {
+    if (guessing) guess_loads(block, companion, step);
+    sweep(island, block, state, companion, step);
+  };
   for (;;) {
-    sweep_all(island, state, companion, step);
-    follow_iterate(island, state, step);
     bool by_cause = judge.sweeps() + 1 >= expected;
-    if (by_cause) {
-      evaluate_loads_by_cause(island, state, step);
+    BlockTask first;
+    if (in_one) {
+      solve_contacts(island, state, companion, step);
+      swept_ = true;
+      first = sweep_first;
     } else {
-      evaluate_loads_together(island, state, step);
+      sweep_all(island, state, companion, step);
+      follow_iterate(island, state, step);
     }
+    if (by_cause) {
+      evaluate_loads_by_cause(island, state, step, first);
+    } else {
+      evaluate_loads_together(island, state, step, first);
+    }
+    guessing = false;
+    if (by_cause && implicit) finish_loads(island);
     // Newton's method has its own change: that of the loads is magnified where couplings are stiff.
-    SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step);
+    SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step, by_cause);
     if (with_joints) {
       const SweepChange seen = joint_change(island, step);
       change.take(seen.change, seen.size);
@@ -204,41 +228,81 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
         follow_iterate(island, state, step);
         by_cause = false;
       }
-      if (!by_cause) evaluate_loads_by_cause(island, state, step);
+      if (!by_cause) {
+        evaluate_loads_by_cause(island, state, step);
+        finish_loads(island);
+      }
       return true;
     }
     improve_guess(island, judge);
   }
 }
 
-void TimeStepper::start_iteration(Index island, const State& state, const Companion& companion, double step) {
-  // Extrapolating far from two near values would magnify their rounding.
-  constexpr double farthest = 10.0;
+void TimeStepper::start_iteration(Index island, const State& state, double step) {
   const Range v = assembly_->islands()[island].v;
   const Range z = assembly_->islands()[island].z;
   std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
   swept_ = false;
   if (jointed(island)) start_joints(island, state, step);
   if (options_.iteration == Iteration::anderson) anderson_.start(v.size());
+}
 
+void TimeStepper::sort_islands() {
+  const Assembly& assembly = *assembly_;
+  needed_sweeps_.assign(assembly.islands().size(), Sweeps::several);
+  if (options_.iteration == Iteration::linearly_implicit || mean_rule() || loads_need_rotations_) return;
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    if (jointed(island) || !assembly.islands()[island].z.empty()) continue;
+    needed_sweeps_[island] = Sweeps::unneeded;
+    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+      if (assembly.elements(island, kind).empty() || assembly.force_kinds()[kind]->is_constant()) continue;
+      needed_sweeps_[island] = Sweeps::in_one_pass;
+    }
+  }
+}
+
+/// The step whose loads at its end are those at its start, of which none is dissipative or external.
+void TimeStepper::advance_under_constant_loads(Index island, const State& state, const Companion& companion,
+                                               double step) {
+  const Range v = assembly_->islands()[island].v;
+  const double* const loads = companion.loads.total.data();
+  std::copy(loads + v.begin, loads + v.end, evaluation_.force.data() + v.begin);
+  std::copy(loads + v.begin, loads + v.end, evaluated_.data() + v.begin);
+  solve_contacts(island, state, companion, step);
+  sweep(island, state, companion, step);
+  evaluated_energies_ = {};
+  add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
+}
+
+void TimeStepper::guess_loads(Index island, const Companion& companion, double step) {
+  for_blocks(island, [&](const Block& block, Index) { guess_loads(block, companion, step); });
+}
+
+/// Loads at the end by the polynomial through those of the last steps.
+void TimeStepper::guess_loads(const Block& block, const Companion& companion, double step) {
+  // Extrapolating far from two near values would magnify their rounding.
+  constexpr double farthest = 10.0;
   const double* const now = companion.loads.total.data();
   const LoadHistory& history = companion.history;
   double* const guess = evaluation_.force.data();
-  const double* const before = history.before.data();
-  const double* const earlier = history.earlier.data();
-  const bool quadratic = history.known == 2 && step == history.step;
+  const float* const first = history.first.data();
+  const float* const second = history.second.data();
+  const float* const third = history.third.data();
   const bool linear = history.known > 0 && step <= farthest * history.step;
-  const double ratio = linear ? step / history.step : 0.0;
-  for_blocks(island, [&](const Block& block, Index) {
-    const Range part = block.v;
-    if (quadratic) {
-      for (Index i = part.begin; i < part.end; ++i) guess[i] = 3.0 * (now[i] - before[i]) + earlier[i];
-    } else if (linear) {
-      for (Index i = part.begin; i < part.end; ++i) guess[i] = now[i] + ratio * (now[i] - before[i]);
-    } else {
-      std::copy(now + part.begin, now + part.end, guess + part.begin);
+  const int order = step == history.step ? history.known : linear ? 1 : 0;
+  const double ratio = order == 1 ? step / history.step : 1.0;
+  const Range v = block.v;
+  if (order == 3) {
+    for (Index i = v.begin; i < v.end; ++i) {
+      guess[i] = now[i] + static_cast<double>(first[i] + (second[i] + third[i]));
     }
-  });
+  } else if (order == 2) {
+    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + static_cast<double>(first[i] + second[i]);
+  } else if (order == 1) {
+    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + ratio * static_cast<double>(first[i]);
+  } else {
+    std::copy(now + v.begin, now + v.end, guess + v.begin);
+  }
 }
 
 void TimeStepper::sweep_all(Index island, const State& state, const Companion& companion, double step) {
@@ -258,21 +322,25 @@ void TimeStepper::sweep_all(Index island, const State& state, const Companion& c
 
 void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
   swept_ = true;
-  const double* const load0 = start_of_sum(companion);
-  const bool responds = clusters_in_use_ > 0 || jointed(island);
-  for_blocks(island, [&](const Block& block, Index) {
-    assembly_->for_bodies(
-        island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-          kind.sweep(slots, step,
-                     {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
-                      evaluation_.force.data() + v, responds ? response_.data() + v : nullptr,
-                      trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
-        });
-  });
+  for_blocks(island, [&](const Block& block, Index) { sweep(island, block, state, companion, step); });
 }
 
-SweepChange TimeStepper::next_change(Index island, double step) {
+void TimeStepper::sweep(Index island, const Block& block, const State& state, const Companion& companion,
+                        double step) {
+  const double* const load0 = start_of_sum(companion);
+  const bool responds = clusters_in_use_ > 0 || jointed(island);
+  assembly_->for_bodies(
+      island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+        kind.sweep(slots, step,
+                   {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
+                    evaluation_.force.data() + v, responds ? response_.data() + v : nullptr,
+                    trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
+      });
+}
+
+SweepChange TimeStepper::next_change(Index island, double step, bool by_cause) {
   for_blocks(island, [&](const Block& block, Index part) {
+    if (by_cause) finish(evaluated_, dissipative_, external_, block.v);
     SweepChange& change = changes_[part];
     change = {};
     assembly_->for_bodies(
@@ -320,18 +388,19 @@ void TimeStepper::place_middle(Index island, const State& state, double step) {
   for (Index i = v_range.begin; i < v_range.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
 }
 
-void TimeStepper::evaluate_loads_together(Index island, const State& state, double step) {
+void TimeStepper::evaluate_loads_together(Index island, const State& state, double step, BlockTask first) {
   double* const loads = evaluated_.data();
   if (mean_rule()) {
     with_step(island, state, step, [&](const StepContext& at) {
       evaluate_mean_loads(*assembly_, island, at, {loads, loads, loads}, workers_);
     });
   } else {
-    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads}, workers_);
+    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads}, workers_, first);
   }
 }
 
-void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, double step) {
+/// The total is without its dissipative and external parts until finish_loads().
+void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, double step, BlockTask first) {
   const Loads loads = open(evaluated_, dissipative_, external_);
   evaluated_energies_ = {};
   if (mean_rule()) {
@@ -340,8 +409,11 @@ void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, doub
     add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
   } else {
     evaluate_loads_and_potentials(*assembly_, island, trial_.view(), evaluation_, loads, evaluated_energies_,
-                                  workers_);
+                                  workers_, first);
   }
+}
+
+void TimeStepper::finish_loads(Index island) {
   for_blocks(island,
              [&](const Block& block, Index) { finish(evaluated_, dissipative_, external_, block.v); });
 }

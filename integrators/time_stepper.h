@@ -75,11 +75,17 @@ private:
   /// Sweeps until the judge is content; false if the iteration does not contract.
   [[nodiscard]] bool iterate(Index island, const State& state, const Companion& companion, double step,
                              FixedPointJudge& judge);
+  void advance_under_constant_loads(Index island, const State& state, const Companion& companion,
+                                    double step);
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
-  void start_iteration(Index island, const State& state, const Companion& companion, double step);
+  void sort_islands();
+  void guess_loads(Index island, const Companion& companion, double step);
+  void guess_loads(const Block& block, const Companion& companion, double step);
+  void start_iteration(Index island, const State& state, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
   void sweep(Index island, const State& state, const Companion& companion, double step);
+  void sweep(Index island, const Block& block, const State& state, const Companion& companion, double step);
   [[nodiscard]] bool jointed(Index island) const { return !joints_.empty() && !joints_[island].end.empty(); }
   void prepare_joints();
   void start_joints(Index island, const State& state, double step);
@@ -105,9 +111,11 @@ private:
   void place_middle(Index island, const State& state, double step);
   void sweep_all(Index island, const State& state, const Companion& companion, double step);
   void follow_iterate(Index island, const State& state, double step);
-  void evaluate_loads_together(Index island, const State& state, double step);
-  void evaluate_loads_by_cause(Index island, const State& state, double step);
-  [[nodiscard]] SweepChange next_change(Index island, double step);
+  void evaluate_loads_together(Index island, const State& state, double step, BlockTask first = {});
+  void evaluate_loads_by_cause(Index island, const State& state, double step, BlockTask first = {});
+  void finish_loads(Index island);
+  /// What the next sweep would change; finishes loads that were evaluated by cause.
+  [[nodiscard]] SweepChange next_change(Index island, double step, bool by_cause);
   [[nodiscard]] SweepChange implicit_change(Index island, double step) const;
   /// Calls f(block, its place in the island) for the blocks of an island, shared out to the threads.
   template <class F>
@@ -160,6 +168,7 @@ private:
   /// v_{j+1} changes by this times M^-1 times the change of what is iterated.
   [[nodiscard]] double impulse_weight(double step) const { return mean_rule() ? step : 0.5 * step; }
 
+  void remember_loads(Companion& companion) const;
   void commit(State& state, Companion& companion, double end_time, StepReport& report);
 
   const Assembly* assembly_;
@@ -178,6 +187,10 @@ private:
   std::vector<double> evaluated_;      // loads that the guess led to
   StoredEnergies evaluated_energies_;  // of the island, potentials that it led to
   std::vector<int> sweeps_;            // by island
+  // What an island needs. Several: of its iteration; in_one_pass: nothing comes between a sweep of bodies and
+  // their loads, so that a block can have both at once; unneeded: loads that never change.
+  enum class Sweeps : std::uint8_t { several, in_one_pass, unneeded };
+  std::vector<Sweeps> needed_sweeps_;  // by island
   bool swept_ = false;                 // trial_ is an iterate of the step
   std::vector<SweepChange> changes_;   // by block of the island at hand
   struct Works {
@@ -195,8 +208,9 @@ private:
   bool contacts_need_rotations_ = false;
   bool start_needs_rotations_ = false;          // the one or the other
   std::vector<double> dissipative_, external_;  // loads at the end by cause, of the last iterate; or empty
-  std::vector<double> rounding_;  // what rounding cuts off v_{j+1}; velocities without contact before
+  std::vector<float> rounding_;                 // what rounding cuts off v_{j+1}
   std::vector<double> response_;  // changes of velocity by contact, empty until anything touches
+  std::vector<double> free_;      // velocities without contact and joints, likewise
   std::vector<double> update_;    // changes of velocities, of the linearly implicit iteration
   std::vector<std::pair<ContactKey, ContactMode>> rubbing_modes_;  // of friction in joints
   std::vector<ContactKey> sticking_;  // in the last step, ordered; where static friction asks
@@ -223,8 +237,8 @@ private:
   };
   std::vector<JointWork> joints_;  // by island; empty without joints
   // Over all velocities or coordinates, sized if there are joints: changes of velocity by joints, by contact;
-  // velocities without contact; displacements back onto the joints; scratch; the iterate before.
-  std::vector<double> reaction_, struck_, free_, displacement_, scratch_, before_q_, before_v_;
+  // displacements back onto the joints; scratch; the iterate before.
+  std::vector<double> reaction_, struck_, displacement_, scratch_, before_q_, before_v_;
   std::vector<double> lengths_;
 
   EnergyFlows flows_;

@@ -29,6 +29,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   }
   const Range v = assembly_->islands()[island].v;
   response_.resize(trial_.v.size());
+  free_.resize(trial_.v.size());
   std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
   if (options_.iteration == Iteration::linearly_implicit || jointed(island)) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together
@@ -52,20 +53,19 @@ void TimeStepper::add_cluster(const State& state, std::size_t first, std::size_t
 void TimeStepper::solve_contacts(Index island, const State& state, const Companion& companion, double step) {
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
-  // The velocities without contact stand for a while where the sweep will write what it rounds off.
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     ContactCluster& cluster = clusters_[i];
     const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body];
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
       response_[k] = half * (load0[k] + evaluation_.force[k]);
     }
-    assembly_->body_kinds()[body.kind]->apply_inverse_mass(
-        {body.slot, body.slot + 1}, response_.data() + body.v, rounding_.data() + body.v);
+    assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1},
+                                                           response_.data() + body.v, free_.data() + body.v);
     for (Index k = body.v; k < body.v + body.v_size; ++k) {
-      rounding_[k] += companion.rounding[k] + state.v[k];
+      free_[k] += static_cast<double>(companion.rounding[k]) + state.v[k];
       response_[k] = 0.0;
     }
-    cluster.set_free_velocity(rounding_.data());
+    cluster.set_free_velocity(free_.data());
     if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
     cluster.apply(response_.data());
   }

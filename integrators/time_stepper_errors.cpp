@@ -97,7 +97,8 @@ void TimeStepper::find_culprit(Index island, const State& state, const Companion
   demand_finite_loads(island, state.view(), state, step);
   // The same sweeps once more, looking at the loads of every element between them. Loads may overflow only
   // because the iteration diverged; then no element is to blame.
-  start_iteration(island, state, companion, step);
+  start_iteration(island, state, step);
+  guess_loads(island, companion, step);
   for (int i = 0; i < sweeps; ++i) {
     sweep_all(island, state, companion, step);
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;

@@ -80,8 +80,8 @@ void TimeStepper::solve_implicit(Index island, const State& state, double step) 
     ContactCluster& cluster = clusters_.front();
     cluster.add_loads(-1.0, update_.data());
     implicit_.solve(update_.data() + v.begin);
-    for (Index i = v.begin; i < v.end; ++i) rounding_[i] = trial_.v[i] + update_[i];
-    cluster.set_free_velocity(rounding_.data());
+    for (Index i = v.begin; i < v.end; ++i) free_[i] = trial_.v[i] + update_[i];
+    cluster.set_free_velocity(free_.data());
     std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
     cluster.add_loads(1.0 / weight, response_.data());  // H^T P / w, of the iterate before
     if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
@@ -95,8 +95,8 @@ void TimeStepper::solve_implicit(Index island, const State& state, double step) 
   } else {
     implicit_.solve(update_.data() + v.begin);
   }
-  implicit_.apply_mass(update_.data(), rounding_.data());
-  for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] += rounding_[i] / weight;
+  implicit_.apply_mass(update_.data(), free_.data());
+  for (Index i = v.begin; i < v.end; ++i) evaluation_.force[i] += free_[i] / weight;
 }
 
 /// The same step where joints bind bodies,  A d - Gm^T l = w (g - x) + H^T (P' - P),  G (v + d) + rate = 0,

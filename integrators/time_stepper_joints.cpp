@@ -82,7 +82,7 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   const double* const load0 = start_of_sum(companion);
   for (Index i = v.begin; i < v.end; ++i) free_[i] = half * (load0[i] + evaluation_.force[i]);
   work.end.apply_inverse_mass(free_.data());
-  for (Index i = v.begin; i < v.end; ++i) free_[i] += companion.rounding[i] + state.v[i];
+  for (Index i = v.begin; i < v.end; ++i) free_[i] += static_cast<double>(companion.rounding[i]) + state.v[i];
   correct_joint_impulses(island);
   if (clusters_in_use_ > 0) solve_joint_contacts(island, state, step);
   for (Index i = v.begin; i < v.end; ++i) response_[i] = reaction_[i] + struck_[i];

@@ -54,6 +54,7 @@ public:
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] bool uses_middle() const override { return false; }
   [[nodiscard]] bool depends_on_time() const override { return false; }
+  [[nodiscard]] bool is_constant() const override { return true; }
   void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const override {
     evaluate(at.end, elements, loads);  // it is everywhere the same
   }

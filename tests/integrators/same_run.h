@@ -16,8 +16,9 @@ namespace carom_test {
 inline void append_bits(std::vector<std::uint64_t>& bits, double number) {
   bits.push_back(std::bit_cast<std::uint64_t>(number));
 }
-inline void append_bits(std::vector<std::uint64_t>& bits, const std::vector<double>& numbers) {
-  for (const double number : numbers) append_bits(bits, number);
+template <class Real>
+void append_bits(std::vector<std::uint64_t>& bits, const std::vector<Real>& numbers) {
+  for (const Real number : numbers) append_bits(bits, static_cast<double>(number));
 }
 
 /// All numbers of a run, as bits (so that -0 differs from 0 and NaN equals itself).

@@ -70,6 +70,39 @@ TEST(TimeStepper, OscillatorTakesTheStepOfTheTrapezoidalRule) {
   EXPECT_EQ(simulation.state().position(mass)[1], 0.0);
 }
 
+TEST(TimeStepper, GuessesLoadsThatGoOnAsAPolynomial) {
+  // A force of n^3 newtons at the end of step n, whose differences have no rounding: with three of them known
+  // the guess is what it leads to.
+  constexpr double h = 0x1p-10;
+  System system;
+  const BodyId mass = system.add(Particle{.mass = 1.0});
+  system.add(planar::AppliedForce{.on = mass, .force = [](double t) -> Vec<2> {
+                                    const double n = t / h;
+                                    return {n * n * n, -n * n};
+                                  }});
+  Simulation simulation(std::move(system), TimeStepping{.step = h});
+  for (int i = 0; i < 3; ++i) EXPECT_GT(simulation.step().sweeps, 1) << i;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(simulation.step().sweeps, 1) << i;
+}
+
+TEST(TimeStepper, LoadsThatNeverChangeNeedNoIterationAndLeadToTheSame) {
+  // A spring without stiffness changes no load, but its island is iterated.
+  const auto end = [](bool with_spring) {
+    System system;
+    system.add(Gravity{{0.5, -9.81}});
+    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.6}, "floor");
+    const BodyId wheel = system.add(
+        RigidBody{.mass = disc(2.0, 0.1), .position = {0.0, 0.4}, .velocity = {1.0, 0.0}, .spin = 3.0});
+    system.add(Disc{.body = wheel, .radius = 0.1});
+    if (with_spring) system.add(SpringDamper{.from = ground, .to = wheel, .free_length = 1.0});
+    Simulation simulation(std::move(system), TimeStepping{.step = 1e-3});
+    simulation.run_until(2.0);
+    EXPECT_GT(simulation.statistics().impacts, 3);
+    return std::pair(carom_test::motion_bits(simulation.state()), simulation.energy().save());
+  };
+  EXPECT_EQ(end(false), end(true));
+}
+
 TEST(TimeStepper, ToleranceBoundsWhatIsLeftOfTheIteration) {
   // The change between two sweeps is below the tolerance; what is left is smaller by rate/(1 - rate).
   const auto end = [](double tolerance) {
