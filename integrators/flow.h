@@ -63,13 +63,41 @@ struct FlowCounts {
   std::int64_t steps = 0;        ///< accepted steps
   std::int64_t evaluations = 0;  ///< of f
   std::int64_t restarts = 0;     ///< calls of start()
+
+  /// Adds those of another flow.
+  FlowCounts& operator+=(const FlowCounts& other) {
+    steps += other.steps;
+    evaluations += other.evaluations;
+    restarts += other.restarts;
+    return *this;
+  }
 };
 
-/// An integrator that makes one step at a time. After start() the last step is empty: begin() == end().
+/// The last step of a flow, apart from the flow: Flow::leave(), Flow::resume().
+struct FlowStep {
+  double begin = 0.0;           ///< time at which it began [s]
+  double end = 0.0;             ///< time at which it ended [s]
+  double next = 0.0;            ///< length that would be tried next, 0: the method's own guess [s]
+  bool restart = true;          ///< the next step starts anew, as after start()
+  std::vector<double> numbers;  ///< y at both ends, and what else the method wants to know
+};
+
+/// An integrator that makes one step at a time. After start() the last step is empty: begin() == end(). What
+/// follows a start() depends on its arguments alone, whatever the flow did before.
 class CAROM_API Flow {
 public:
   virtual ~Flow() = default;
 
+  /// Serves another problem from now on; start() or resume() comes next. Counts go on. ModelError: unlike the
+  /// present problem in the number of unknowns or of integrals, or as make_flow().
+  virtual void bind(FlowProblem& problem) = 0;
+  /// Writes the last step, for resume(). False, and nothing written, where that is not all there is to know:
+  /// with adams and bdf unless the next step is the first after start(); with any method after an error.
+  [[nodiscard]] virtual bool leave(FlowStep& out) const = 0;
+  /// Goes on from a step that a flow of the same method left, on the same problem, as that flow would have:
+  /// the same bits for the same evaluations. But with explicit_runge_kutta sample() does what land() does
+  /// until the next step. ModelError: a step of another number of unknowns or another method.
+  virtual void resume(const FlowStep& step) = 0;
   /// Starts anew at y. \param first_step length to try first [s], 0: the method's own guess. The step in use
   /// before serves explicit_runge_kutta well; adams and bdf begin at order 1 and guess better.
   virtual void start(double time, std::span<const double> y, double first_step) = 0;
@@ -106,8 +134,8 @@ public:
 };
 
 /// Makes a flow. The estimated error of a step is at most relative_tolerance |y_i| + absolute tolerance, in
-/// each unknown. `problem` must outlive the flow. ModelError: a tolerance that is not finite and > 0, no
-/// unknowns. \param relative_tolerance > 0
+/// each unknown. `problem` must outlive the flow's use of it. ModelError: a tolerance that is not finite and
+/// > 0, no unknowns. \param relative_tolerance > 0
 [[nodiscard]] CAROM_API std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem,
                                                         double relative_tolerance);
 

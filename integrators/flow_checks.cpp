@@ -27,6 +27,19 @@ void check_flow_problem(const FlowProblem& problem, double relative_tolerance) {
   }
 }
 
+void check_flow_bind(const FlowProblem& problem, std::size_t size, std::size_t integrals) {
+  if (problem.size() == size && problem.integrals() == integrals) return;
+  throw ModelError("flow: bind() is given a problem of " + std::to_string(problem.size()) + " unknowns, " +
+                   std::to_string(problem.integrals()) + " of them integrals; allowed: " +
+                   std::to_string(size) + " and " + std::to_string(integrals));
+}
+
+void check_flow_step(const FlowStep& step, std::size_t numbers) {
+  if (step.numbers.size() == numbers) return;
+  throw ModelError("flow: resume() is given a step of " + std::to_string(step.numbers.size()) +
+                   " numbers; allowed: " + std::to_string(numbers) + ", as leave() of this method writes");
+}
+
 void check_flow_size(std::size_t given, std::size_t size, const char* call) {
   if (given == size) return;
   throw ModelError(std::string("flow: ") + call + "() is given " + std::to_string(given) +

@@ -14,6 +14,8 @@ namespace carom {
 
 /// Each throws ModelError naming the call, the number and what is allowed.
 CAROM_API void check_flow_problem(const FlowProblem& problem, double relative_tolerance);
+CAROM_API void check_flow_bind(const FlowProblem& problem, std::size_t size, std::size_t integrals);
+CAROM_API void check_flow_step(const FlowStep& step, std::size_t numbers);
 CAROM_API void check_flow_size(std::size_t given, std::size_t size, const char* call);
 CAROM_API void check_flow_start(double time, double first_step);
 CAROM_API void check_flow_advance(bool started, double longest);

@@ -35,7 +35,7 @@ constexpr double safety = 0.9, most_growth = 10.0, most_shrinking = 0.2;
 }  // namespace
 
 OneStepFlow::OneStepFlow(FlowProblem& problem, double relative_tolerance)
-    : problem_(&problem), relative_tolerance_(relative_tolerance) {
+    : problem_(&problem), integrals_(problem.integrals()), relative_tolerance_(relative_tolerance) {
   check_flow_problem(problem, relative_tolerance);
   const std::size_t n = problem.size();
   for (std::vector<double>* array : {&start_, &end_, &trial_}) array->assign(n, 0.0);
@@ -46,6 +46,43 @@ OneStepFlow::OneStepFlow(FlowProblem& problem, double relative_tolerance)
 void OneStepFlow::rates(double time, const double* y, double* out) {
   ++counts_.evaluations;
   problem_->rates(time, y, out);
+}
+
+void OneStepFlow::bind(FlowProblem& problem) {
+  check_flow_bind(problem, end_.size(), integrals_);
+  check_flow_problem(problem, relative_tolerance_);
+  problem_ = &problem;
+  started_ = false;
+}
+
+bool OneStepFlow::leave(FlowStep& out) const {
+  if (!started_) return false;
+  const std::size_t n = end_.size();
+  out.begin = begin_;
+  out.end = time_;
+  out.next = next_step_;
+  out.restart = !known_;
+  out.numbers.resize(4 * n);
+  double* to = std::copy_n(start_.data(), n, out.numbers.data());
+  to = std::copy_n(end_.data(), n, to);
+  to = std::copy_n(slopes_.data(), n, to);
+  std::copy_n(slopes_.data() + (stages - 1) * n, n, to);
+  return true;
+}
+
+void OneStepFlow::resume(const FlowStep& step) {
+  const std::size_t n = end_.size();
+  check_flow_step(step, 4 * n);
+  begin_ = step.begin;
+  time_ = step.end;
+  next_step_ = step.next;
+  const double* const from = step.numbers.data();
+  std::copy_n(from, n, start_.data());
+  std::copy_n(from + n, n, end_.data());
+  std::copy_n(from + 2 * n, n, slopes_.data());
+  std::copy_n(from + 3 * n, n, slopes_.data() + (stages - 1) * n);
+  known_ = !step.restart;
+  started_ = true;
 }
 
 void OneStepFlow::start(double time, std::span<const double> y, double first_step) {

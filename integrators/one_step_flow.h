@@ -16,6 +16,9 @@ class CAROM_API OneStepFlow final : public Flow {
 public:
   OneStepFlow(FlowProblem& problem, double relative_tolerance);
 
+  void bind(FlowProblem& problem) override;
+  [[nodiscard]] bool leave(FlowStep& out) const override;
+  void resume(const FlowStep& step) override;
   void start(double time, std::span<const double> y, double first_step) override;
   void advance(double longest) override;
   [[nodiscard]] double begin() const override { return begin_; }
@@ -35,6 +38,7 @@ private:
   [[nodiscard]] double first_guess() const;
 
   FlowProblem* problem_;
+  std::size_t integrals_;
   double relative_tolerance_;
   double begin_ = 0.0, time_ = 0.0, next_step_ = 0.0;
   std::vector<double> start_, end_, trial_;  // y at begin_, at time_

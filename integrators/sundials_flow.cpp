@@ -32,6 +32,39 @@ void SundialsFlow::start(double time, std::span<const double> y, double first_st
   forget();
 }
 
+void SundialsFlow::bind(FlowProblem& problem) {
+  link_.bind(problem);
+  started_ = false;
+}
+
+bool SundialsFlow::leave(FlowStep& out) const {
+  if (!started_ || !(starts_anew() || can_tell_history())) return false;
+  const std::size_t n = link_.size();
+  out.begin = begin_;
+  out.end = end_;
+  out.next = next_;
+  out.restart = starts_anew();
+  out.numbers.resize(2 * n + history_size());
+  std::copy_n(begin_state_.data(), n, out.numbers.data());
+  std::copy_n(end_state_.data(), n, out.numbers.data() + n);
+  if (!out.restart) tell_history(out.numbers.data() + 2 * n);
+  return true;
+}
+
+void SundialsFlow::resume(const FlowStep& step) {
+  const std::size_t n = link_.size();
+  check_flow_step(step, 2 * n + history_size());
+  begin_ = step.begin;
+  end_ = step.end;
+  next_ = step.next;
+  std::copy_n(step.numbers.data(), n, begin_state_.data());
+  std::copy_n(step.numbers.data() + n, n, end_state_.data());
+  started_ = true;
+  stepped_ = false;
+  forget();
+  if (!step.restart) take_history(step.numbers.data() + 2 * n);
+}
+
 void SundialsFlow::advance(double longest) {
   check_flow_advance(started_, longest);
   begin_ = end_;
@@ -78,8 +111,10 @@ void SundialsFlow::sample(double time, std::span<double> y) {
     std::copy(end_state_.begin(), end_state_.end(), y.begin());
   } else if (time == begin_) {
     std::copy(begin_state_.begin(), begin_state_.end(), y.begin());
-  } else {
+  } else if (stepped_) {
     interpolate(time, y.data());
+  } else {
+    integrate_to(time, y.data());
   }
 }
 
@@ -94,7 +129,11 @@ void SundialsFlow::land(double time, std::span<double> y) {
 
 void SundialsFlow::correct(std::span<const double> y) {
   check_flow_size(y.size(), link_.size(), "correct");
-  if (stepped_) shift(y);
+  if (stepped_) {
+    shift(y);
+  } else {
+    forget();
+  }
   std::copy(y.begin(), y.end(), end_state_.begin());
   std::copy(y.begin(), y.end(), begin_state_.begin());
   begin_ = end_;

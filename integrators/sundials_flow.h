@@ -15,6 +15,9 @@ namespace carom {
 /// A flow whose steps an integrator of SUNDIALS makes.
 class SundialsFlow : public Flow {
 public:
+  void bind(FlowProblem& problem) final;
+  [[nodiscard]] bool leave(FlowStep& out) const final;
+  void resume(const FlowStep& step) final;
   void start(double time, std::span<const double> y, double first_step) final;
   void advance(double longest) final;
   [[nodiscard]] double begin() const final { return begin_; }
@@ -33,11 +36,19 @@ protected:
   /// beside where it must, by the rounding of time. \return what SUNDIALS returned; `reached` is the step's
   /// end
   virtual int step(double longest, double& reached) = 0;
-  /// Called by start(): what was known of the motion so far no longer holds.
+  /// Called by start() and resume(): what was known of the motion so far no longer holds.
   virtual void forget() = 0;
+  /// True if the next step will start anew.
+  [[nodiscard]] virtual bool starts_anew() const = 0;
+  /// What a step that does not start anew needs to know of those before: whether it is numbers that can be
+  /// told, how many, telling them, and taking over those of another flow (after forget()).
+  [[nodiscard]] virtual bool can_tell_history() const { return false; }
+  [[nodiscard]] virtual std::size_t history_size() const { return 0; }
+  virtual void tell_history(double* /*out*/) const {}
+  virtual void take_history(const double* /*from*/) {}
   /// Called by correct() after a step, while end_state_ still holds what will be replaced.
   virtual void shift(std::span<const double> y) = 0;
-  /// sample() and land() strictly inside the last step.
+  /// sample() and land() strictly inside the last step; after resume() the latter alone.
   virtual void interpolate(double time, double* y) = 0;
   virtual void integrate_to(double time, double* y) = 0;
 
@@ -55,7 +66,7 @@ private:
   void demand_step(double time, std::size_t size, const char* what) const;
 
   bool started_ = false;
-  bool stepped_ = false;  // since start()
+  bool stepped_ = false;  // since start() or resume()
   mutable FlowCounts counts_{};
 };
 

@@ -49,6 +49,8 @@ public:
   SundialsLink(const SundialsLink&) = delete;
   SundialsLink& operator=(const SundialsLink&) = delete;
 
+  /// Another problem from now on; ModelError as check_flow_bind() and check_flow_problem().
+  void bind(FlowProblem& problem);
   /// Number of unknowns.
   [[nodiscard]] std::size_t size() const { return size_; }
   /// The context of everything made for this problem.
@@ -66,6 +68,13 @@ public:
   [[nodiscard]] double in_tolerances(const double* x, const double* y) const;
   /// Evaluates f outside SUNDIALS. False: not finite.
   [[nodiscard]] bool evaluate(double time, const double* y, double* rates);
+
+  /// The next time that SUNDIALS asks for rates at this very time these are the answer, without an
+  /// evaluation; once. \param rates must outlive that
+  void answer(double time, const double* rates) {
+    answer_at_ = time;
+    answer_ = rates;
+  }
 
   /// Forgets what went wrong before.
   void clear();
@@ -103,12 +112,14 @@ private:
   void keep_message(int code, const char* message) noexcept;
 
   FlowProblem* problem_;
-  std::size_t size_;
+  std::size_t size_, integrals_;
   double relative_tolerance_;
   double part_ = 1.0;
   SUNContext context_ = nullptr;
   std::int64_t evaluations_ = 0;
   std::vector<double> moved_rates_;
+  double answer_at_ = 0.0;
+  const double* answer_ = nullptr;
   bool not_finite_ = false;
   double not_finite_at_ = -std::numeric_limits<double>::infinity();
   std::exception_ptr exception_{};

@@ -34,6 +34,7 @@ public:
 private:
   int step(double longest, double& reached) override;
   void forget() override { restart_ = true; }
+  [[nodiscard]] bool starts_anew() const override { return restart_; }
   void shift(std::span<const double> y) override;
   void interpolate(double time, double* y) override;
   void integrate_to(double time, double* y) override { interpolate(time, y); }

@@ -19,8 +19,58 @@ namespace {
 constexpr auto table = ARKODE_DORMAND_PRINCE_7_4_5;
 // Stands for no stop time; 6.4 cannot clear one.
 constexpr double never = std::numeric_limits<double>::max();
+// A step may be longer than the one before by this factor; the step after one that was guessed, which may be
+// far too short, by the other. Those of ARKODE, which takes the second after the first step it ever makes, of
+// whatever motion.
+constexpr double growth = 25.0, growth_from_guess = 1e4;
 // Reductions of a first step that was far too long; the default of 7 is too few.
 constexpr int error_test_failures = 25;
+
+// How long the next step is to be by the errors of this and the step before: the PI controller that ARKODE
+// has for explicit methods, but with a memory that can be handed on.
+class LengthControl {
+public:
+  static constexpr double no_error = 1.0;  // where there was no step before
+
+  void remember(double error) { before_ = error; }
+  [[nodiscard]] double error() const { return before_; }
+  /// \param error of the tolerance; a step with more than 1 is not accepted
+  [[nodiscard]] double next(double length, double error) {
+    constexpr double bias = 1.2, least = 1e-10, order = 4.0;  // the lower of the pair
+    constexpr double of_this = 0.8 / order, of_before = 0.31 / order;
+    const double now = bias * error;
+    const auto at_least = [](double number) { return number > least ? number : least; };
+    const double wanted = length * std::pow(at_least(now), -of_this) * std::pow(at_least(before_), of_before);
+    if (error <= 1.0) before_ = now;
+    return wanted;
+  }
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+  /// What ARKODE calls; null if it cannot be made. To be destroyed.
+  [[nodiscard]] SUNAdaptController make(SUNContext context) {
+    SUNAdaptController made = SUNAdaptController_NewEmpty(context);
+    if (made == nullptr) return nullptr;
+    made->content = this;
+    made->ops->gettype = [](SUNAdaptController) { return SUN_ADAPTCONTROLLER_H; };
+    made->ops->estimatestep = [](SUNAdaptController self, sunrealtype length, int, sunrealtype error,
+                                 sunrealtype* next) -> SUNErrCode {
+      *next = static_cast<LengthControl*>(self->content)->next(length, error);
+      return SUN_SUCCESS;
+    };
+    return made;
+  }
+#else
+  /// What ARKODE calls; `control` is a LengthControl.
+  static int adapt(N_Vector, double, double length, double, double, double error, double, double, int, int,
+                   double* next, void* control) {
+    *next = static_cast<LengthControl*>(control)->next(length, error);
+    return ARK_SUCCESS;
+  }
+#endif
+
+private:
+  double before_ = no_error;
+};
 
 // One integrator of ARKODE.
 class Stepper {
@@ -37,21 +87,46 @@ public:
     demand(CAROM_ERK(SetInterpolantDegree)(memory_, 3));
     demand(CAROM_ERK(SetMaxErrTestFails)(memory_, error_test_failures));
     demand(CAROM_ERK(SetMaxHnilWarns)(memory_, -1));
+    demand(CAROM_ERK(SetMaxGrowth)(memory_, growth));
+#if SUNDIALS_VERSION_MAJOR >= 7
+    controller_ = control_.make(link.context());
+    link.demand(controller_ != nullptr, "making a controller of steps");
+    demand(CAROM_ERK(SetAdaptController)(memory_, controller_));
+#else
+    demand(ERKStepSetAdaptivityFn(memory_, LengthControl::adapt, &control_));
+    demand(ERKStepSetErrorBias(memory_, 1.0));  // the control has its own
+#endif
   }
-  ~Stepper() { CAROM_ERK(Free)(&memory_); }
+  ~Stepper() {
+    CAROM_ERK(Free)(&memory_);
+#if SUNDIALS_VERSION_MAJOR >= 7
+    SUNAdaptController_DestroyEmpty(controller_);
+#endif
+  }
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
-  void start(double time, N_Vector y) {
+  void start(double time, N_Vector y, bool guessed) {
+    if (used_ && !guessed) {
+      demand(CAROM_ERK(Reset)(memory_, time, y));
+      return;
+    }
     // A reset is no substitute for the first initialisation.
-    demand(used_ ? CAROM_ERK(Reset)(memory_, time, y) : ERKStepReInit(memory_, SundialsLink::rates, time, y));
+    demand(CAROM_ERK(SetMaxFirstGrowth)(memory_, guessed ? growth_from_guess : growth));
+    demand(ERKStepReInit(memory_, SundialsLink::rates, time, y));
+    used_ = false;
   }
   int step(double horizon, N_Vector y, double& reached) {
     const int flag = CAROM_ERK(Evolve)(memory_, horizon, y, &reached, ARK_ONE_STEP);
     used_ = used_ || flag >= 0;
     return flag;
   }
-  void first_step(double length) { demand(CAROM_ERK(SetInitStep)(memory_, length)); }
+  /// \param error of the step before, for the control
+  void first_step(double length, double error = LengthControl::no_error) {
+    demand(CAROM_ERK(SetInitStep)(memory_, length));
+    control_.remember(error);
+  }
+  [[nodiscard]] double error() const { return control_.error(); }
   void fixed_step(double length) { demand(CAROM_ERK(SetFixedStep)(memory_, length)); }
   // Holds for the steps after the next, and for the first one.
   void longest_step(double length) { demand(CAROM_ERK(SetMaxStep)(memory_, length)); }
@@ -69,6 +144,10 @@ private:
   void* memory_;
   SundialsLink* link_;
   bool used_ = false;
+  LengthControl control_;
+#if SUNDIALS_VERSION_MAJOR >= 7
+  SUNAdaptController controller_ = nullptr;
+#endif
 };
 
 class RungeKuttaFlow final : public SundialsFlow {
@@ -77,6 +156,7 @@ public:
       : SundialsFlow(problem, relative_tolerance),
         stepper_(link_, begin_vector_.get()),
         lander_(link_, begin_vector_.get()),
+        known_slope_(link_.size()),
         slope_(link_.size()),
         bend_(link_.size()),
         change_(link_.size()),
@@ -88,8 +168,16 @@ public:
 
 private:
   int step(double longest, double& reached) override;
-  void forget() override { restart_ = true; }
-  void shift(std::span<const double>) override { restart_ = true; }
+  void forget() override {
+    restart_ = true;
+    resumed_ = false;
+  }
+  void shift(std::span<const double>) override { forget(); }
+  [[nodiscard]] bool starts_anew() const override { return restart_ && !resumed_; }
+  [[nodiscard]] bool can_tell_history() const override { return true; }
+  [[nodiscard]] std::size_t history_size() const override { return link_.size() + 1; }
+  void tell_history(double* out) const override;
+  void take_history(const double* from) override;
   void interpolate(double time, double* y) override;
   void integrate_to(double time, double* y) override;
 
@@ -100,6 +188,9 @@ private:
   Stepper stepper_;
   Stepper lander_;  // integrates again from begin(), so that the stepper need not be disturbed
   bool restart_ = true;
+  bool resumed_ = false;  // the restart is to be none: the next step is the one after that of another flow,
+  std::vector<double> known_slope_;  // with these rates at its beginning,
+  double known_error_ = 0.0;         // after a step with this error
   bool polynomial_made_ = false;
   // y(s) = y_0 + s (slope + s (bend + s change)) + s^2 (1-s)^2 (even + (2 s - 1) odd),  s from 0 to 1
   std::vector<double> slope_, bend_, change_, even_, odd_;
@@ -126,18 +217,43 @@ double RungeKuttaFlow::guess_first_step(double longest) {
   return std::min({100.0 * small, guess, longest});
 }
 
+void RungeKuttaFlow::tell_history(double* out) const {
+  const std::size_t n = link_.size();
+  if (resumed_) {
+    std::copy_n(known_slope_.data(), n, out);
+    out[n] = known_error_;
+    return;
+  }
+  N_VSetArrayPointer(out, out_vector_.get());
+  stepper_.slope(end_, out_vector_.get());
+  out[n] = stepper_.error();
+}
+
+void RungeKuttaFlow::take_history(const double* from) {
+  std::copy_n(from, link_.size(), known_slope_.data());
+  known_error_ = from[link_.size()];
+  resumed_ = true;
+}
+
 int RungeKuttaFlow::step(double longest, double& reached) {
   polynomial_made_ = false;
-  if (next_ == 0.0) next_ = guess_first_step(longest);
+  const bool guessed = next_ == 0.0;
+  if (guessed) next_ = guess_first_step(longest);
   const double wanted = next_;
+  const bool cut = wanted > longest && !starts_anew();
   if (restart_) {
-    stepper_.start(begin_, begin_vector_.get());
-    stepper_.first_step(std::min(wanted, longest));
+    stepper_.start(begin_, begin_vector_.get(), guessed);
+    if (resumed_) {
+      stepper_.first_step(wanted, known_error_);
+      link_.answer(begin_, known_slope_.data());
+    } else {
+      stepper_.first_step(std::min(wanted, longest));
+    }
   }
   // A stop time that is not reached would cut the step after this one too, so it is set only where it will
-  // be.
-  stepper_.longest_step(longest);
-  stepper_.stop_at(!restart_ && wanted > longest ? begin_ + longest : never);
+  // be. So cut, a first step is not also to be limited.
+  stepper_.longest_step(cut ? wanted : longest);
+  stepper_.stop_at(cut ? begin_ + longest : never);
   int flag = stepper_.step(horizon(longest), end_vector_.get(), reached);
   // ERKStep does not try a shorter step where a stage meets rates that are not finite. Each of ours ends
   // before the place where the last one did.
@@ -145,8 +261,9 @@ int RungeKuttaFlow::step(double longest, double& reached) {
     const double shorter = 0.25 * (link_.not_finite_at() - begin_);
     if (!(begin_ + 0.25 * shorter > begin_)) break;  // so begin() is the edge
     link_.clear();
-    stepper_.start(begin_, begin_vector_.get());
+    stepper_.start(begin_, begin_vector_.get(), guessed);
     stepper_.first_step(std::min(shorter, longest));
+    stepper_.longest_step(longest);
     stepper_.stop_at(never);
     flag = stepper_.step(horizon(longest), end_vector_.get(), reached);
   }
@@ -154,6 +271,7 @@ int RungeKuttaFlow::step(double longest, double& reached) {
   // A step that was cut says nothing against the length it would have had. To grow back to it would take
   // several steps; to start anew with it takes one evaluation.
   restart_ = flag == ARK_TSTOP_RETURN;
+  resumed_ = false;
   next_ = restart_ ? wanted : stepper_.next_step();
   return flag;
 }
@@ -216,7 +334,7 @@ void RungeKuttaFlow::integrate_to(double time, double* y) {
   link_.clear();
   N_VSetArrayPointer(y, out_vector_.get());
   lander_.fixed_step(time - begin_);
-  lander_.start(begin_, begin_vector_.get());
+  lander_.start(begin_, begin_vector_.get(), false);
   double reached = begin_;
   const int flag = lander_.step(time, out_vector_.get(), reached);
   if (flag < 0) link_.fail(flag, begin_, time - begin_);
