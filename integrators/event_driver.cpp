@@ -30,7 +30,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options)
     : assembly_(&assembly),
       options_((check_options(options), options)),
       finder_(assembly),
-      work_(assembly),
+      work_(assembly, options),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
   for (Index island = 0; island < assembly.islands().size(); ++island) {
@@ -44,12 +44,7 @@ void EventDriver::demand_start(const State& state) {
 
 void EventDriver::start(const State& state, const Companion& companion) {
   for (auto& island : islands_) island->start(state, companion.modes);
-  counted_ = {};
-  for (const auto& island : islands_) {
-    counted_.steps += island->counts().steps;
-    counted_.evaluations += island->counts().evaluations;
-    counted_.restarts += island->counts().restarts;
-  }
+  counted_ = work_.flows.counts();
   started_ = true;
 }
 
@@ -161,12 +156,7 @@ void EventDriver::count(Companion& companion) {
     ++statistics.energy_gains;
     statistics.energy_gained += news_.energy_gain;
   }
-  FlowCounts now;
-  for (const auto& island : islands_) {
-    now.steps += island->counts().steps;
-    now.evaluations += island->counts().evaluations;
-    now.restarts += island->counts().restarts;
-  }
+  const FlowCounts now = work_.flows.counts();
   statistics.flow_steps += now.steps - counted_.steps;
   statistics.flow_evaluations += now.evaluations - counted_.evaluations;
   statistics.flow_restarts += now.restarts - counted_.restarts;

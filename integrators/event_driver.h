@@ -36,6 +36,8 @@ public:
   /// The state was changed from outside: start anew from it.
   void forget() { started_ = false; }
 
+  /// The flows that islands share.
+  [[nodiscard]] const FlowPool& flows() const { return work_.flows; }
   /// Names of contacts.
   [[nodiscard]] const ContactFinder& finder() const { return finder_; }
 

@@ -50,7 +50,7 @@ void IslandDriver::demand_start(const State& state) {
 
 void IslandDriver::start(const State& state, const ContactModes& present) {
   demand_start(state);
-  if (!flow_) flow_ = make_flow(options_.method, motion_, options_.relative_tolerance);
+  flow_.reset();
   time_ = looked_at_ = state.time;
   landed_at_ = never;
   motion_.gather(state, y_);
@@ -82,39 +82,20 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
 }
 
 void IslandDriver::advance(double target, DriverNews& news) {
-  // What is shown stands on the joints; that is taken back where the run goes on.
-  const auto look = [&](std::span<const double> y, double projected) {
-    news.flows[EnergyFlow::projection] += projected - shown_projection_;
-    shown_projection_ = projected;
-    for (Index line = 0; line < motion_.work_count(); ++line) {
-      const double value = y[motion_.work_place(static_cast<WorkLine>(line))];
-      constexpr std::array<EnergyFlow, work_lines> flows{EnergyFlow::dashpot, EnergyFlow::sliding,
-                                                         EnergyFlow::external, EnergyFlow::joint_friction};
-      news.flows[flows[line]] += value - delivered_[line];
-      delivered_[line] = value;
-    }
-    looked_at_ = target;
-  };
   for (;;) {
     if (!in_phase_) begin_phase(news);
     if (resting_) time_ = target;
     if (time_ == target) {
       seen_ = y_;
-      look(seen_, 0.0);
-      return;
+      show(0.0, target, news);
+      break;
     }
+    borrow_flow();
     if (!pending_) take_step();
     const double until = next_.guard == Guard::nothing ? flow_->end() : next_.time;
     if (target < until) {
-      flow_->land(target, seen_);
-      double projected = 0.0;
-      if (!motion_.joints().empty()) {
-        bool changed = false;
-        motion_.evaluate(target, seen_.data(), true);
-        projected = motion_.project(seen_, changed, news.shift);
-      }
-      look(seen_, projected);
-      return;
+      show_within_step(target, news);
+      break;
     }
     if (next_.guard == Guard::nothing) {
       accept_step(news);
@@ -122,6 +103,46 @@ void IslandDriver::advance(double target, DriverNews& news) {
       go_to_event(news);
     }
   }
+  leave_flow();
+}
+
+void IslandDriver::show_within_step(double target, DriverNews& news) {
+  flow_->land(target, seen_);
+  double projected = 0.0;
+  if (!motion_.joints().empty()) {
+    bool changed = false;
+    motion_.evaluate(target, seen_.data(), true);
+    projected = motion_.project(seen_, changed, news.shift);
+  }
+  show(projected, target, news);
+}
+
+/// What is shown stands on the joints; that is taken back where the run goes on.
+void IslandDriver::show(double projected, double target, DriverNews& news) {
+  news.flows[EnergyFlow::projection] += projected - shown_projection_;
+  shown_projection_ = projected;
+  for (Index line = 0; line < motion_.work_count(); ++line) {
+    const double value = seen_[motion_.work_place(static_cast<WorkLine>(line))];
+    constexpr std::array<EnergyFlow, work_lines> flows{EnergyFlow::dashpot, EnergyFlow::sliding,
+                                                       EnergyFlow::external, EnergyFlow::joint_friction};
+    news.flows[flows[line]] += value - delivered_[line];
+    delivered_[line] = value;
+  }
+  looked_at_ = target;
+}
+
+void IslandDriver::borrow_flow() {
+  if (flow_) return;
+  flow_ = work_->flows.borrow(motion_);
+  flow_->resume(left_);
+  told_ = true;
+}
+
+/// Lets other islands have the flow.
+void IslandDriver::leave_flow() {
+  const bool alone = assembly_->islands().size() == 1;
+  if (!flow_ || (!resting_ && (alone || !(told_ || flow_->leave(left_))))) return;
+  flow_.reset();
 }
 
 void IslandDriver::write(State& state, ContactModes& modes) const {
@@ -160,6 +181,7 @@ void IslandDriver::take_step() {
   const double until_break = due == breaks.end() ? never : *due - time_;
   landed_at_ = never;
   pending_ = true;
+  told_ = false;
   do {
     try {
       flow_->advance(std::min(longest_step(), until_break));
@@ -184,6 +206,7 @@ void IslandDriver::take_step() {
 }
 
 void IslandDriver::accept_step(DriverNews& news) {
+  told_ = false;
   time_ = flow_->end();
   y_.assign(flow_->state().begin(), flow_->state().end());
   pending_ = false;

@@ -13,6 +13,7 @@
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_log.h>
+#include <carom/integrators/flow_pool.h>
 #include <carom/integrators/island_motion.h>
 #include <carom/integrators/mode_decision.h>
 #include <carom/integrators/step_polynomial.h>
@@ -28,10 +29,12 @@ namespace carom {
 
 /// What islands share: memory and solvers.
 struct CAROM_API DriverWorkspace {
-  explicit DriverWorkspace(const Assembly& assembly) : motion(assembly) {}
+  DriverWorkspace(const Assembly& assembly, const EventDriven& options)
+      : motion(assembly), flows(options.method, options.relative_tolerance) {}
 
   /// For one island at a time.
   MotionWorkspace motion;
+  FlowPool flows;  ///< an island has one in its turn, and between turns if it cannot do without
   SolverChain chain;
   ContactCluster cluster;
   ModeDecision decision;
@@ -73,8 +76,6 @@ public:
   void write(State& state, ContactModes& modes) const;
   /// Reaction of a joint of the island at the time last advanced to.
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
-  /// Counts of the flow.
-  [[nodiscard]] const FlowCounts& counts() const { return flow_->counts(); }
 
 private:
   // What is found: nothing, an end of a gap, of a force, of slipping; a kink of loads; a break of a law;
@@ -104,6 +105,10 @@ private:
   };
 
   // Smooth phases.
+  void show(double projected, double target, DriverNews& news);
+  void show_within_step(double target, DriverNews& news);
+  void borrow_flow();
+  void leave_flow();
   void take_step();
   void sample_step();
   [[nodiscard]] double longest_step() const;
@@ -166,7 +171,9 @@ private:
   EventDriven options_;
   DriverWorkspace* work_;
   IslandMotion motion_;
-  std::unique_ptr<Flow> flow_;
+  FlowPool::Loan flow_;  // null at rest, and where `left_` is all there is to know of the motion
+  FlowStep left_;
+  bool told_ = false;  // `left_` is the step of the flow
 
   double time_ = 0.0;                           // up to which the island is decided
   std::vector<double> y_;                       // at time_

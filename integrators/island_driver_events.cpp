@@ -89,6 +89,8 @@ void IslandDriver::begin_phase(DriverNews& news) {
   // A method of many steps is not helped by the length that the last step had.
   const bool one_step =
       options_.method == FlowMethod::explicit_runge_kutta || options_.method == FlowMethod::one_step;
+  if (!flow_) flow_ = work_->flows.borrow(motion_);
+  told_ = false;
   flow_->start(time_, y_, one_step ? step_ : 0.0);
 }
 
