@@ -11,6 +11,10 @@ namespace carom {
 void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
   const Range v = assembly_->islands()[island].v;
   if (options_.iteration == Iteration::fixed_point) {
+    if (assembly_->islands().size() == 1) {
+      evaluation_.force.swap(evaluated_);
+      return;
+    }
     for_blocks(island, [this](const Block& block, Index) {
       std::copy(evaluated_.begin() + block.v.begin, evaluated_.begin() + block.v.end,
                 evaluation_.force.begin() + block.v.begin);
