@@ -188,35 +188,6 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
   entry.solver = cluster.report().solver;
 }
 
-/// The history of loads goes on by those at the end of the step.
-void TimeStepper::remember_loads(Companion& companion) const {
-  LoadHistory& history = companion.history;
-  constexpr int most = 3;
-  history.known = history.known > 0 && history.step == report_.step ? std::min(history.known + 1, most) : 1;
-  history.step = report_.step;
-  if (history.first.size() != evaluated_.size()) {
-    for (auto* const differences : {&history.first, &history.second, &history.third}) {
-      differences->resize(evaluated_.size());
-    }
-  }
-  const double* const now = companion.loads.total.data();
-  const double* const then = evaluated_.data();
-  float* const first = history.first.data();
-  float* const second = history.second.data();
-  float* const third = history.third.data();
-  for (Index island = 0; island < needed_sweeps_.size(); ++island) {
-    if (needed_sweeps_[island] == Sweeps::unneeded) continue;  // differences stay zero
-    const Range v = assembly_->islands()[island].v;
-    for (Index i = v.begin; i < v.end; ++i) {
-      const auto change = static_cast<float>(then[i] - now[i]);
-      const float change_of_first = change - first[i];
-      third[i] = change_of_first - second[i];
-      second[i] = change_of_first;
-      first[i] = change;
-    }
-  }
-}
-
 void TimeStepper::commit(State& state, Companion& companion, double end_time, StepReport& report) {
   flows_[EnergyFlow::projection] = projected_ + held_;
   flows_[EnergyFlow::coupling_discretisation] =
