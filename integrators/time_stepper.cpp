@@ -1,8 +1,6 @@
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace carom {
