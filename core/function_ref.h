@@ -19,11 +19,11 @@ public:
   FunctionRef() = default;
   /// \param function what is called; only referred to
   template <class F>
-    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
-  FunctionRef(F&& function)  // NOLINT(google-explicit-constructor): a parameter that takes any lambda
+    requires(!std::is_same_v<std::remove_cv_t<F>, FunctionRef>)
+  FunctionRef(F& function)  // NOLINT(google-explicit-constructor): a parameter that takes any lambda
       : function_(const_cast<void*>(static_cast<const void*>(&function))),
         call_([](void* called, Arguments... arguments) -> Result {
-          return (*static_cast<std::remove_reference_t<F>*>(called))(std::forward<Arguments>(arguments)...);
+          return (*static_cast<F*>(called))(std::forward<Arguments>(arguments)...);
         }) {}
 
   /// True if it refers to anything.
