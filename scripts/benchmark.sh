@@ -2,11 +2,11 @@
 # Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about seven
 # minutes; the machine should have nothing else to do.
 #   scripts/benchmark.sh               all
-#   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, joint
+#   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, flow, joint
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-programs=(net impact tables chain event joint)
+programs=(net impact tables chain event flow joint)
 for name in "$@"; do
   if [[ " ${programs[*]} " != *" $name "* ]]; then
     echo "usage: $0 [${programs[*]}]" >&2

@@ -13,7 +13,7 @@ from pathlib import Path
 
 SIZES = [10, 30, 100, 300, 1000]
 TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "seconds")
+         "eigen_per_rod", "seconds", "per_unknown")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -216,6 +216,8 @@ def friction_table(event):
 
 CHAINS = (10, 100, 1000, 10000, 100000)
 ROD_NETS = (10, 30, 100)
+STIFF_NETS = (5, 16, 50)
+STIFF_CHAINS = (17, 167, 1667)
 
 
 def joint_ratio(case):
@@ -252,6 +254,19 @@ def joint_aims_table(joint):
     return table(["figure", "aim", "measured"], rows)
 
 
+def stiff_table(flow):
+    rows = []
+    for key, sizes, title in (("net_bdf", STIFF_NETS, "net of {0} × {0} particles, `bdf`"),
+                              ("net_runge_kutta", STIFF_NETS, "the same {0} × {0}, `explicit_runge_kutta`"),
+                              ("chain_bdf", STIFF_CHAINS, "chain of {0:,} rods, `bdf`")):
+        for size in sizes:
+            case = flow[f"{key}/{size}/manual_time"]
+            rows.append([title.format(size), f"{case['unknowns']:,.0f}", f"{case['steps']:,.0f}",
+                         figure(1e3 * case["per_unknown"] * case["steps"] * case["unknowns"]),
+                         figure(1e9 * case["per_unknown"])])
+    return table(["0.02 s of motion", "unknowns", "steps", "ms", "ns per step and unknown"], rows)
+
+
 def machine(context, compiler, began):
     cpu = "unknown processor"
     if Path("/proc/cpuinfo").exists():
@@ -273,6 +288,7 @@ def main():
     _, tables = load(folder, "tables")
     _, chain = load(folder, "chain")
     event_context, event = load(folder, "event")
+    flow_context, flow = load(folder, "flow")
     joint_context, joint = load(folder, "joint")
     parts = {}
     if net:
@@ -288,6 +304,8 @@ def main():
     if event:
         parts |= {"event_machine": machine(event_context, compiler, "the events"), "bounce": bounce_table(event),
                   "balls": balls_table(event), "lasting": lasting_table(event), "friction": friction_table(event)}
+    if flow:
+        parts |= {"flow_machine": machine(flow_context, compiler, "the stiff motion"), "stiff": stiff_table(flow)}
     if joint:
         parts |= {"joint_machine": machine(joint_context, compiler, "the joints"), "joint": joint_table(joint),
                   "joint_aims": joint_aims_table(joint)}
