@@ -4,6 +4,8 @@
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -42,6 +44,8 @@ void TimeStepper::guess_loads(const Block& block, const Companion& companion, do
 void TimeStepper::remember_loads(Companion& companion) const {
   LoadHistory& history = companion.history;
   constexpr int most = 3;
+  // Differences of differences and their sum stay within floats; what does not is guessed as it is now.
+  constexpr double largest = std::numeric_limits<float>::max() / 8.0;
   history.known = history.known > 0 && history.step == report_.step ? std::min(history.known + 1, most) : 1;
   history.step = report_.step;
   if (history.first.size() != evaluated_.size()) {
@@ -58,7 +62,8 @@ void TimeStepper::remember_loads(Companion& companion) const {
     if (needed_sweeps_[island] == Sweeps::unneeded) continue;  // differences stay zero
     const Range v = assembly_->islands()[island].v;
     for (Index i = v.begin; i < v.end; ++i) {
-      const auto change = static_cast<float>(then[i] - now[i]);
+      const double exact = then[i] - now[i];
+      const auto change = std::abs(exact) <= largest ? static_cast<float>(exact) : 0.0F;
       const float change_of_first = change - first[i];
       third[i] = change_of_first - second[i];
       second[i] = change_of_first;

@@ -85,6 +85,21 @@ TEST(TimeStepper, GuessesLoadsThatGoOnAsAPolynomial) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(simulation.step().sweeps, 1) << i;
 }
 
+TEST(TimeStepper, LoadsMayBeLargerThanFloats) {
+  // The guess is kept as floats, which end at 3e38; the step does not depend on it.
+  const auto end = [](double scale) {
+    System system;
+    const BodyId mass = system.add(Particle{.mass = scale});
+    system.add(planar::AppliedForce{.on = mass, .force = [scale](double t) -> Vec<2> {
+                                      return {scale * std::cos(9.0 * t), 0.0};
+                                    }});
+    Simulation simulation(std::move(system), TimeStepping{.step = 1e-2, .tolerance = 0.0});
+    simulation.run_until(0.5);
+    return simulation.state().position(mass)[0];
+  };
+  EXPECT_NEAR(end(1e45), end(1.0), 50 * eps);  // 50 steps, each rounded
+}
+
 TEST(TimeStepper, LoadsThatNeverChangeNeedNoIterationAndLeadToTheSame) {
   // A spring without stiffness changes no load, but its island is iterated.
   const auto end = [](bool with_spring) {
