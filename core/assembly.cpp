@@ -37,6 +37,7 @@ Assembly::Assembly(System system) : system_(std::move(system)) {
   cut_islands();
   order_joints(island_of_body);
   order_elements(island_of_body);
+  close_blocks();
   place_internals();
   unfinished_layout_.reset();
 }
@@ -88,7 +89,7 @@ std::vector<Index> Assembly::order_bodies() {
     const auto body = static_cast<Index>(slots.size());
     if (key.island != root) {
       root = key.island;
-      islands_.push_back({{body, body}, {q, q}, {v, v}, {}, {}});
+      islands_.push_back({{body, body}, {q, q}, {v, v}, {}, {}, {}});
       for (Index k = 0; k < kinds; ++k) {
         const auto first = static_cast<Index>(order[k].size());
         body_slots_.push_back({first, first});
@@ -136,39 +137,70 @@ std::vector<double> Assembly::length_scales() const {
 }
 
 void Assembly::cut_islands() {
+  // A run has blocks enough for most of them to lie within it.
+  constexpr Index shortest_run = 2;
   for (Island& island : islands_) {
     const Index size = island.bodies.size();
     const Index count = std::clamp<Index>(size / block_size, 1, most_blocks);
-    island.blocks.begin = static_cast<Index>(blocks_.size());
-    const auto first = [&](Index i) {
-      return island.bodies.begin + static_cast<Index>(std::uint64_t{size} * i / count);
+    const Index runs = std::clamp<Index>(count / shortest_run, 1, most_runs);
+    const auto share = [](Range whole, Index i, Index parts) {
+      return whole.begin + static_cast<Index>(std::uint64_t{whole.size()} * i / parts);
     };
     const auto velocity = [&](Index body) {
       return body < island.bodies.end ? layout_->bodies()[body].v : island.v.end;
     };
+    island.blocks.begin = static_cast<Index>(blocks_.size());
     for (Index i = 0; i < count; ++i) {
-      blocks_.push_back({{first(i), first(i + 1)}, {velocity(first(i)), velocity(first(i + 1))}});
+      const Range bodies{share(island.bodies, i, count), share(island.bodies, i + 1, count)};
+      blocks_.push_back(
+          {bodies, {velocity(bodies.begin), velocity(bodies.end)}, island.blocks.begin + i, false});
     }
     island.blocks.end = static_cast<Index>(blocks_.size());
+    island.runs.begin = static_cast<Index>(runs_.size());
+    for (Index i = 0; i < runs; ++i) {
+      runs_.push_back({share(island.blocks, i, runs), share(island.blocks, i + 1, runs)});
+    }
+    island.runs.end = static_cast<Index>(runs_.size());
   }
 }
 
-/// The block, counted from the first of the island, in which all ends lie; the number of blocks if there is
-/// none.
-Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) const {
+/// The last block of those in which the ends of an element lie, counted from the first of the island; the
+/// number of blocks if they lie in several runs. Notes in the blocks that the element acts on them.
+Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) {
   const Range blocks = islands_[island].blocks;
+  const Range runs = islands_[island].runs;
   if (blocks.size() == 1 || ends.empty()) return 0;
-  Index part = none;
-  for (const BodyId end : ends) {
-    const Index body = layout_->index(end);
+  const auto block_of = [&](BodyId end) {
     const auto found =
-        std::upper_bound(blocks_.begin() + blocks.begin, blocks_.begin() + blocks.end, body,
+        std::upper_bound(blocks_.begin() + blocks.begin, blocks_.begin() + blocks.end, layout_->index(end),
                          [](Index wanted, const Block& block) { return wanted < block.bodies.end; });
-    const auto of_end = static_cast<Index>(found - (blocks_.begin() + blocks.begin));
-    if (part != none && part != of_end) return blocks.size();
-    part = of_end;
+    return static_cast<Index>(found - blocks_.begin());
+  };
+  Index first = block_of(ends[0]), last = first;
+  for (const BodyId end : ends) {
+    first = std::min(first, block_of(end));
+    last = std::max(last, block_of(end));
   }
-  return part;
+  const auto run =
+      std::upper_bound(runs_.begin() + runs.begin, runs_.begin() + runs.end, first,
+                       [](Index wanted, const Range& candidate) { return wanted < candidate.end; });
+  if (last < run->end) {
+    blocks_[first].closed_by = std::max(blocks_[first].closed_by, last);
+    return last - blocks.begin;
+  }
+  for (const BodyId end : ends) blocks_[block_of(end)].bridged = true;
+  return blocks.size();
+}
+
+/// What closes a block closes those before it.
+void Assembly::close_blocks() {
+  for (const Range run : runs_) {
+    Index closed_by = run.begin;
+    for (Index block = run.begin; block < run.end; ++block) {
+      closed_by = std::max(closed_by, blocks_[block].closed_by);
+      blocks_[block].closed_by = closed_by;
+    }
+  }
 }
 
 void Assembly::order_joints(const std::vector<Index>& island_of_body) {
@@ -243,7 +275,7 @@ void Assembly::order_elements(const std::vector<Index>& island_of_body) {
   for (Index k = 0; k < kinds; ++k) {
     const ForceKind& kind = *entries[k].kind;
     struct Key {
-      Index island, part, slot;  // part: a block of the island, or behind them all a bridge
+      Index island, part, slot;  // part: as part_of() has it
       auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys;
@@ -276,6 +308,7 @@ void Assembly::order_elements(const std::vector<Index>& island_of_body) {
       }
       for (Index block = 0; block < blocks_.size(); ++block) {
         block_elements_[block * kinds + k] = kind.works_in_parts() ? all : Range{};
+        blocks_[block].bridged = blocks_[block].bridged || !kind.works_in_parts();
       }
     }
     force_kinds_.push_back(kind.arranged(order, *layout_));

@@ -23,13 +23,16 @@ struct Island {
   Range v;       ///< velocities
   Range z;       ///< internal variables of elements
   Range blocks;  ///< parts of it, see Assembly::blocks()
+  Range runs;    ///< see Assembly::runs()
 };
 
 /// Consecutive bodies of an island. Large islands are cut into blocks, whose number depends on the island's
 /// size alone; loops over them may be shared out to threads.
 struct Block {
-  Range bodies;  ///< in the order of assembly
-  Range v;       ///< velocities
+  Range bodies;          ///< in the order of assembly
+  Range v;               ///< velocities
+  Index closed_by = 0;   ///< block of its run after whose elements none of the run acts on it, or before it
+  bool bridged = false;  ///< bridges act on it
 };
 
 /// Constant once made.
@@ -60,6 +63,11 @@ public:
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// Bodies of a block, whose numbers the cache next to a core can hold; and the most blocks of one island.
   static constexpr Index block_size = 2048, most_blocks = 1024;
+  /// Runs of all islands: consecutive blocks, which one thread goes through in their order, so that what is
+  /// done with a block can wait for its neighbours and still find its numbers at hand.
+  [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }
+  /// Most runs of one island.
+  static constexpr Index most_runs = 8;
 
   /// Kinds of force elements, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
@@ -67,11 +75,11 @@ public:
   [[nodiscard]] Range elements(Index island, Index kind) const {
     return element_slots_[island * force_kinds_.size() + kind];
   }
-  /// Of those, the ones that act within one block only.
-  [[nodiscard]] Range elements_within(Index block, Index kind) const {
+  /// Of those, the ones that act on this block, and on no other but ones of its run before it.
+  [[nodiscard]] Range elements_up_to(Index block, Index kind) const {
     return block_elements_[block * force_kinds_.size() + kind];
   }
-  /// Of those, the ones that act on several blocks.
+  /// Of those, the ones that act on several runs.
   [[nodiscard]] Range bridges(Index island, Index kind) const {
     return bridges_[island * force_kinds_.size() + kind];
   }
@@ -131,13 +139,15 @@ private:
   void order_joints(const std::vector<Index>& island_of_body);
   void place_internals();
   void cut_islands();
-  [[nodiscard]] Index part_of(Index island, const std::vector<BodyId>& ends) const;
+  [[nodiscard]] Index part_of(Index island, const std::vector<BodyId>& ends);
+  void close_blocks();
 
   System system_;
   std::shared_ptr<const Layout> layout_;
   std::shared_ptr<Layout> unfinished_layout_;  // the same, while it is being made
   std::vector<Island> islands_;
   std::vector<Block> blocks_;
+  std::vector<Range> runs_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
   std::vector<Range> body_slots_;
   std::vector<std::unique_ptr<ForceKind>> force_kinds_;
@@ -154,20 +164,35 @@ private:
 CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state,
                                   Evaluation& out);
 
-/// What is done with a block before its loads are evaluated, while its numbers are at hand.
-using BlockTask = FunctionRef<void(const Block&)>;
+/// What is done with a block, while its numbers are at hand; called with its place in the island too.
+using BlockTask = FunctionRef<void(const Block&, Index)>;
+
+/// What is done with each block of an island besides.
+struct BlockTasks {
+  BlockTask first = {};  ///< before its loads are evaluated
+  BlockTask last = {};   ///< as soon as all of them are
+};
 
 /// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
-/// `evaluation` must be up to date. Arrays may coincide. `first` is called with each block first.
+/// `evaluation` must be up to date. Arrays may coincide.
 CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                               const Evaluation& evaluation, const Loads& loads,
-                              const Workers& workers = Workers(), BlockTask first = {});
+                              const Workers& workers = Workers(), const BlockTasks& tasks = {});
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
 CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
                                              const Evaluation& evaluation, const Loads& loads,
                                              StoredEnergies& stored, const Workers& workers = Workers(),
-                                             BlockTask first = {});
+                                             const BlockTasks& tasks = {});
+
+/// evaluate_loads(), then evaluate_loads_and_potentials() of what `second_tasks.first` makes of the state, a
+/// block at a time as soon as nothing of the first needs it any more: for large islands, whose numbers are
+/// read from memory once instead of twice. Sums are rounded otherwise than by the two functions.
+CAROM_API void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
+                                    const Evaluation& evaluation, const Loads& first,
+                                    const BlockTasks& first_tasks, const Loads& second,
+                                    const BlockTasks& second_tasks, StoredEnergies& stored,
+                                    const Workers& workers = Workers());
 
 /// Adds the kinetic energy of one island.
 CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,
@@ -176,7 +201,8 @@ CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const 
 /// Zeroes the given arrays over one island and adds the mean loads of all its elements over a step
 /// (ForceKind::evaluate_mean).
 CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
-                                   const Loads& loads, const Workers& workers = Workers());
+                                   const Loads& loads, const Workers& workers = Workers(),
+                                   const BlockTasks& tasks = {});
 
 /// True if the mean loads or inner losses of an island's elements look at the state halfway.
 [[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index island);

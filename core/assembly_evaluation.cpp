@@ -36,73 +36,174 @@ void for_kinds(const Assembly& assembly, Index island, F&& f) {
   }
 }
 
-/// Zeroes the loads of an island and calls f(kind, elements, bodies, part): for the elements within each
-/// block, which write there alone, then for those between blocks, part by part.
+/// A way through the blocks of an island, on which f(kind, elements, bodies, part) adds loads.
 template <class F>
-void for_loads(const Assembly& assembly, Index island, const Loads& loads, const Workers& workers,
-               BlockTask first, F&& f) {
-  const Island& all = assembly.islands()[island];
-  const auto kinds = static_cast<Index>(assembly.force_kinds().size());
-  workers.for_each(all.blocks.size(), [&](Index part) {
-    const Index index = all.blocks.begin + part;
+struct Pass {
+  const Assembly& assembly;
+  const Island& all;
+  const Loads& loads;
+  const BlockTasks& tasks;
+  const F& f;
+
+  void open(Index index) const {
     const Block& block = assembly.blocks()[index];
-    if (first) first(block);
+    if (tasks.first) tasks.first(block, index - all.blocks.begin);
     zero(block.v, loads);
-    for (Index kind = 0; kind < kinds; ++kind) {
-      const Range elements = assembly.elements_within(index, kind);
-      if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, block.bodies, part);
+  }
+  void load(Index index) const {
+    const Range bodies = assembly.blocks()[index].bodies;
+    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+      const Range elements = assembly.elements_up_to(index, kind);
+      if (!elements.empty()) {
+        f(*assembly.force_kinds()[kind], elements, bodies, index - all.blocks.begin);
+      }
+    }
+  }
+  void bridge() const {
+    const auto island = static_cast<Index>(&all - assembly.islands().data());
+    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+      const Range elements = assembly.bridges(island, kind);
+      if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.blocks.size());
+    }
+  }
+  void close(Index index) const {
+    if (tasks.last) tasks.last(assembly.blocks()[index], index - all.blocks.begin);
+  }
+  /// Calls f(index) for the blocks on which bridges act.
+  template <class G>
+  void for_bridged(const Workers& workers, G&& g) const {
+    workers.for_each(all.blocks.size(), [&](Index part) {
+      const Index index = all.blocks.begin + part;
+      if (assembly.blocks()[index].bridged) g(index);
+    });
+  }
+};
+
+template <class F>
+Pass(const Assembly&, const Island&, const Loads&, const BlockTasks&, const F&) -> Pass<F>;
+
+/// Run by run, bridges last.
+template <class F>
+void go(const Pass<F>& pass, const Workers& workers) {
+  const std::vector<Block>& blocks = pass.assembly.blocks();
+  workers.for_each(pass.all.runs.size(), [&](Index i) {
+    const Range run = pass.assembly.runs()[pass.all.runs.begin + i];
+    Index to_close = run.begin;
+    for (Index index = run.begin; index < run.end; ++index) {
+      pass.open(index);
+      pass.load(index);
+      for (; to_close <= index && blocks[to_close].closed_by <= index; ++to_close) {
+        if (!blocks[to_close].bridged) pass.close(to_close);
+      }
     }
   });
-  for (Index kind = 0; kind < kinds; ++kind) {
-    const Range elements = assembly.bridges(island, kind);
-    if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.blocks.size());
-  }
+  pass.bridge();
+  pass.for_bridged(workers, [&](Index index) { pass.close(index); });
+}
+
+/// The same twice, the second following the first as closely as it can: a block of the first is closed when
+/// its neighbours have been loaded, so that nobody looks at what the second makes of it. The first takes the
+/// bridges before all else, so that it can close every block within its run.
+template <class First, class Second>
+void go_twice(const Pass<First>& first, const Pass<Second>& second, const Workers& workers) {
+  const std::vector<Block>& blocks = first.assembly.blocks();
+  first.for_bridged(workers, [&](Index index) { first.open(index); });
+  first.bridge();
+  workers.for_each(first.all.runs.size(), [&](Index i) {
+    const Range run = first.assembly.runs()[first.all.runs.begin + i];
+    Index to_follow = run.begin, to_close = run.begin;
+    for (Index index = run.begin; index < run.end; ++index) {
+      if (!blocks[index].bridged) first.open(index);
+      first.load(index);
+      for (; to_follow <= index && blocks[to_follow].closed_by <= index; ++to_follow) {
+        first.close(to_follow);
+        second.open(to_follow);
+        second.load(to_follow);
+        for (; to_close <= to_follow && blocks[to_close].closed_by <= to_follow; ++to_close) {
+          if (!blocks[to_close].bridged) second.close(to_close);
+        }
+      }
+    }
+  });
+  second.bridge();
+  second.for_bridged(workers, [&](Index index) { second.close(index); });
 }
 
 }  // namespace
 
 void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                     const Evaluation& evaluation, const Loads& loads, const Workers& workers,
-                    BlockTask first) {
-  for_loads(assembly, island, loads, workers, first,
-            [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-              kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
-            });
+                    const BlockTasks& tasks) {
+  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
+  };
+  go(Pass{assembly, assembly.islands()[island], loads, tasks, add}, workers);
 }
 
-void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
-                                   const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored,
-                                   const Workers& workers, BlockTask first) {
-  if (assembly.islands()[island].blocks.size() == 1) {
-    for_loads(assembly, island, loads, workers, first,
-              [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-                const EvaluationContext at{assembly, state, evaluation, island, bodies};
-                stored[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
-              });
-    return;
-  }
-  std::array<StoredEnergies, Assembly::most_blocks + 1> parts{};
-  for_loads(assembly, island, loads, workers, first,
-            [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
-              const EvaluationContext at{assembly, state, evaluation, island, bodies};
-              parts[part][kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
-            });
-  for (Index part = 0; part <= assembly.islands()[island].blocks.size(); ++part) {
+namespace {
+
+/// Potentials by block and, last, of the bridges.
+using Parts = std::array<StoredEnergies, Assembly::most_blocks + 1>;
+
+void add_parts(const Parts& parts, Index blocks, StoredEnergies& stored) {
+  for (Index part = 0; part <= blocks; ++part) {
     for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += parts[part].values[i];
   }
 }
 
+}  // namespace
+
+void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
+                                   const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored,
+                                   const Workers& workers, const BlockTasks& tasks) {
+  const Island& all = assembly.islands()[island];
+  const auto add_to = [&](const ForceKind& kind, Range elements, Range bodies, StoredEnergies& sum) {
+    const EvaluationContext at{assembly, state, evaluation, island, bodies};
+    sum[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
+  };
+  if (all.blocks.size() == 1) {
+    const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+      add_to(kind, elements, bodies, stored);
+    };
+    go(Pass{assembly, all, loads, tasks, add}, workers);
+    return;
+  }
+  Parts parts{};
+  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
+    add_to(kind, elements, bodies, parts[part]);
+  };
+  go(Pass{assembly, all, loads, tasks, add}, workers);
+  add_parts(parts, all.blocks.size(), stored);
+}
+
+void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
+                          const Evaluation& evaluation, const Loads& first, const BlockTasks& first_tasks,
+                          const Loads& second, const BlockTasks& second_tasks, StoredEnergies& stored,
+                          const Workers& workers) {
+  const Island& all = assembly.islands()[island];
+  Parts parts{};
+  const auto add_first = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, first);
+  };
+  const auto add_second = [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
+    const EvaluationContext at{assembly, state, evaluation, island, bodies};
+    parts[part][kind.stored_as()] += kind.evaluate_with_potential(at, elements, second);
+  };
+  go_twice(Pass{assembly, all, first, first_tasks, add_first},
+           Pass{assembly, all, second, second_tasks, add_second}, workers);
+  add_parts(parts, all.blocks.size(), stored);
+}
+
 void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step, const Loads& loads,
-                         const Workers& workers) {
-  for_loads(assembly, island, loads, workers, {},
-            [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-              const auto within = [bodies](const EvaluationContext& at) {
-                return EvaluationContext{at.assembly, at.state, at.evaluation, at.island, bodies};
-              };
-              const EvaluationContext start = within(step.start), end = within(step.end),
-                                      middle = within(step.middle);
-              kind.evaluate_mean({start, end, middle, step.step}, elements, loads);
-            });
+                         const Workers& workers, const BlockTasks& tasks) {
+  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+    const auto within = [bodies](const EvaluationContext& at) {
+      return EvaluationContext{at.assembly, at.state, at.evaluation, at.island, bodies};
+    };
+    const EvaluationContext start = within(step.start), end = within(step.end), middle = within(step.middle);
+    kind.evaluate_mean({start, end, middle, step.step}, elements, loads);
+  };
+  go(Pass{assembly, assembly.islands()[island], loads, tasks, add}, workers);
 }
 
 bool uses_middle(const Assembly& assembly, Index island) {

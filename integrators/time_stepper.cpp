@@ -11,24 +11,6 @@ namespace {
 // problems are certified to 1e-12.
 constexpr double settled_pressure = 1e-12;
 
-/// Where elements book. The conservative part goes into `total`, to which finish() adds the others; so do
-/// those that no element books, whose arrays are empty.
-Loads open(std::vector<double>& total, std::vector<double>& dissipative, std::vector<double>& external) {
-  return {total.data(), dissipative.empty() ? total.data() : dissipative.data(),
-          external.empty() ? total.data() : external.data()};
-}
-
-void add(std::vector<double>& total, const std::vector<double>& part, Range v) {
-  if (part.empty()) return;
-  for (Index i = v.begin; i < v.end; ++i) total[i] += part[i];
-}
-
-void finish(std::vector<double>& total, const std::vector<double>& dissipative,
-            const std::vector<double>& external, Range v) {
-  add(total, dissipative, v);
-  add(total, external, v);
-}
-
 }  // namespace
 
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
@@ -64,6 +46,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   Index most_blocks = 1;
   for (const Island& island : assembly.islands()) most_blocks = std::max(most_blocks, island.blocks.size());
   changes_.resize(most_blocks);
+  earlier_changes_.resize(most_blocks);
   works_.resize(most_blocks);
   if (options.iteration == Iteration::linearly_implicit) {
     update_.resize(size);
@@ -124,23 +107,6 @@ void TimeStepper::place_obstacles(const State& state, double step, double end_ti
   }
 }
 
-void TimeStepper::start_loads(const State& state, Companion& companion) {
-  PresentLoads& loads = companion.loads;
-  if (loads.valid && loads.mean == mean_rule()) return;
-  if (loads.valid) companion.history.known = 0;  // of the other rule
-  loads.total.resize(trial_.v.size());
-  loads.dissipative.resize(books_dissipative_ ? trial_.v.size() : 0);
-  loads.external.resize(books_external_ ? trial_.v.size() : 0);
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    evaluate_positions(*assembly_, island, state.view(), evaluation_);
-    evaluate_loads(*assembly_, island, state.view(), evaluation_,
-                   open(loads.total, loads.dissipative, loads.external));
-    finish(loads.total, loads.dissipative, loads.external, assembly_->islands()[island].v);
-  }
-  loads.valid = true;
-  loads.mean = mean_rule();
-}
-
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
   if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
   find_contacts(island, state);
@@ -149,12 +115,11 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   if (!iterate(island, state, companion, step, judge))
     fail_contraction(island, state, companion, step, judge);
   const double contraction = judge.contraction();
-  sweeps_[island] = judge.sweeps();
 
-  book_couplings(island, state, companion, step);
+  book_couplings(island, state, step);
   if (with_joints) book_joints(island, state, step);
   book_contacts(state, step);
-  if (options_.project_gaps) project(island, state, step);
+  if (options_.project_gaps) project(island, state, companion, step);
   rate(island, state, step, contraction);
   report_.sweeps = std::max(report_.sweeps, judge.sweeps());
   report_.contraction = std::max(report_.contraction, contraction);
@@ -165,45 +130,23 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   using Verdict = FixedPointJudge::Verdict;
   if (needed_sweeps_[island] == Sweeps::unneeded) {
     advance_under_constant_loads(island, state, companion, step);
+    sweeps_[island] = 1;
     return judge.judge(0.0, 0.0) == Verdict::converged;
   }
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
   const bool with_joints = jointed(island);
-  const bool in_one = needed_sweeps_[island] == Sweeps::in_one_pass;
   start_iteration(island, state, step);
-  if (!in_one || clusters_in_use_ > 0) guess_loads(island, companion, step);
-  bool guessing = in_one && clusters_in_use_ == 0;
+  if (!guesses_by_block(island)) guess_loads(island, companion, step);
   if (implicit) start_implicit(island, state, companion, step);
 
-  // Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only,
-  // which is expected after as many sweeps as in the last step.
   const std::vector<int>& before = companion.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   bool confirming = false;
-  const auto sweep_first = [&](const Block& block) {
-    if (guessing) guess_loads(block, companion, step);
-    sweep(island, block, state, companion, step);
-  };
   for (;;) {
-    bool by_cause = judge.sweeps() + 1 >= expected;
-    BlockTask first;
-    if (in_one) {
-      solve_contacts(island, state, companion, step);
-      swept_ = true;
-      first = sweep_first;
-    } else {
-      sweep_all(island, state, companion, step);
-      follow_iterate(island, state, step);
-    }
-    if (by_cause) {
-      evaluate_loads_by_cause(island, state, step, first);
-    } else {
-      evaluate_loads_together(island, state, step, first);
-    }
-    guessing = false;
-    if (by_cause && implicit) finish_loads(island);
+    SweepsMade made = sweep_on(island, state, companion, step, expected, judge);
+    if (made == SweepsMade::failed) return false;
     // Newton's method has its own change: that of the loads is magnified where couplings are stiff.
-    SweepChange change = implicit ? implicit_change(island, step) : next_change(island, step, by_cause);
+    SweepChange change = implicit ? implicit_change(island, step) : largest(changes_, island);
     if (with_joints) {
       const SweepChange seen = joint_change(island, step);
       change.take(seen.change, seen.size);
@@ -221,19 +164,64 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
       verdict = judge.sweeps() < options_.max_sweeps ? Verdict::go_on : Verdict::failed;
     }
     if (verdict == Verdict::failed) return false;
-    if (verdict == Verdict::converged) {
+    if (verdict == Verdict::converged || made == SweepsMade::one_too_many) {
+      sweeps_[island] = judge.sweeps() - (made == SweepsMade::one_too_many ? 1 : 0);
       if (with_joints && settle_joints(island, state, companion, step)) {
         follow_iterate(island, state, step);
-        by_cause = false;
+        made = SweepsMade::total;
       }
-      if (!by_cause) {
-        evaluate_loads_by_cause(island, state, step);
-        finish_loads(island);
+      if (made == SweepsMade::total) {
+        evaluate_iterate(island, state, companion, step, LoadsAsked::by_cause, false);
       }
       return true;
     }
     improve_guess(island, judge);
   }
+}
+
+bool TimeStepper::guesses_by_block(Index island) const {
+  return needed_sweeps_[island] == Sweeps::in_one_pass && clusters_in_use_ == 0;
+}
+
+/// Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only, which
+/// is expected after as many sweeps as in the last step.
+TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, const Companion& companion,
+                                              double step, int expected, FixedPointJudge& judge) {
+  using Verdict = FixedPointJudge::Verdict;
+  const bool guessing = judge.sweeps() == 0 && guesses_by_block(island);
+  const auto sweep_first = [&](const Block& block, Index) {
+    if (guessing) guess_loads(block, companion, step);
+    sweep(island, block, state, companion, step);
+  };
+  // Contact is solved between sweeps, for all of the island.
+  if (guesses_by_block(island) && options_.iteration == Iteration::fixed_point &&
+      assembly_->islands()[island].blocks.size() > 1 && judge.sweeps() + 2 == expected) {
+    swept_ = true;
+    sweep_twice(island, state, companion, step, sweep_first);
+    const SweepChange earlier = largest(earlier_changes_, island);
+    switch (judge.judge_ahead(earlier.change, earlier.size)) {
+      case Verdict::failed:
+        return SweepsMade::failed;
+      case Verdict::converged:
+        return SweepsMade::one_too_many;
+      case Verdict::go_on:
+        return SweepsMade::by_cause;
+    }
+  }
+  BlockTask first;
+  if (needed_sweeps_[island] == Sweeps::in_one_pass) {
+    solve_contacts(island, state, companion, step);
+    swept_ = true;
+    first = sweep_first;
+  } else {
+    sweep_all(island, state, companion, step);
+    follow_iterate(island, state, step);
+  }
+  const bool by_cause = judge.sweeps() + 1 >= expected;
+  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  evaluate_iterate(island, state, companion, step, by_cause ? LoadsAsked::by_cause : LoadsAsked::total,
+                   !implicit, first);
+  return by_cause ? SweepsMade::by_cause : SweepsMade::total;
 }
 
 void TimeStepper::start_iteration(Index island, const State& state, double step) {
@@ -274,44 +262,6 @@ void TimeStepper::sweep_all(Index island, const State& state, const Companion& c
   sweep(island, state, companion, step);
 }
 
-void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
-  swept_ = true;
-  for_blocks(island, [&](const Block& block, Index) { sweep(island, block, state, companion, step); });
-}
-
-void TimeStepper::sweep(Index island, const Block& block, const State& state, const Companion& companion,
-                        double step) {
-  const double* const load0 = start_of_sum(companion);
-  const bool responds = clusters_in_use_ > 0 || jointed(island);
-  assembly_->for_bodies(
-      island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-        kind.sweep(slots, step,
-                   {state.q.data() + q, state.v.data() + v, companion.rounding.data() + v, load0 + v,
-                    evaluation_.force.data() + v, responds ? response_.data() + v : nullptr,
-                    trial_.q.data() + q, trial_.v.data() + v, rounding_.data() + v, mean_rule()});
-      });
-}
-
-SweepChange TimeStepper::next_change(Index island, double step, bool by_cause) {
-  for_blocks(island, [&](const Block& block, Index part) {
-    if (by_cause) finish(evaluated_, dissipative_, external_, block.v);
-    SweepChange& change = changes_[part];
-    change = {};
-    assembly_->for_bodies(
-        island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-          kind.next_change(
-              slots, impulse_weight(step), step,
-              {evaluation_.force.data() + v, evaluated_.data() + v, trial_.q.data() + q, trial_.v.data() + v},
-              change);
-        });
-  });
-  SweepChange largest = changes_[0];
-  for (Index part = 1; part < assembly_->islands()[island].blocks.size(); ++part) {
-    largest.take(changes_[part].change, changes_[part].size);
-  }
-  return largest;
-}
-
 /// What follows from the iterate before its loads: rotations, internal variables, the state halfway where
 /// it is looked at.
 void TimeStepper::follow_iterate(Index island, const State& state, double step) {
@@ -340,36 +290,6 @@ void TimeStepper::place_middle(Index island, const State& state, double step) {
     kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
   });
   for (Index i = v_range.begin; i < v_range.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
-}
-
-void TimeStepper::evaluate_loads_together(Index island, const State& state, double step, BlockTask first) {
-  double* const loads = evaluated_.data();
-  if (mean_rule()) {
-    with_step(island, state, step, [&](const StepContext& at) {
-      evaluate_mean_loads(*assembly_, island, at, {loads, loads, loads}, workers_);
-    });
-  } else {
-    evaluate_loads(*assembly_, island, trial_.view(), evaluation_, {loads, loads, loads}, workers_, first);
-  }
-}
-
-/// The total is without its dissipative and external parts until finish_loads().
-void TimeStepper::evaluate_loads_by_cause(Index island, const State& state, double step, BlockTask first) {
-  const Loads loads = open(evaluated_, dissipative_, external_);
-  evaluated_energies_ = {};
-  if (mean_rule()) {
-    with_step(island, state, step,
-              [&](const StepContext& at) { evaluate_mean_loads(*assembly_, island, at, loads, workers_); });
-    add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
-  } else {
-    evaluate_loads_and_potentials(*assembly_, island, trial_.view(), evaluation_, loads, evaluated_energies_,
-                                  workers_, first);
-  }
-}
-
-void TimeStepper::finish_loads(Index island) {
-  for_blocks(island,
-             [&](const Block& block, Index) { finish(evaluated_, dissipative_, external_, block.v); });
 }
 
 void TimeStepper::rate(Index island, const State& state, double step, double contraction) {

@@ -111,11 +111,31 @@ private:
   void place_middle(Index island, const State& state, double step);
   void sweep_all(Index island, const State& state, const Companion& companion, double step);
   void follow_iterate(Index island, const State& state, double step);
-  void evaluate_loads_together(Index island, const State& state, double step, BlockTask first = {});
-  void evaluate_loads_by_cause(Index island, const State& state, double step, BlockTask first = {});
-  void finish_loads(Index island);
-  /// What the next sweep would change; finishes loads that were evaluated by cause.
-  [[nodiscard]] SweepChange next_change(Index island, double step, bool by_cause);
+  struct Works {
+    double kinetic, total, dissipative, external;  // energy at the end; works of the loads, by cause [J]
+  };
+  [[nodiscard]] Works works(Index island, const Block& block, const State& state, const Companion& companion,
+                            double step) const;
+  // What there is of the loads after one sweep or two in one go, of which the first was found to be enough.
+  enum class SweepsMade : std::uint8_t { total, by_cause, one_too_many, failed };
+  /// Makes the next sweep, or the next two; the judge has still to see the last.
+  [[nodiscard]] SweepsMade sweep_on(Index island, const State& state, const Companion& companion, double step,
+                                    int expected, FixedPointJudge& judge);
+  [[nodiscard]] bool guesses_by_block(Index island) const;
+  enum class LoadsAsked : std::uint8_t { total, by_cause };
+  /// Loads that the iterate leads to, by cause with works_, and if asked changes_.
+  void evaluate_iterate(Index island, const State& state, const Companion& companion, double step,
+                        LoadsAsked asked, bool with_changes, BlockTask first = {});
+  /// A sweep, one more by its loads, and the loads that this one leads to by cause; of the first changes
+  /// only.
+  void sweep_twice(Index island, const State& state, const Companion& companion, double step,
+                   BlockTask first);
+  /// What is left to do with a block by whose loads by cause an iterate may end.
+  void finish_block(Index island, const Block& block, Index part, const State& state,
+                    const Companion& companion, double step);
+  /// What the next sweep would change.
+  [[nodiscard]] SweepChange next_change(Index island, const Block& block, double step) const;
+  [[nodiscard]] SweepChange largest(const std::vector<SweepChange>& changes, Index island) const;
   [[nodiscard]] SweepChange implicit_change(Index island, double step) const;
   /// Calls f(block, its place in the island) for the blocks of an island, shared out to the threads.
   template <class F>
@@ -124,13 +144,14 @@ private:
     workers_.for_each(blocks.size(), [&](Index part) { f(assembly_->blocks()[blocks.begin + part], part); });
   }
   void improve_guess(Index island, const FixedPointJudge& judge);
+  void improve_guess(const Block& block);
   void start_implicit(Index island, const State& state, const Companion& companion, double step);
   void linearise(Index island, const StateView& at, const Evaluation& evaluation, const State& state,
                  double step);
   void solve_implicit(Index island, const State& state, double step);
   void guess_implicit(Index island, const State& state, double step);
-  void book_couplings(Index island, const State& state, const Companion& companion, double step);
-  void project(Index island, const State& state, double step);
+  void book_couplings(Index island, const State& state, double step);
+  void project(Index island, const State& state, const Companion& companion, double step);
   void hold_velocities(Index island);
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
@@ -186,18 +207,15 @@ private:
   Evaluation evaluation_;              // force: guess of the loads at the end (or mean loads)
   std::vector<double> evaluated_;      // loads that the guess led to
   StoredEnergies evaluated_energies_;  // of the island, potentials that it led to
-  std::vector<int> sweeps_;            // by island
+  std::vector<int> sweeps_;            // by island, as many as were needed
   // What an island needs. Several: of its iteration; in_one_pass: nothing comes between a sweep of bodies and
   // their loads, so that a block can have both at once; unneeded: loads that never change.
   enum class Sweeps : std::uint8_t { several, in_one_pass, unneeded };
-  std::vector<Sweeps> needed_sweeps_;  // by island
-  bool swept_ = false;                 // trial_ is an iterate of the step
-  std::vector<SweepChange> changes_;   // by block of the island at hand
-  struct Works {
-    double kinetic, total, dissipative, external;  // energy at the end; works of the loads, by cause
-  };
-  std::vector<Works> works_;     // likewise
-  std::vector<double> weights_;  // of loads: lengths by mass
+  std::vector<Sweeps> needed_sweeps_;                   // by island
+  bool swept_ = false;                                  // trial_ is an iterate of the step
+  std::vector<SweepChange> changes_, earlier_changes_;  // by block of the island at hand; of the sweep before
+  std::vector<Works> works_;                            // likewise
+  std::vector<double> weights_;                         // of loads: lengths by mass
   AndersonAcceleration anderson_;
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew

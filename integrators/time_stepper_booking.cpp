@@ -28,27 +28,28 @@ double work(const double* a, const double* b, const State& start, const State& e
 
 }  // namespace
 
-void TimeStepper::book_couplings(Index island, const State& state, const Companion& companion, double step) {
+/// The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
+/// what the iteration left open counts as conservative.
+TimeStepper::Works TimeStepper::works(Index island, const Block& block, const State& state,
+                                      const Companion& companion, double step) const {
+  const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+    if (at_end.empty()) return 0.0;
+    const double* const first = mean_rule() ? at_end.data() : at_start.data();
+    return work(first, at_end.data(), state, trial_, block.v, step);
+  };
+  Works sums{};
+  sums.total = work(start_of_sum(companion), evaluation_.force.data(), state, trial_, block.v, step);
+  sums.dissipative = of_cause(companion.loads.dissipative, dissipative_);
+  sums.external = of_cause(companion.loads.external, external_);
+  assembly_->for_bodies(island, block.bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
+  });
+  return sums;
+}
+
+void TimeStepper::book_couplings(Index island, const State& state, double step) {
   const Assembly& assembly = *assembly_;
   for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
-  // The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
-  // what the iteration left open counts as conservative.
-  const double* const load0 = start_of_sum(companion);
-  for_blocks(island, [&](const Block& block, Index part) {
-    const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
-      if (at_end.empty()) return 0.0;
-      const double* const first = mean_rule() ? at_end.data() : at_start.data();
-      return work(first, at_end.data(), state, trial_, block.v, step);
-    };
-    Works& sums = works_[part];
-    sums.kinetic = 0.0;
-    sums.total = work(load0, evaluation_.force.data(), state, trial_, block.v, step);
-    sums.dissipative = of_cause(companion.loads.dissipative, dissipative_);
-    sums.external = of_cause(companion.loads.external, external_);
-    assembly.for_bodies(island, block.bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
-    });
-  });
   double total = 0.0, dissipative = 0.0, external = 0.0;
   for (Index part = 0; part < assembly.islands()[island].blocks.size(); ++part) {
     stored_[StoredEnergy::kinetic] += works_[part].kinetic;
@@ -68,7 +69,7 @@ void TimeStepper::book_couplings(Index island, const State& state, const Compani
   flows_[EnergyFlow::external] += external;
 }
 
-void TimeStepper::project(Index island, const State& state, double step) {
+void TimeStepper::project(Index island, const State& state, const Companion& companion, double step) {
   if (contacts_.empty()) return;
   const Assembly& assembly = *assembly_;
   evaluate_positions(assembly, island, trial_.view(), evaluation_);
@@ -86,8 +87,7 @@ void TimeStepper::project(Index island, const State& state, double step) {
     evaluated_energies_ = {};
     add_potentials(assembly, island, trial_.view(), evaluation_, evaluated_energies_);
   } else {
-    evaluate_loads_by_cause(island, state, step);
-    finish_loads(island);
+    evaluate_iterate(island, state, companion, step, LoadsAsked::by_cause, false);
   }
   projected_ += before.potential() - evaluated_energies_.potential();
   for (std::size_t i = 0; i < stored_energy_count; ++i) {

@@ -104,7 +104,7 @@ void TimeStepper::find_culprit(Index island, const State& state, const Companion
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
     demand_finite_loads(island, trial_.view(), state, step);
     follow_iterate(island, state, step);
-    evaluate_loads_together(island, state, step);
+    evaluate_iterate(island, state, companion, step, LoadsAsked::total, false);
     evaluation_.force = evaluated_;
   }
 }

@@ -83,6 +83,9 @@ void TimeStepper::advance_under_constant_loads(Index island, const State& state,
   sweep(island, state, companion, step);
   evaluated_energies_ = {};
   add_potentials(*assembly_, island, trial_.view(), evaluation_, evaluated_energies_);
+  for_blocks(island, [&](const Block& block, Index part) {
+    works_[part] = works(island, block, state, companion, step);
+  });
 }
 
 }  // namespace carom

@@ -15,10 +15,7 @@ void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
       evaluation_.force.swap(evaluated_);
       return;
     }
-    for_blocks(island, [this](const Block& block, Index) {
-      std::copy(evaluated_.begin() + block.v.begin, evaluated_.begin() + block.v.end,
-                evaluation_.force.begin() + block.v.begin);
-    });
+    for_blocks(island, [this](const Block& block, Index) { improve_guess(block); });
     return;
   }
   if (options_.iteration == Iteration::anderson) {
@@ -32,6 +29,11 @@ void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
   // matrix is cheaper than more sweeps.
   constexpr double slow = 0.1;
   stale_ = judge.sweeps() > 1 && judge.contraction() > slow;
+}
+
+void TimeStepper::improve_guess(const Block& block) {
+  std::copy(evaluated_.begin() + block.v.begin, evaluated_.begin() + block.v.end,
+            evaluation_.force.begin() + block.v.begin);
 }
 
 /// The first guess of Newton's method: loads that would leave the velocities as they are, to be corrected by

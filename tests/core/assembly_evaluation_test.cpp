@@ -1,0 +1,159 @@
+// Loads of a large island, block by block: once, and twice with the second close behind the first.
+
+#include "examples/scenes/net.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+class Wind;
+
+struct Blow {
+  static constexpr Role role = Role::force;
+  using Kind = Wind;
+};
+
+/// A wind that blows through all bodies of an island at once, so that no block is done before it.
+class Wind final : public ForceKind {
+public:
+  static constexpr int part_dimension() { return 2; }
+  static constexpr std::string_view part_label() { return "wind"; }
+  void add(const Blow&, const PartCheck&) {}
+  std::unique_ptr<ForceKind> clone() const override { return std::make_unique<Wind>(*this); }
+  std::unique_ptr<ForceKind> arranged(std::span<const Index>, const Layout&) const override {
+    return clone();
+  }
+  void remove(Index) override {}
+  std::string_view label() const override { return part_label(); }
+  int dimension() const override { return 2; }
+  Index size() const override { return 1; }
+  bool is_field() const override { return true; }
+  void ends(Index, std::vector<BodyId>&) const override {}
+  void evaluate(const EvaluationContext& at, Range, const Loads& loads) const override {
+    const Range v = at.assembly.islands()[at.island].v;
+    for (Index i = v.begin; i < v.end; ++i)
+      loads.external[i] -= 0.1 * at.state.v[i] * std::abs(at.state.v[i]);
+  }
+  double potential(const EvaluationContext&, Range) const override { return 0.0; }
+  void fingerprint(Fingerprint&) const override {}
+};
+
+/// A net of a dozen blocks in several runs, not at rest.
+struct LargeNet {
+  explicit LargeNet(bool with_wind) : assembly(described(with_wind)), state(assembly.initial_state()) {
+    for (std::size_t i = 0; i < state.v.size(); ++i) state.v[i] = std::sin(static_cast<double>(i));
+  }
+  static System described(bool with_wind) {
+    System system;
+    scenes::add_net(system, {.k = 160, .prestress = 0.01});
+    if (with_wind) system.add(Blow{});
+    return system;
+  }
+
+  Assembly assembly;
+  State state;
+};
+
+/// What a second sweep might make of the first one's loads.
+void move_on(const Block& block, const std::vector<double>& loads, State& state) {
+  for (Index i = block.v.begin; i < block.v.end; ++i) {
+    state.q[i] += 1e-6 * loads[i];
+    state.v[i] += 1e-3 * loads[i];
+  }
+}
+
+/// Largest difference, in parts of the largest number.
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  double difference = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+    size = std::max(size, std::abs(b[i]));
+  }
+  return difference / size;
+}
+
+TEST(AssemblyEvaluation, TasksComeBeforeAndAfterTheLoadsOfTheirBlock) {
+  for (const bool with_wind : {false, true}) {
+    const LargeNet net(with_wind);
+    const Evaluation evaluation = make_evaluation(net.assembly);
+    const std::size_t size = net.state.v.size();
+    std::vector<double> plain(size), loads(size, 1.0), seen(size);
+    const auto where = [](std::vector<double>& to) { return Loads{to.data(), to.data(), to.data()}; };
+    evaluate_loads(net.assembly, 0, net.state.view(), evaluation, where(plain));
+
+    std::vector<int> firsts(net.assembly.blocks().size()), lasts(firsts);
+    const auto first = [&](const Block& block, Index part) {
+      EXPECT_EQ(block.v.begin, net.assembly.blocks()[part].v.begin);
+      EXPECT_EQ(loads[block.v.begin], 1.0) << "not zeroed yet";
+      ++firsts[part];
+    };
+    const auto last = [&](const Block& block, Index part) {
+      std::copy(loads.begin() + block.v.begin, loads.begin() + block.v.end, seen.begin() + block.v.begin);
+      ++lasts[part];
+    };
+    evaluate_loads(net.assembly, 0, net.state.view(), evaluation, where(loads), Workers(), {first, last});
+    EXPECT_EQ(firsts, std::vector<int>(firsts.size(), 1));
+    EXPECT_EQ(lasts, firsts);
+    EXPECT_EQ(seen, loads) << "complete when the last task sees them";
+    EXPECT_EQ(loads, plain);
+  }
+}
+
+TEST(AssemblyEvaluation, TwiceIsOneAfterTheOther) {
+  for (const bool with_wind : {false, true}) {
+    for (const int threads : {1, 2}) {
+      if (threads > 1 && !Workers::several_available()) continue;
+      const LargeNet net(with_wind);
+      const Evaluation evaluation = make_evaluation(net.assembly);
+      const std::size_t size = net.state.v.size();
+      std::vector<double> first(size), losses(size), second(size), seen_first(size), seen_second(size);
+
+      State plain = net.state;
+      evaluate_loads(net.assembly, 0, plain.view(), evaluation, {first.data(), first.data(), first.data()});
+      for (const Block& block : net.assembly.blocks()) move_on(block, first, plain);
+      StoredEnergies plain_stored;
+      evaluate_loads_and_potentials(net.assembly, 0, plain.view(), evaluation,
+                                    {second.data(), losses.data(), second.data()}, plain_stored);
+
+      State state = net.state;
+      std::vector<double> loads(size), twice_losses(size);
+      StoredEnergies stored;
+      const auto note = [&](std::vector<double>& seen) {
+        return [&](const Block& block, Index) {
+          std::copy(loads.begin() + block.v.begin, loads.begin() + block.v.end, seen.begin() + block.v.begin);
+        };
+      };
+      const auto close = note(seen_first), last = note(seen_second);
+      const auto again = [&](const Block& block, Index) { move_on(block, loads, state); };
+      evaluate_loads_twice(net.assembly, 0, state.view(), evaluation,
+                           {loads.data(), loads.data(), loads.data()}, {.last = close},
+                           {loads.data(), twice_losses.data(), loads.data()}, {again, last}, stored,
+                           Workers(threads));
+      // Eight springs and a wind are summed at each particle, in another order.
+      constexpr double rounding = 9 * epsilon;
+      EXPECT_LT(apart(seen_first, first), rounding);
+      EXPECT_LT(apart(state.v, plain.v), rounding);
+      // Loads of springs are differences of positions of 16 m times stiffness over length, 10^5 N/m.
+      EXPECT_LT(apart(seen_second, second), 1e-9);
+      EXPECT_LT(apart(twice_losses, losses), 1e-9);
+      EXPECT_EQ(seen_second, loads) << "complete when the last task sees them";
+      EXPECT_NEAR(stored.total(), plain_stored.total(), 1e-9 * std::abs(plain_stored.total()));
+    }
+  }
+}
+
+}  // namespace
