@@ -311,8 +311,8 @@ std::vector<ContactPair> ContactFinder::pairs(Index island) const {
 
 template <int D>
 void ContactFinder::find_in(Index island, const Query& query, std::vector<Contact>& out) const {
-  // Centres are looked at so many at a time; one by one only where any of them touches.
-  constexpr Index at_once = 64;
+  // Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
+  constexpr Index many = 64, few = 8;
   const auto& bodies = assembly_->layout()->bodies();
   const Touching& touching = of_island_[island];
   Index next = touching.features.begin;
@@ -321,26 +321,35 @@ void ContactFinder::find_in(Index island, const Query& query, std::vector<Contac
       add<D>(bodies[features_[next].body], features_[next], query, out);
     }
   };
+  const auto any_touches = [&](Range some) {
+    const BodySlot slot = bodies[some.begin];
+    const double* const points = query.state.q + slot.q;
+    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
+      if (obstacle.moving == none) {
+        return obstacle.kind->any_within(obstacle.slot, points, slot.q_size, some.size(), query.margin);
+      }
+      return obstacle.kind->any_within_moved(obstacle.slot, query.places->motions_[obstacle.moving], points,
+                                             slot.q_size, some.size(), query.margin);
+    });
+  };
+  const auto in_parts = [](Range all, Index size, auto&& f) {
+    for (Index first = all.begin; first < all.end; first += size) {
+      f(Range{first, std::min(first + size, all.end)});
+    }
+  };
   for (Index i = touching.centres.begin; i < touching.centres.end; ++i) {
     const Centres& centres = centres_[i];
-    for (Index first = centres.bodies.begin; first < centres.bodies.end; first += at_once) {
-      const Index last = std::min(first + at_once, centres.bodies.end);
-      const BodySlot slot = bodies[first];
-      const auto touches = [&](const Obstacle& obstacle) {
-        const double* const points = query.state.q + slot.q;
-        if (obstacle.moving == none) {
-          return obstacle.kind->any_within(obstacle.slot, points, slot.q_size, last - first, query.margin);
+    in_parts(centres.bodies, many, [&](Range part) {
+      if (!any_touches(part)) return;
+      in_parts(part, few, [&](Range near) {
+        if (!any_touches(near)) return;
+        for (Index body = near.begin; body < near.end; ++body) {
+          add_features_before(body);
+          const BodySlot& at = bodies[body];
+          add<D>(at, centre_of(at, body, centres.material), query, out);
         }
-        return obstacle.kind->any_within_moved(obstacle.slot, query.places->motions_[obstacle.moving], points,
-                                               slot.q_size, last - first, query.margin);
-      };
-      if (std::none_of(obstacles_.begin(), obstacles_.end(), touches)) continue;
-      for (Index body = first; body < last; ++body) {
-        add_features_before(body);
-        const BodySlot at = bodies[body];
-        add<D>(at, centre_of(at, body, centres.material), query, out);
-      }
-    }
+      });
+    });
   }
   add_features_before(none);
 }
