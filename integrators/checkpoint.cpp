@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 4\n";
+constexpr std::string_view mark = "carom checkpoint 5\n";
 
 /// Numbers as bytes, lowest first, whatever the machine.
 class Writer {
@@ -167,9 +167,9 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
-  if (companion.history.known > 0) out.add(companion.history.first);
-  if (companion.history.known > 1) out.add(companion.history.second);
-  if (companion.history.known > 2) out.add(companion.history.third);
+  for (int i = 0; i < companion.history.known; ++i) {
+    out.add(companion.history.changes[static_cast<std::size_t>(i)]);
+  }
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
   out.add(std::uint64_t{companion.loads.valid && companion.loads.mean});
@@ -234,15 +234,16 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   LoadHistory& history = other.history;
   in.get(history.known);
-  if (history.known < 0 || history.known > 3) in.damaged("its history of loads is of unknown length");
+  if (history.known < 0 || history.known > LoadHistory::most)
+    in.damaged("its history of loads is of unknown length");
   in.get(history.step);
-  int differences = 0;
-  for (auto* const loads : {&history.first, &history.second, &history.third}) {
-    if (differences++ < history.known) {
-      in.get(*loads);
-      if (loads->size() != state.v.size()) in.damaged("its sizes do not fit the model");
+  for (int i = 0; i < LoadHistory::most; ++i) {
+    std::vector<float>& changes = history.changes[static_cast<std::size_t>(i)];
+    if (i < history.known) {
+      in.get(changes);
+      if (changes.size() != state.v.size()) in.damaged("its sizes do not fit the model");
     } else if (history.known > 0) {
-      loads->resize(state.v.size());
+      changes.resize(state.v.size());
     }
   }
   history.sweeps.resize(in.count());

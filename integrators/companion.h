@@ -9,6 +9,7 @@
 #include <carom/core/energy_ledger.h>
 #include <carom/integrators/step_report.h>
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -26,15 +27,15 @@ struct PresentLoads {
   std::vector<double> external;     ///< part of the total; empty if no element books any
 };
 
-/// Backward differences of the loads over the last steps, by which those at the end of the next are guessed.
-/// A guess needs no more digits than floats have.
+/// How the loads changed over the last steps, by which those at the end of the next are guessed. A guess
+/// needs no more digits than floats have.
 struct LoadHistory {
-  int known = 0;              ///< how many of the differences are known
-  double step = 0.0;          ///< length of the last step; of the last `known` if there are several [s]
-  std::vector<float> first;   ///< loads less those one step ago [N, N m]; empty before the first step
-  std::vector<float> second;  ///< the first differences less those one step ago
-  std::vector<float> third;   ///< likewise the second ones
-  std::vector<int> sweeps;    ///< of the last step, by island; empty if there was none
+  static constexpr int most = 3;  ///< steps that are remembered
+  int known = 0;                  ///< how many of the changes are known
+  double step = 0.0;              ///< length of the last step; of the last `known` if there are several [s]
+  std::array<std::vector<float>, most> changes;  ///< over the last step, over the one before it, and so on
+                                                 ///< [N, N m]; empty before the first step
+  std::vector<int> sweeps;                       ///< of the last step, by island; empty if there was none
 };
 
 /// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.

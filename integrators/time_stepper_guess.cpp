@@ -20,19 +20,22 @@ void TimeStepper::guess_loads(const Block& block, const Companion& companion, do
   const double* const now = companion.loads.total.data();
   const LoadHistory& history = companion.history;
   double* const guess = evaluation_.force.data();
-  const float* const first = history.first.data();
-  const float* const second = history.second.data();
-  const float* const third = history.third.data();
+  const float* const first = history.changes[0].data();
+  const float* const second = history.changes[1].data();
+  const float* const third = history.changes[2].data();
   const bool linear = history.known > 0 && step <= farthest * history.step;
   const int order = step == history.step ? history.known : linear ? 1 : 0;
   const double ratio = order == 1 ? step / history.step : 1.0;
   const Range v = block.v;
   if (order == 3) {
     for (Index i = v.begin; i < v.end; ++i) {
-      guess[i] = now[i] + static_cast<double>(first[i] + (second[i] + third[i]));
+      const float growth = first[i] - second[i];
+      guess[i] = now[i] + static_cast<double>(first[i] + (growth + (growth - (second[i] - third[i]))));
     }
   } else if (order == 2) {
-    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + static_cast<double>(first[i] + second[i]);
+    for (Index i = v.begin; i < v.end; ++i) {
+      guess[i] = now[i] + static_cast<double>(first[i] + (first[i] - second[i]));
+    }
   } else if (order == 1) {
     for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + ratio * static_cast<double>(first[i]);
   } else {
@@ -43,31 +46,24 @@ void TimeStepper::guess_loads(const Block& block, const Companion& companion, do
 /// The history of loads goes on by those at the end of the step.
 void TimeStepper::remember_loads(Companion& companion) const {
   LoadHistory& history = companion.history;
-  constexpr int most = 3;
-  // Differences of differences and their sum stay within floats; what does not is guessed as it is now.
+  // Differences of changes and their sum stay within floats; what does not is guessed as it is now.
   constexpr double largest = std::numeric_limits<float>::max() / 8.0;
-  history.known = history.known > 0 && history.step == report_.step ? std::min(history.known + 1, most) : 1;
+  history.known =
+      history.known > 0 && history.step == report_.step ? std::min(history.known + 1, LoadHistory::most) : 1;
   history.step = report_.step;
-  if (history.first.size() != evaluated_.size()) {
-    for (auto* const differences : {&history.first, &history.second, &history.third}) {
-      differences->resize(evaluated_.size());
-    }
+  std::rotate(history.changes.begin(), history.changes.end() - 1, history.changes.end());
+  if (history.changes[0].size() != evaluated_.size()) {
+    for (auto& changes : history.changes) changes.resize(evaluated_.size());
   }
   const double* const now = companion.loads.total.data();
   const double* const then = evaluated_.data();
-  float* const first = history.first.data();
-  float* const second = history.second.data();
-  float* const third = history.third.data();
+  float* const change = history.changes[0].data();
   for (Index island = 0; island < needed_sweeps_.size(); ++island) {
-    if (needed_sweeps_[island] == Sweeps::unneeded) continue;  // differences stay zero
+    if (needed_sweeps_[island] == Sweeps::unneeded) continue;  // it stays zero
     const Range v = assembly_->islands()[island].v;
     for (Index i = v.begin; i < v.end; ++i) {
       const double exact = then[i] - now[i];
-      const auto change = std::abs(exact) <= largest ? static_cast<float>(exact) : 0.0F;
-      const float change_of_first = change - first[i];
-      third[i] = change_of_first - second[i];
-      second[i] = change_of_first;
-      first[i] = change;
+      change[i] = std::abs(exact) <= largest ? static_cast<float>(exact) : 0.0F;
     }
   }
 }
