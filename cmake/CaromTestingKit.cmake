@@ -11,7 +11,7 @@ endif()
 carom_collect_sources(testing kit_sources kit_programs kit_headers kit_private_headers)
 add_library(carom_testing STATIC ${kit_sources})
 add_library(carom::testing ALIAS carom_testing)
-set_target_properties(carom_testing PROPERTIES EXPORT_NAME testing VERIFY_INTERFACE_HEADER_SETS ON)
+set_target_properties(carom_testing PROPERTIES EXPORT_NAME testing)
 carom_add_build_flags(carom_testing)
 carom_stage_headers(carom_testing testing "${kit_headers}")
 target_link_libraries(
