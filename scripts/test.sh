@@ -14,6 +14,9 @@ fi
 jobs=$(nproc)
 log="build/$preset/tests.log"
 
+# Without, ccache keeps nothing that is compiled with precompiled headers.
+export CCACHE_SLOPPINESS=pch_defines,time_macros
+
 scripts/setup.sh
 cmake --preset "$preset" -DCAROM_FAST_TESTS="$fast"
 cmake --build --preset "$preset" --parallel "$jobs"
