@@ -25,7 +25,7 @@ printing = threading.Lock()
 
 
 def flags_of(command):
-    """What a compile command says besides its input and outputs."""
+    """What a compile command says besides its input, outputs and precompiled headers."""
     words = shlex.split(command)
     while not words[0].startswith("-"):
         words.pop(0)
@@ -34,9 +34,9 @@ def flags_of(command):
     for word in words:
         if skip:
             skip = False
-        elif word in ("-o", "-c", "-MF", "-MT"):
+        elif word in ("-o", "-c", "-MF", "-MT", "-Xclang"):  # the last is for precompiled headers
             skip = True
-        elif word not in ("-MD", "-Werror"):
+        elif word not in ("-MD", "-Werror", "-Winvalid-pch"):
             result.append(word)
     return result
 
@@ -59,7 +59,7 @@ def tidy(files, flags, build):
         middle = len(files) // 2
         return all([tidy(files[:middle], flags, build), tidy(files[middle:], flags, build)])
     found = subprocess.run(
-        ["clang-tidy", "-p", str(build), "--quiet", str(files[0])], cwd=root, capture_output=True, text=True)
+        ["clang-tidy", "--quiet", str(files[0]), "--", *flags], cwd=build, capture_output=True, text=True)
     if found.returncode == 0:
         return True
     with printing:
