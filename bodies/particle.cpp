@@ -123,7 +123,8 @@ inline Index for_pairs(Range slots, const Column<double>& masses, double over_ma
 }  // namespace
 
 template <int D>
-void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& a) const {
+void ParticleKind<D>::sweep(Range slots, double step, const SweepArrays& arrays) const {
+  const SweepArrays a = arrays;  // a copy that no store can change: its pointers stay in registers
   const double half = 0.5 * step;
   const Index numbers = slots.size() * D;
   Index at = 0;
