@@ -28,6 +28,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
     books_external_ = books_external_ || kind->books_external();
     loads_need_rotations_ = loads_need_rotations_ || kind->needs_rotations();
   }
+  if (assembly.layout()->rotation_size() == 0) loads_need_rotations_ = false;  // none of particles
   contacts_need_rotations_ = finder_.needs_rotations();
   start_needs_rotations_ = contacts_need_rotations_ || loads_need_rotations_;
   if (books_dissipative_) dissipative_.resize(size);

@@ -10,15 +10,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
 
 using namespace carom;
 using namespace carom::planar;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A dozen blocks, between which springs cross; its lowest row lies along the plane.
 scenes::Net large() { return {.k = 160, .prestress = 0.01, .tilt = 0.1, .height = -1e-6}; }
@@ -157,6 +161,27 @@ TEST(Threads, SameBitsOfTwoSweepsInOneGo) {
   EXPECT_GT(apart, 0.0);
   EXPECT_LT(apart, 40 * 1e-10);  // the tolerance of every step
   EXPECT_LT(std::abs(one.energy().residual()), 1e-12 * one.energy().scale());
+}
+
+TEST(Threads, TwoSweepsInOneGoThatFailChangeNothing) {
+  System system;
+  const scenes::Net net{.k = 70, .prestress = 0.01, .height = 10.0};
+  scenes::add_net(system, net);
+  constexpr double gust = 0.0015;
+  const auto blow = [](double time) { return Vec<2>(time > gust ? nan : 1.0, 0.0); };
+  const Assembly described(system);
+  system.add(AppliedForce{.on = described.layout()->id(2500), .force = blow}, "gust");
+  Simulation simulation(std::move(system), TimeStepping{.step = 1e-4, .tolerance = 1e-10});
+  for (int i = 0; i < 15; ++i) simulation.step();
+  ASSERT_EQ(simulation.report().sweeps, 2);
+  const auto before = carom_test::bits_of(simulation);
+  try {
+    simulation.step();
+    FAIL() << "a force that is no number";
+  } catch (const SolverError& error) {
+    EXPECT_NE(std::string(error.what()).find("'gust'"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(carom_test::bits_of(simulation), before);
 }
 
 TEST(Threads, FewerSweepsAreFoundEnough) {
