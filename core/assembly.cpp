@@ -137,12 +137,13 @@ std::vector<double> Assembly::length_scales() const {
 }
 
 void Assembly::cut_islands() {
-  // A run has blocks enough for most of them to lie within it.
-  constexpr Index shortest_run = 2;
+  // Blocks at the ends of a run wait for the bridges, so runs are long; but two threads are to have a run
+  // each from two blocks on.
+  constexpr Index short_run = 2;
   for (Island& island : islands_) {
     const Index size = island.bodies.size();
     const Index count = std::clamp<Index>(size / block_size, 1, most_blocks);
-    const Index runs = std::clamp<Index>(count / shortest_run, 1, most_runs);
+    const Index runs = std::clamp<Index>(count / short_run, std::min<Index>(count, 2), most_runs);
     const auto share = [](Range whole, Index i, Index parts) {
       return whole.begin + static_cast<Index>(std::uint64_t{whole.size()} * i / parts);
     };
@@ -176,11 +177,13 @@ Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) {
                          [](Index wanted, const Block& block) { return wanted < block.bodies.end; });
     return static_cast<Index>(found - blocks_.begin());
   };
-  Index first = block_of(ends[0]), last = first;
+  Index first = none, last = 0;
   for (const BodyId end : ends) {
-    first = std::min(first, block_of(end));
-    last = std::max(last, block_of(end));
+    const Index block = block_of(end);
+    first = std::min(first, block);
+    last = std::max(last, block);
   }
+  if (first == last) return last - blocks.begin;
   const auto run =
       std::upper_bound(runs_.begin() + runs.begin, runs_.begin() + runs.end, first,
                        [](Index wanted, const Range& candidate) { return wanted < candidate.end; });

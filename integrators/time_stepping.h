@@ -73,7 +73,7 @@ struct TimeStepping {
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
 
-  /// Threads that share out the work on large islands (more than twice Assembly::block_size bodies). The same
+  /// Threads that share out the work on large islands (at least twice Assembly::block_size bodies). The same
   /// bits come out for any number. More than one need a library built with oneTBB, and laws that may be
   /// called from several threads at once.
   int threads = 1;

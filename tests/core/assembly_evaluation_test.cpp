@@ -147,11 +147,13 @@ TEST(AssemblyEvaluation, TwiceIsOneAfterTheOther) {
       constexpr double rounding = 9 * epsilon;
       EXPECT_LT(apart(seen_first, first), rounding);
       EXPECT_LT(apart(state.v, plain.v), rounding);
-      // Loads of springs are differences of positions of 16 m times stiffness over length, 10^5 N/m.
-      EXPECT_LT(apart(seen_second, second), 1e-9);
-      EXPECT_LT(apart(twice_losses, losses), 1e-9);
+      // So a position of up to 16 m may end a unit in the last place apart; eight springs of 10^4 N/m turn
+      // that into a load, taken in parts of the largest, 30 N.
+      constexpr double moved = rounding + epsilon * 16.0 * 8e4 / 30.0;
+      EXPECT_LT(apart(seen_second, second), moved);
+      EXPECT_LT(apart(twice_losses, losses), rounding);
       EXPECT_EQ(seen_second, loads) << "complete when the last task sees them";
-      EXPECT_NEAR(stored.total(), plain_stored.total(), 1e-9 * std::abs(plain_stored.total()));
+      EXPECT_NEAR(stored.total(), plain_stored.total(), moved * std::abs(plain_stored.total()));
     }
   }
 }
