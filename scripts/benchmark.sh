@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about seven
+# Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about four
 # minutes; the machine should have nothing else to do.
 #   scripts/benchmark.sh               all
 #   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, flow, joint
