@@ -328,7 +328,7 @@ TEST(JointFriction, ChainsAgreeInBothModes) {
   }
 }
 
-TEST(JointFriction, ChainsComeToRestAndStay) {
+TEST(JointFrictionLong, ChainsComeToRestAndStay) {
   for (const double coefficient : {0.0, 0.05}) {
     const RubbingChain chain(2.0, coefficient);
     WatchedRun event(chain.scene);
