@@ -328,6 +328,7 @@ BENCHMARK(step_working)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(bench
 
 BENCHMARK(step_threads)->Args({300, 1})->Args({300, 2})->UseRealTime();
 BENCHMARK(second)->Apply(small_sizes)->Iterations(1)->Repetitions(2)->Unit(benchmark::kMillisecond);
+BENCHMARK(second)->Arg(300)->Arg(million)->Iterations(1)->Repetitions(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(first_step)->Arg(100)->Iterations(1)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(storage)->Iterations(1)->Repetitions(1)->Unit(benchmark::kMillisecond);
 
