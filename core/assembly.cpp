@@ -139,7 +139,7 @@ std::vector<double> Assembly::length_scales() const {
 void Assembly::cut_islands() {
   // Blocks at the ends of a run wait for the bridges, so runs are long; but two threads are to have a run
   // each from two blocks on.
-  constexpr Index short_run = 2;
+  constexpr Index short_run = 8;
   for (Island& island : islands_) {
     const Index size = island.bodies.size();
     const Index count = std::clamp<Index>(size / block_size, 1, most_blocks);
@@ -154,12 +154,16 @@ void Assembly::cut_islands() {
     for (Index i = 0; i < count; ++i) {
       const Range bodies{share(island.bodies, i, count), share(island.bodies, i + 1, count)};
       blocks_.push_back(
-          {bodies, {velocity(bodies.begin), velocity(bodies.end)}, island.blocks.begin + i, false});
+          {bodies, {velocity(bodies.begin), velocity(bodies.end)}, 0, island.blocks.begin + i, false});
     }
     island.blocks.end = static_cast<Index>(blocks_.size());
     island.runs.begin = static_cast<Index>(runs_.size());
     for (Index i = 0; i < runs; ++i) {
-      runs_.push_back({share(island.blocks, i, runs), share(island.blocks, i + 1, runs)});
+      const Range run{share(island.blocks, i, runs), share(island.blocks, i + 1, runs)};
+      for (Index block = run.begin; block < run.end; ++block) {
+        blocks_[block].run = static_cast<Index>(runs_.size());
+      }
+      runs_.push_back(run);
     }
     island.runs.end = static_cast<Index>(runs_.size());
   }
@@ -169,7 +173,6 @@ void Assembly::cut_islands() {
 /// number of blocks if they lie in several runs. Notes in the blocks that the element acts on them.
 Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) {
   const Range blocks = islands_[island].blocks;
-  const Range runs = islands_[island].runs;
   if (blocks.size() == 1 || ends.empty()) return 0;
   const auto block_of = [&](BodyId end) {
     const auto found =
@@ -183,11 +186,7 @@ Index Assembly::part_of(Index island, const std::vector<BodyId>& ends) {
     first = std::min(first, block);
     last = std::max(last, block);
   }
-  if (first == last) return last - blocks.begin;
-  const auto run =
-      std::upper_bound(runs_.begin() + runs.begin, runs_.begin() + runs.end, first,
-                       [](Index wanted, const Range& candidate) { return wanted < candidate.end; });
-  if (last < run->end) {
+  if (blocks_[first].run == blocks_[last].run) {
     blocks_[first].closed_by = std::max(blocks_[first].closed_by, last);
     return last - blocks.begin;
   }
@@ -204,6 +203,27 @@ void Assembly::close_blocks() {
       blocks_[block].closed_by = closed_by;
     }
   }
+}
+
+bool Assembly::surround(Surroundings& blocks) const {
+  blocks.loading.clear();
+  blocks.touched.clear();
+  // Ranges that begin and end no earlier than those before them.
+  const auto add = [](std::vector<Index>& to, Index begin, Index end) {
+    if (!to.empty()) begin = std::max(begin, to.back() + 1);
+    for (Index block = begin; block < end; ++block) to.push_back(block);
+  };
+  for (const Index block : blocks.inner) {
+    if (blocks_[block].bridged) return false;
+    add(blocks.loading, block, blocks_[block].closed_by + 1);
+  }
+  for (const Index block : blocks.loading) {
+    const auto run = blocks_.begin() + runs_[blocks_[block].run].begin;
+    const auto first = std::partition_point(run, blocks_.begin() + block,
+                                            [&](const Block& before) { return before.closed_by < block; });
+    add(blocks.touched, static_cast<Index>(first - blocks_.begin()), block + 1);
+  }
+  return true;
 }
 
 void Assembly::order_joints(const std::vector<Index>& island_of_body) {

@@ -31,8 +31,16 @@ struct Island {
 struct Block {
   Range bodies;          ///< in the order of assembly
   Range v;               ///< velocities
+  Index run = 0;         ///< its run, see Assembly::runs()
   Index closed_by = 0;   ///< block of its run after whose elements none of the run acts on it, or before it
   bool bridged = false;  ///< bridges act on it
+};
+
+/// Some blocks of an island with those around them. All in ascending order.
+struct Surroundings {
+  std::vector<Index> inner;    ///< the blocks themselves
+  std::vector<Index> loading;  ///< whose elements, Assembly::elements_up_to(), may act on them
+  std::vector<Index> touched;  ///< on which those elements may act
 };
 
 /// Constant once made.
@@ -62,12 +70,15 @@ public:
   /// Blocks of all islands.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// Bodies of a block, whose numbers the cache next to a core can hold; and the most blocks of one island.
-  static constexpr Index block_size = 2048, most_blocks = 1024;
+  static constexpr Index block_size = 512, most_blocks = 1024;
   /// Runs of all islands: consecutive blocks, which one thread goes through in their order, so that what is
   /// done with a block can wait for its neighbours and still find its numbers at hand.
   [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }
   /// Most runs of one island.
   static constexpr Index most_runs = 8;
+  /// Finds what is around the inner blocks, which are of one island. False if bridges act on one of them,
+  /// whose loads then depend on blocks anywhere.
+  [[nodiscard]] bool surround(Surroundings& blocks) const;
 
   /// Kinds of force elements, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
@@ -178,6 +189,13 @@ struct BlockTasks {
 CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
                               const Evaluation& evaluation, const Loads& loads,
                               const Workers& workers = Workers(), const BlockTasks& tasks = {});
+
+/// Loads on the inner blocks alone: zeroes the given arrays over the touched blocks and adds the loads of the
+/// loading ones. Only those on the inner blocks are complete then, and rounded as evaluate_loads() rounds
+/// them.
+CAROM_API void evaluate_loads_within(const Assembly& assembly, Index island, const Surroundings& blocks,
+                                     const StateView& state, const Evaluation& evaluation,
+                                     const Loads& loads);
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
 CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,

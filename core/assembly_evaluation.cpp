@@ -140,6 +140,17 @@ void evaluate_loads(const Assembly& assembly, Index island, const StateView& sta
   go(Pass{assembly, assembly.islands()[island], loads, tasks, add}, workers);
 }
 
+void evaluate_loads_within(const Assembly& assembly, Index island, const Surroundings& blocks,
+                           const StateView& state, const Evaluation& evaluation, const Loads& loads) {
+  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
+    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
+  };
+  const BlockTasks nothing;
+  const Pass pass{assembly, assembly.islands()[island], loads, nothing, add};
+  for (const Index block : blocks.touched) pass.open(block);
+  for (const Index block : blocks.loading) pass.load(block);
+}
+
 namespace {
 
 /// Potentials by block and, last, of the bridges.

@@ -122,6 +122,7 @@ void StepController::merge(StepReport& report) {
   std::swap(report, first_);
   report.time = second_.time;
   report.sweeps = std::max(report.sweeps, second_.sweeps);
+  report.local_sweeps = std::max(report.local_sweeps, second_.local_sweeps);
   report.contraction = std::max(report.contraction, second_.contraction);
   if (second_.worst_coupling_rate > report.worst_coupling_rate) {
     report.worst_coupling = second_.worst_coupling;

@@ -59,7 +59,8 @@ struct StepReport {
   double step = 0.0;                             ///< its length [s]
   Iteration iteration = Iteration::fixed_point;  ///< which ran
   int sweeps = 0;                                ///< of the iteration, the most over all islands
-  double contraction = 0.0;          ///< ratio of successive changes, the largest over islands (0: none seen)
+  int local_sweeps = 0;      ///< before them, of the bodies around contacts alone; the most over all islands
+  double contraction = 0.0;  ///< ratio of successive changes, the largest over islands (0: none seen)
   ElementId worst_coupling{};        ///< coupling that limits the contraction most, invalid if there is none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
   double energy_gain = 0.0;          ///< energy that contact added, summed over problems that gained [J]

@@ -44,8 +44,14 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   }
   evaluated_.resize(size);
   sweeps_.resize(assembly.islands().size());
-  Index most_blocks = 1;
-  for (const Island& island : assembly.islands()) most_blocks = std::max(most_blocks, island.blocks.size());
+  Index most_blocks = 1, most_runs = 1;
+  for (const Island& island : assembly.islands()) {
+    most_blocks = std::max(most_blocks, island.blocks.size());
+    most_runs = std::max(most_runs, island.runs.size());
+  }
+  chains_.resize(most_runs);
+  block_clusters_.resize(most_blocks);
+  settled_.resize(most_blocks);
   changes_.resize(most_blocks);
   earlier_changes_.resize(most_blocks);
   works_.resize(most_blocks);
@@ -80,6 +86,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.step = step;
   report_.iteration = options_.iteration;
   report_.sweeps = 0;
+  report_.local_sweeps = 0;
   report_.contraction = 0.0;
   report_.worst_coupling = {};
   report_.worst_coupling_rate = 0.0;
@@ -89,7 +96,9 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   place_obstacles(state, step, end_time);
   start_loads(state, companion);
   remember_sticking(companion);
-  if (chain_.statistics().problems > 0) chain_.reset_statistics();  // of a step that failed
+  for (SolverChain& chain : chains_) {
+    if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
+  }
   const auto islands = static_cast<Index>(assembly_->islands().size());
   for (Index island = 0; island < islands; ++island) {
     advance_island(island, state, companion, step);
@@ -137,7 +146,11 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
   const bool with_joints = jointed(island);
   start_iteration(island, state, step);
-  if (!guesses_by_block(island)) guess_loads(island, companion, step);
+  if (in_one_pass(island)) {
+    settle_contacts(island, state, companion, step);
+  } else {
+    guess_loads(island, companion, step);
+  }
   if (implicit) start_implicit(island, state, companion, step);
 
   const std::vector<int>& before = companion.history.sweeps;
@@ -180,25 +193,21 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   }
 }
 
-bool TimeStepper::guesses_by_block(Index island) const {
-  return needed_sweeps_[island] == Sweeps::in_one_pass && clusters_in_use_ == 0;
-}
-
 /// Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only, which
 /// is expected after as many sweeps as in the last step.
 TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, const Companion& companion,
                                               double step, int expected, FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
-  const bool guessing = judge.sweeps() == 0 && guesses_by_block(island);
-  const auto sweep_first = [&](const Block& block, Index) {
-    if (guessing) guess_loads(block, companion, step);
-    sweep(island, block, state, companion, step);
+  const bool guessing = judge.sweeps() == 0;
+  const auto sweep_first = [&](const Block& block, Index part) {
+    if (guessing && settled_[part] == 0) guess_loads(block, companion, step);
+    solve_contacts(island, block, part, state, companion, step);
+    sweep(island, block, part, state, companion, step);
   };
-  // Contact is solved between sweeps, for all of the island.
-  if (guesses_by_block(island) && options_.iteration == Iteration::fixed_point &&
+  if (in_one_pass(island) && options_.iteration == Iteration::fixed_point &&
       assembly_->islands()[island].blocks.size() > 1 && judge.sweeps() + 2 == expected) {
-    swept_ = true;
     sweep_twice(island, state, companion, step, sweep_first);
+    demand_solved(island, state, companion, step, judge.sweeps() + 2);
     const SweepChange earlier = largest(earlier_changes_, island);
     switch (judge.judge_ahead(earlier.change, earlier.size)) {
       case Verdict::failed:
@@ -210,9 +219,7 @@ TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, 
     }
   }
   BlockTask first;
-  if (needed_sweeps_[island] == Sweeps::in_one_pass) {
-    solve_contacts(island, state, companion, step);
-    swept_ = true;
+  if (in_one_pass(island)) {
     first = sweep_first;
   } else {
     sweep_all(island, state, companion, step);
@@ -222,6 +229,7 @@ TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, 
   const bool implicit = options_.iteration == Iteration::linearly_implicit;
   evaluate_iterate(island, state, companion, step, by_cause ? LoadsAsked::by_cause : LoadsAsked::total,
                    !implicit, first);
+  if (in_one_pass(island)) demand_solved(island, state, companion, step, judge.sweeps() + 1);
   return by_cause ? SweepsMade::by_cause : SweepsMade::total;
 }
 

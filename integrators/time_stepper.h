@@ -79,13 +79,29 @@ private:
                                     double step);
   void find_contacts(Index island, const State& state);
   void add_cluster(const State& state, std::size_t first, std::size_t last);
+  void share_out_clusters(Index island);
   void sort_islands();
   void guess_loads(Index island, const Companion& companion, double step);
   void guess_loads(const Block& block, const Companion& companion, double step);
   void start_iteration(Index island, const State& state, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
+  /// Those of a block, while others are at work on other runs. What cannot be solved gets no impulses.
+  void solve_contacts(Index island, const Block& block, Index part, const State& state,
+                      const Companion& companion, double step);
+  /// Impulses of a cluster against the guess of the loads; false if there are none.
+  [[nodiscard]] bool solve(ContactCluster& cluster, SolverChain& chain, const State& state,
+                           const Companion& companion, double step);
+  /// Throws SolverError unless all contacts were solved in the last of so many sweeps.
+  void demand_solved(Index island, const State& state, const Companion& companion, double step, int sweeps);
+  /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few.
+  void settle_contacts(Index island, const State& state, const Companion& companion, double step);
+  [[nodiscard]] bool touched(Index part) const {
+    return clusters_in_use_ > 0 && !block_clusters_[part].empty();
+  }
   void sweep(Index island, const State& state, const Companion& companion, double step);
-  void sweep(Index island, const Block& block, const State& state, const Companion& companion, double step);
+  void sweep(Index island, const Block& block, Index part, const State& state, const Companion& companion,
+             double step);
+  [[nodiscard]] bool in_one_pass(Index island) const { return needed_sweeps_[island] == Sweeps::in_one_pass; }
   [[nodiscard]] bool jointed(Index island) const { return !joints_.empty() && !joints_[island].end.empty(); }
   void prepare_joints();
   void start_joints(Index island, const State& state, double step);
@@ -121,7 +137,6 @@ private:
   /// Makes the next sweep, or the next two; the judge has still to see the last.
   [[nodiscard]] SweepsMade sweep_on(Index island, const State& state, const Companion& companion, double step,
                                     int expected, FixedPointJudge& judge);
-  [[nodiscard]] bool guesses_by_block(Index island) const;
   enum class LoadsAsked : std::uint8_t { total, by_cause };
   /// Loads that the iterate leads to, by cause with works_, and if asked changes_.
   void evaluate_iterate(Index island, const State& state, const Companion& companion, double step,
@@ -196,7 +211,7 @@ private:
   TimeStepping options_;
   Workers workers_;
   ContactFinder finder_;
-  SolverChain chain_;
+  std::vector<SolverChain> chains_;  // one for each run of an island; the first for what is not shared out
 
   ObstaclePlaces places_;              // of the obstacles at the start
   ObstaclePlaces places_after_;        // and at the end
@@ -235,6 +250,9 @@ private:
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
+  std::vector<Range> block_clusters_;  // by block of the island at hand, if there are any
+  std::vector<std::uint8_t> settled_;  // likewise: blocks whose loads were guessed by settle_contacts()
+  Surroundings upset_;                 // blocks around contacts
 
   // Along which rows the joints of an island push: those halfway, those at the end, or those halfway with the
   // matrix of both.

@@ -75,8 +75,8 @@ void TimeStepper::project(Index island, const State& state, const Companion& com
   evaluate_positions(assembly, island, trial_.view(), evaluation_);
   IslandJoints none_there;
   IslandJoints& joints = jointed(island) ? joints_[island].end : none_there;
-  const GapProjection::Result result = projection_.project(assembly, island, finder_, places_after_,
-                                                           contacts_, chain_, trial_, evaluation_, joints);
+  const GapProjection::Result result = projection_.project(
+      assembly, island, finder_, places_after_, contacts_, chains_.front(), trial_, evaluation_, joints);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
@@ -221,9 +221,10 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
     statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
     statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
   }
-  if (chain_.statistics().problems > 0) {
-    companion.contact_statistics += chain_.statistics();
-    chain_.reset_statistics();
+  for (SolverChain& chain : chains_) {
+    if (chain.statistics().problems == 0) continue;
+    companion.contact_statistics += chain.statistics();
+    chain.reset_statistics();
   }
   if (report_.energy_gain > 0.0) {
     ++statistics.energy_gains;

@@ -90,7 +90,7 @@ void TimeStepper::solve_implicit(Index island, const State& state, double step) 
     cluster.set_free_velocity(free_.data());
     std::fill(response_.begin() + v.begin, response_.begin() + v.end, 0.0);
     cluster.add_loads(1.0 / weight, response_.data());  // H^T P / w, of the iterate before
-    if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+    if (!cluster.solve(chains_.front()).usable()) fail_contact(island, cluster, state, step);
     cluster.apply_coupled(update_.data());
     cluster.add_loads(-1.0 / weight, response_.data());
     for (Index i = v.begin; i < v.end; ++i) {
@@ -124,7 +124,7 @@ void TimeStepper::guess_implicit(Index island, const State& state, double step) 
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial_.v[i] + update_[i];
     cluster.set_velocity(scratch_.data());
     cluster.apply_coupled(update_.data(), -1.0);
-    if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+    if (!cluster.solve(chains_.front()).usable()) fail_contact(island, cluster, state, step);
     cluster.apply_coupled(update_.data());
   }
   implicit_.apply_mass(update_.data(), scratch_.data());

@@ -124,7 +124,7 @@ void TimeStepper::solve_joint_contacts(Index island, const State& state, double 
   cluster.couple(joints_[island].mean);
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
   cluster.set_free_velocity(scratch_.data());
-  if (!cluster.solve(chain_).usable()) fail_contact(island, cluster, state, step);
+  if (!cluster.solve(chains_.front()).usable()) fail_contact(island, cluster, state, step);
   clear(struck_, v);
   cluster.apply_coupled(struck_.data());
   press_rubbing(island, step);

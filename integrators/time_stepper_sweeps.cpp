@@ -46,13 +46,14 @@ void TimeStepper::start_loads(const State& state, Companion& companion) {
 
 void TimeStepper::sweep(Index island, const State& state, const Companion& companion, double step) {
   swept_ = true;
-  for_blocks(island, [&](const Block& block, Index) { sweep(island, block, state, companion, step); });
+  for_blocks(island,
+             [&](const Block& block, Index part) { sweep(island, block, part, state, companion, step); });
 }
 
-void TimeStepper::sweep(Index island, const Block& block, const State& state, const Companion& companion,
-                        double step) {
+void TimeStepper::sweep(Index island, const Block& block, Index part, const State& state,
+                        const Companion& companion, double step) {
   const double* const load0 = start_of_sum(companion);
-  const bool responds = clusters_in_use_ > 0 || jointed(island);
+  const bool responds = touched(part) || jointed(island);
   assembly_->for_bodies(
       island, block.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
         kind.sweep(slots, step,
@@ -93,9 +94,10 @@ void TimeStepper::sweep_twice(Index island, const State& state, const Companion&
   const auto compare = [&](const Block& block, Index part) {
     earlier_changes_[part] = next_change(island, block, step);
   };
-  const auto again = [&](const Block& block, Index) {
+  const auto again = [&](const Block& block, Index part) {
     improve_guess(block);
-    sweep(island, block, state, companion, step);
+    solve_contacts(island, block, part, state, companion, step);
+    sweep(island, block, part, state, companion, step);
   };
   const auto last = [&](const Block& block, Index part) {
     finish_block(island, block, part, state, companion, step);

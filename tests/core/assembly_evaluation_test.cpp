@@ -1,4 +1,5 @@
-// Loads of a large island, block by block: once, and twice with the second close behind the first.
+// Loads of a large island, block by block: once, twice with the second close behind the first, on some blocks
+// alone.
 
 #include "examples/scenes/net.h"
 
@@ -155,6 +156,56 @@ TEST(AssemblyEvaluation, TwiceIsOneAfterTheOther) {
       EXPECT_EQ(seen_second, loads) << "complete when the last task sees them";
       EXPECT_NEAR(stored.total(), plain_stored.total(), moved * std::abs(plain_stored.total()));
     }
+  }
+}
+
+TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
+  const LargeNet net(false);
+  const Evaluation evaluation = make_evaluation(net.assembly);
+  const std::size_t size = net.state.v.size();
+  std::vector<double> all(size);
+  evaluate_loads(net.assembly, 0, net.state.view(), evaluation, {all.data(), all.data(), all.data()});
+  const std::vector<Block>& blocks = net.assembly.blocks();
+  const Range second_run = net.assembly.runs()[1];
+  Index bridged = 0;
+  for (Index block = 0; block < blocks.size(); ++block) bridged += blocks[block].bridged ? 1U : 0U;
+  ASSERT_GT(bridged, 0U);
+  ASSERT_LT(bridged, blocks.size());
+
+  constexpr double left_alone = 7.0;
+  for (const std::vector<Index>& inner : std::vector<std::vector<Index>>{
+           {0}, {0, 1}, {0, 3}, {2, second_run.begin + 3}, {second_run.begin + 3, second_run.begin + 5}}) {
+    Surroundings around;
+    around.inner = inner;
+    ASSERT_TRUE(net.assembly.surround(around));
+    EXPECT_EQ(around.inner, inner);
+    for (const auto& found : {around.loading, around.touched}) {
+      EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+      EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+      EXPECT_LE(found.size(), inner.size() * 6) << "a row of the net is a third of a block";
+    }
+    std::vector<double> loads(size, left_alone);
+    evaluate_loads_within(net.assembly, 0, around, net.state.view(), evaluation,
+                          {loads.data(), loads.data(), loads.data()});
+    for (Index block = 0; block < blocks.size(); ++block) {
+      const auto is_in = [block](const std::vector<Index>& some) {
+        return std::binary_search(some.begin(), some.end(), block);
+      };
+      for (Index i = blocks[block].v.begin; i < blocks[block].v.end; ++i) {
+        if (is_in(inner)) {
+          EXPECT_EQ(loads[i], all[i]) << block;
+        } else if (!is_in(around.touched)) {
+          EXPECT_EQ(loads[i], left_alone) << block;
+        }
+      }
+    }
+  }
+  const LargeNet windy(true);
+  for (Index block = 0; block < blocks.size(); ++block) {
+    Surroundings around;
+    around.inner = {block};
+    EXPECT_EQ(net.assembly.surround(around), !blocks[block].bridged) << block;
+    EXPECT_FALSE(windy.assembly.surround(around)) << "what blows everywhere at once bridges all";
   }
 }
 

@@ -67,7 +67,7 @@ TEST(Threads, BlocksTogetherAreTheIsland) {
 }
 
 TEST(Threads, TwoBlocksAreEnoughForTwo) {
-  for (const Index blocks : {1U, 2U, 3U, 40U}) {
+  for (const Index blocks : {1U, 2U, 3U, 80U}) {
     System system;
     BodyId last;
     for (Index i = 0; i < blocks * Assembly::block_size; ++i) {
@@ -77,7 +77,7 @@ TEST(Threads, TwoBlocksAreEnoughForTwo) {
     }
     const Assembly assembly(std::move(system));
     ASSERT_EQ(assembly.blocks().size(), blocks);
-    EXPECT_EQ(assembly.runs().size(), blocks == 1 ? 1 : blocks < 4 ? 2 : Assembly::most_runs);
+    EXPECT_EQ(assembly.runs().size(), blocks == 1 ? 1 : blocks < 24 ? 2 : Assembly::most_runs);
   }
 }
 
