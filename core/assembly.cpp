@@ -142,7 +142,7 @@ void Assembly::cut_islands() {
   constexpr Index short_run = 8;
   for (Island& island : islands_) {
     const Index size = island.bodies.size();
-    const Index count = std::clamp<Index>(size / block_size, 1, most_blocks);
+    const Index count = std::max<Index>(size / block_size, 1);
     const Index runs = std::clamp<Index>(count / short_run, std::min<Index>(count, 2), most_runs);
     const auto share = [](Range whole, Index i, Index parts) {
       return whole.begin + static_cast<Index>(std::uint64_t{whole.size()} * i / parts);

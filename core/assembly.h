@@ -69,8 +69,8 @@ public:
   }
   /// Blocks of all islands.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Bodies of a block, whose numbers the cache next to a core can hold; and the most blocks of one island.
-  static constexpr Index block_size = 512, most_blocks = 1024;
+  /// Bodies of a block, roughly: the cache next to a core can hold the numbers of several.
+  static constexpr Index block_size = 512;
   /// Runs of all islands: consecutive blocks, which one thread goes through in their order, so that what is
   /// done with a block can wait for its neighbours and still find its numbers at hand.
   [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }

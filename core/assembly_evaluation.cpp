@@ -36,7 +36,8 @@ void for_kinds(const Assembly& assembly, Index island, F&& f) {
   }
 }
 
-/// A way through the blocks of an island, on which f(kind, elements, bodies, part) adds loads.
+/// A way through the blocks of an island, on which f(kind, elements, bodies, run) adds loads; the run is
+/// counted from the first of the island, the bridges come as one more.
 template <class F>
 struct Pass {
   const Assembly& assembly;
@@ -51,11 +52,11 @@ struct Pass {
     zero(block.v, loads);
   }
   void load(Index index) const {
-    const Range bodies = assembly.blocks()[index].bodies;
+    const Block& block = assembly.blocks()[index];
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
       const Range elements = assembly.elements_up_to(index, kind);
       if (!elements.empty()) {
-        f(*assembly.force_kinds()[kind], elements, bodies, index - all.blocks.begin);
+        f(*assembly.force_kinds()[kind], elements, block.bodies, block.run - all.runs.begin);
       }
     }
   }
@@ -63,7 +64,7 @@ struct Pass {
     const auto island = static_cast<Index>(&all - assembly.islands().data());
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
       const Range elements = assembly.bridges(island, kind);
-      if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.blocks.size());
+      if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.runs.size());
     }
   }
   void close(Index index) const {
@@ -153,11 +154,11 @@ void evaluate_loads_within(const Assembly& assembly, Index island, const Surroun
 
 namespace {
 
-/// Potentials by block and, last, of the bridges.
-using Parts = std::array<StoredEnergies, Assembly::most_blocks + 1>;
+/// Potentials by run, each of which one thread goes through, and, last, of the bridges.
+using Parts = std::array<StoredEnergies, Assembly::most_runs + 1>;
 
-void add_parts(const Parts& parts, Index blocks, StoredEnergies& stored) {
-  for (Index part = 0; part <= blocks; ++part) {
+void add_parts(const Parts& parts, Index runs, StoredEnergies& stored) {
+  for (Index part = 0; part <= runs; ++part) {
     for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += parts[part].values[i];
   }
 }
@@ -180,11 +181,11 @@ void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const
     return;
   }
   Parts parts{};
-  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
-    add_to(kind, elements, bodies, parts[part]);
+  const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index run) {
+    add_to(kind, elements, bodies, parts[run]);
   };
   go(Pass{assembly, all, loads, tasks, add}, workers);
-  add_parts(parts, all.blocks.size(), stored);
+  add_parts(parts, all.runs.size(), stored);
 }
 
 void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
@@ -196,13 +197,13 @@ void evaluate_loads_twice(const Assembly& assembly, Index island, const StateVie
   const auto add_first = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
     kind.evaluate({assembly, state, evaluation, island, bodies}, elements, first);
   };
-  const auto add_second = [&](const ForceKind& kind, Range elements, Range bodies, Index part) {
+  const auto add_second = [&](const ForceKind& kind, Range elements, Range bodies, Index run) {
     const EvaluationContext at{assembly, state, evaluation, island, bodies};
-    parts[part][kind.stored_as()] += kind.evaluate_with_potential(at, elements, second);
+    parts[run][kind.stored_as()] += kind.evaluate_with_potential(at, elements, second);
   };
   go_twice(Pass{assembly, all, first, first_tasks, add_first},
            Pass{assembly, all, second, second_tasks, add_second}, workers);
-  add_parts(parts, all.blocks.size(), stored);
+  add_parts(parts, all.runs.size(), stored);
 }
 
 void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step, const Loads& loads,

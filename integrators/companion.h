@@ -7,6 +7,7 @@
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_solver.h>
 #include <carom/core/energy_ledger.h>
+#include <carom/integrators/load_history.h>
 #include <carom/integrators/step_report.h>
 
 #include <array>
@@ -25,17 +26,6 @@ struct PresentLoads {
   std::vector<double> total;        ///< [N, N m]
   std::vector<double> dissipative;  ///< part of the total; empty if no element books any
   std::vector<double> external;     ///< part of the total; empty if no element books any
-};
-
-/// How the loads changed over the last steps, by which those at the end of the next are guessed. A guess
-/// needs no more digits than floats have.
-struct LoadHistory {
-  static constexpr int most = 3;  ///< steps that are remembered
-  int known = 0;                  ///< how many of the changes are known
-  double step = 0.0;              ///< length of the last step; of the last `known` if there are several [s]
-  std::array<std::vector<float>, most> changes;  ///< over the last step, over the one before it, and so on
-                                                 ///< [N, N m]; empty before the first step
-  std::vector<int> sweeps;                       ///< of the last step, by island; empty if there was none
 };
 
 /// When a periodic event is due: at start + k interval, k = 1, 2, ..., so that rounding does not add up.

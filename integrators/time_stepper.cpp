@@ -42,7 +42,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
     middle_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
   }
-  evaluated_.resize(size);
+  taken_down_.resize(assembly.blocks().size());
   sweeps_.resize(assembly.islands().size());
   Index most_blocks = 1, most_runs = 1;
   for (const Island& island : assembly.islands()) {
@@ -100,8 +100,14 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
   }
   const auto islands = static_cast<Index>(assembly_->islands().size());
-  for (Index island = 0; island < islands; ++island) {
-    advance_island(island, state, companion, step);
+  borrow_history(companion);
+  try {
+    for (Index island = 0; island < islands; ++island) {
+      advance_island(island, state, companion, step);
+    }
+  } catch (...) {
+    return_history(companion);
+    throw;
   }
   commit(state, companion, end_time, report);
 }
@@ -153,7 +159,7 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   }
   if (implicit) start_implicit(island, state, companion, step);
 
-  const std::vector<int>& before = companion.history.sweeps;
+  const std::vector<int>& before = history_.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   bool confirming = false;
   for (;;) {
@@ -199,8 +205,9 @@ TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, 
                                               double step, int expected, FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
   const bool guessing = judge.sweeps() == 0;
+  const Index first_block = assembly_->islands()[island].blocks.begin;
   const auto sweep_first = [&](const Block& block, Index part) {
-    if (guessing && settled_[part] == 0) guess_loads(block, companion, step);
+    if (guessing && settled_[part] == 0) guess_block(first_block + part, companion, step);
     solve_contacts(island, block, part, state, companion, step);
     sweep(island, block, part, state, companion, step);
   };

@@ -82,7 +82,10 @@ private:
   void share_out_clusters(Index island);
   void sort_islands();
   void guess_loads(Index island, const Companion& companion, double step);
-  void guess_loads(const Block& block, const Companion& companion, double step);
+  void guess_block(Index block, const Companion& companion, double step);
+  void take_down(Index block, const Companion& companion);
+  void borrow_history(Companion& companion);
+  void return_history(Companion& companion);
   void start_iteration(Index island, const State& state, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
   /// Those of a block, while others are at work on other runs. What cannot be solved gets no impulses.
@@ -204,7 +207,7 @@ private:
   /// v_{j+1} changes by this times M^-1 times the change of what is iterated.
   [[nodiscard]] double impulse_weight(double step) const { return mean_rule() ? step : 0.5 * step; }
 
-  void remember_loads(Companion& companion) const;
+  void remember_loads(Companion& companion);
   void commit(State& state, Companion& companion, double end_time, StepReport& report);
 
   const Assembly* assembly_;
@@ -213,16 +216,18 @@ private:
   ContactFinder finder_;
   std::vector<SolverChain> chains_;  // one for each run of an island; the first for what is not shared out
 
-  ObstaclePlaces places_;              // of the obstacles at the start
-  ObstaclePlaces places_after_;        // and at the end
-  State trial_;                        // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
-  State middle_;                       // halfway, where elements look at it
-  Evaluation start_;                   // rotation: at the start
-  Evaluation middle_evaluation_;       // rotation: halfway
-  Evaluation evaluation_;              // force: guess of the loads at the end (or mean loads)
-  std::vector<double> evaluated_;      // loads that the guess led to
-  StoredEnergies evaluated_energies_;  // of the island, potentials that it led to
-  std::vector<int> sweeps_;            // by island, as many as were needed
+  ObstaclePlaces places_;          // of the obstacles at the start
+  ObstaclePlaces places_after_;    // and at the end
+  State trial_;                    // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
+  State middle_;                   // halfway, where elements look at it
+  Evaluation start_;               // rotation: at the start
+  Evaluation middle_evaluation_;   // rotation: halfway
+  Evaluation evaluation_;          // force: guess of the loads at the end (or mean loads)
+  std::vector<double> evaluated_;  // loads that the guess led to; before it, at the start of the last step
+  LoadHistory history_;            // the companion's, during a step
+  std::vector<std::uint8_t> taken_down_;  // by block: its part of the last change, where that is pending
+  StoredEnergies evaluated_energies_;     // of the island, potentials that it led to
+  std::vector<int> sweeps_;               // by island, as many as were needed
   // What an island needs. Several: of its iteration; in_one_pass: nothing comes between a sweep of bodies and
   // their loads, so that a block can have both at once; unneeded: loads that never change.
   enum class Sweeps : std::uint8_t { several, in_one_pass, unneeded };

@@ -196,12 +196,10 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   std::swap(state.v, trial_.v);
   std::swap(state.z, trial_.z);
   remember_loads(companion);
-  companion.loads.total.swap(evaluated_);
   companion.loads.dissipative.swap(dissipative_);
   companion.loads.external.swap(external_);
   companion.loads.valid = true;
   companion.loads.mean = mean_rule();
-  companion.history.sweeps = sweeps_;
   std::swap(companion.rounding, rounding_);
   state.time = end_time;
   companion.ledger.book(flows_, stored_);

@@ -133,7 +133,7 @@ void TimeStepper::settle_contacts(Index island, const State& state, const Compan
     for (const Index index : upset.touched) {
       if (settled_[index - blocks.begin] == untouched) {
         settled_[index - blocks.begin] = guessed;
-        guess_loads(block_at(index), companion, step);
+        guess_block(index, companion, step);
       } else if (!std::binary_search(upset.inner.begin(), upset.inner.end(), index)) {
         continue;
       }

@@ -122,6 +122,10 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   if (!std::isfinite(judge.change())) {
     if (implicit) {
       demand_finite_loads(island, state.view(), state, step);
+      // The iterates are lost as a whole; a law of time shows itself in the configuration of the start too.
+      StateView at_end = state.view();
+      at_end.time = trial_.time;
+      demand_finite_loads(island, at_end, state, step);
     } else {
       find_culprit(island, state, companion, step, judge.sweeps());
     }

@@ -1,77 +1,55 @@
-// Problem: what the loads at the end of a step will be, by those of the last steps; nothing to guess where
+// Problem: loads at the end of a step that lead the iteration to begin near its end; nothing to guess where
 // they never change.
 
-#include <carom/core/pair.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 namespace carom {
 
 void TimeStepper::guess_loads(Index island, const Companion& companion, double step) {
-  for_blocks(island, [&](const Block& block, Index) { guess_loads(block, companion, step); });
+  const Index first = assembly_->islands()[island].blocks.begin;
+  for_blocks(island, [&](const Block&, Index part) { guess_block(first + part, companion, step); });
 }
 
-/// Loads at the end by the polynomial through those of the last steps.
-void TimeStepper::guess_loads(const Block& block, const Companion& companion, double step) {
-  // Extrapolating far from two near values would magnify their rounding.
-  constexpr double farthest = 10.0;
+void TimeStepper::guess_block(Index block, const Companion& companion, double step) {
   const double* const now = companion.loads.total.data();
-  const LoadHistory& history = companion.history;
-  double* const guess = evaluation_.force.data();
-  const float* const first = history.changes[0].data();
-  const float* const second = history.changes[1].data();
-  const float* const third = history.changes[2].data();
-  const bool linear = history.known > 0 && step <= farthest * history.step;
-  const int order = step == history.step ? history.known : linear ? 1 : 0;
-  const double ratio = order == 1 ? step / history.step : 1.0;
-  const Range v = block.v;
-  if (order == 3) {
-    for (Index i = v.begin; i < v.end; ++i) {
-      const float growth = first[i] - second[i];
-      guess[i] = now[i] + static_cast<double>(first[i] + (growth + (growth - (second[i] - third[i]))));
-    }
-  } else if (order == 2) {
-    for (Index i = v.begin; i < v.end; ++i) {
-      guess[i] = now[i] + static_cast<double>(first[i] + (first[i] - second[i]));
-    }
-  } else if (order == 1) {
-    for (Index i = v.begin; i < v.end; ++i) guess[i] = now[i] + ratio * static_cast<double>(first[i]);
-  } else {
-    std::copy(now + v.begin, now + v.end, guess + v.begin);
-  }
+  const Range v = assembly_->blocks()[block].v;
+  take_down(block, companion);
+  history_.guess(v, step, now, evaluation_.force.data());
 }
 
-/// The history of loads goes on by those at the end of the step.
-void TimeStepper::remember_loads(Companion& companion) const {
-  LoadHistory& history = companion.history;
-  // Differences of changes and their sum stay within floats; what does not is guessed as it is now.
-  constexpr double largest = std::numeric_limits<float>::max() / 8.0;
-  history.known =
-      history.known > 0 && history.step == report_.step ? std::min(history.known + 1, LoadHistory::most) : 1;
-  history.step = report_.step;
-  std::rotate(history.changes.begin(), history.changes.end() - 1, history.changes.end());
-  if (history.changes[0].size() != evaluated_.size()) {
-    for (auto& changes : history.changes) changes.resize(evaluated_.size());
-  }
-  const double* const now = companion.loads.total.data();
-  const double* const then = evaluated_.data();
-  float* const change = history.changes[0].data();
-  for (Index island = 0; island < needed_sweeps_.size(); ++island) {
-    if (needed_sweeps_[island] == Sweeps::unneeded) continue;  // it stays zero
-    const Range v = assembly_->islands()[island].v;
-    Index i = v.begin;
-    for (; i + 1 < v.end; i += 2) {
-      const Pair exact = load_pair(then + i) - load_pair(now + i);
-      store_pair(change + i, magnitude(exact) <= both(largest) ? exact : both(0.0));
-    }
-    for (; i < v.end; ++i) {
-      const double exact = then[i] - now[i];
-      change[i] = std::abs(exact) <= largest ? static_cast<float>(exact) : 0.0F;
-    }
-  }
+/// Nothing has been written over the loads at the start of the last step before those of a block are guessed.
+void TimeStepper::take_down(Index block, const Companion& companion) {
+  if (!history_.pending || taken_down_[block] != 0) return;
+  history_.take_down(assembly_->blocks()[block].v, evaluated_.data(), companion.loads.total.data());
+  taken_down_[block] = 1;
+}
+
+void TimeStepper::borrow_history(Companion& companion) {
+  std::swap(history_, companion.history);
+  if (history_.known == 0) history_.pending = false;
+  if (!history_.before.empty()) evaluated_.swap(history_.before);
+  evaluated_.resize(trial_.v.size());
+  std::fill(taken_down_.begin(), taken_down_.end(), std::uint8_t{0});
+}
+
+/// After a step that failed: the same history, with nothing pending.
+void TimeStepper::return_history(Companion& companion) {
+  for (Index block = 0; block < taken_down_.size(); ++block) take_down(block, companion);
+  history_.pending = false;
+  history_.before.clear();
+  std::swap(history_, companion.history);
+}
+
+/// The loads at the start are kept as those to which the next step compares its own.
+void TimeStepper::remember_loads(Companion& companion) {
+  history_.go_on(report_.step, evaluated_.size());
+  companion.loads.total.swap(evaluated_);
+  history_.before.swap(evaluated_);
+  history_.sweeps = sweeps_;
+  std::swap(history_, companion.history);
 }
 
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.

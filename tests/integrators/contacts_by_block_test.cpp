@@ -148,4 +148,40 @@ TEST(ContactsByBlock, AForceThatIsNoNumberIsNamed) {
   }
 }
 
+TEST(ContactsByBlock, AContactWithoutSolutionIsNamed) {
+  // Far below the net hangs a dot between two rough walls on which no impulses fulfil both laws.
+  constexpr double half_opening = 0.21745938056855638;
+  System system;
+  scenes::Net net = falling(false);
+  net.tilt = 0.0;
+  net.height = 50.0;
+  scenes::add_net(system, net);
+  const BodyId corner = Assembly(system).layout()->id(static_cast<Index>(net.k - 1));
+  const Vec<2> apex(0.0, 1.001);
+  const double c = std::cos(half_opening), s = std::sin(half_opening);
+  system.add(HalfPlane{.point = apex, .normal = {c, s}},
+             Surface{.friction = 0.53987900831896096,
+                     .normal_restitution = 0.74899078150499232,
+                     .tangential_restitution = 0.30618667673745659},
+             "left");
+  system.add(HalfPlane{.point = apex, .normal = {-c, s}},
+             Surface{.friction = 0.57208363070636237,
+                     .normal_restitution = 0.45812455122160234,
+                     .tangential_restitution = 0.32175910193758456},
+             "right");
+  const BodyId dot = system.add(
+      Particle{.mass = 1.0, .position = {0.0, 1.0}, .velocity = {-0.77365183717370878, -0.2387063857347117}},
+      "dot");
+  system.add(SpringDamper{.from = dot, .to = corner, .stiffness = 1.0, .free_length = 49.0});
+  for (const int threads : {1, 2}) {
+    if (threads > 1 && !Workers::several_available()) continue;
+    Simulation simulation(system, TimeStepping{.step = 1e-4, .tolerance = tolerance, .threads = threads});
+    ASSERT_EQ(simulation.assembly().islands().size(), 1U);
+    const auto before = carom_test::bits_of(simulation);
+    EXPECT_THROWS(SolverError, simulation.step(), "particle 'dot' on half-plane 'left'", "'right'",
+                  "no solution");
+    EXPECT_EQ(carom_test::bits_of(simulation), before);
+  }
+}
+
 }  // namespace
