@@ -32,7 +32,8 @@ for program in "${programs[@]}"; do
   filter=-second/1000
   if [[ -n ${CAROM_MILLION:-} ]]; then filter=.; fi
   "build/release/benchmarks/${program}_benchmark" \
-    --benchmark_filter="$filter" --benchmark_min_time=0.02 --benchmark_repetitions=15 --benchmark_enable_random_interleaving=true \
+    --benchmark_filter="$filter" --benchmark_min_time=0.02 --benchmark_repetitions=15 \
+    --benchmark_enable_random_interleaving=true \
     --benchmark_out="$results/$program.json" --benchmark_out_format=json >"$results/$program.log" 2>&1 || {
     cat "$results/$program.log" >&2
     exit 1
