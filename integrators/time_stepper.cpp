@@ -38,6 +38,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
   rated_contraction_.assign(assembly.islands().size(), -1.0);
   prepare_joints();
   sort_islands();
+  guesses_ = std::any_of(needed_sweeps_.begin(), needed_sweeps_.end(),
+                         [](Sweeps needed) { return needed != Sweeps::unneeded; });
   if (mean_rule() || assembly.layout()->z_size() > 0 || !joints_.empty()) {
     middle_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
@@ -100,13 +102,13 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
   }
   const auto islands = static_cast<Index>(assembly_->islands().size());
-  borrow_history(companion);
+  open_history(companion);
   try {
     for (Index island = 0; island < islands; ++island) {
       advance_island(island, state, companion, step);
     }
   } catch (...) {
-    return_history(companion);
+    close_history(companion);
     throw;
   }
   commit(state, companion, end_time, report);
@@ -159,7 +161,7 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   }
   if (implicit) start_implicit(island, state, companion, step);
 
-  const std::vector<int>& before = history_.sweeps;
+  const std::vector<int>& before = history_->sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   bool confirming = false;
   for (;;) {

@@ -84,8 +84,8 @@ private:
   void guess_loads(Index island, const Companion& companion, double step);
   void guess_block(Index block, const Companion& companion, double step);
   void take_down(Index block, const Companion& companion);
-  void borrow_history(Companion& companion);
-  void return_history(Companion& companion);
+  void open_history(Companion& companion);
+  void close_history(const Companion& companion);
   void start_iteration(Index island, const State& state, double step);
   void solve_contacts(Index island, const State& state, const Companion& companion, double step);
   /// Those of a block, while others are at work on other runs. What cannot be solved gets no impulses.
@@ -216,15 +216,15 @@ private:
   ContactFinder finder_;
   std::vector<SolverChain> chains_;  // one for each run of an island; the first for what is not shared out
 
-  ObstaclePlaces places_;          // of the obstacles at the start
-  ObstaclePlaces places_after_;    // and at the end
-  State trial_;                    // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
-  State middle_;                   // halfway, where elements look at it
-  Evaluation start_;               // rotation: at the start
-  Evaluation middle_evaluation_;   // rotation: halfway
-  Evaluation evaluation_;          // force: guess of the loads at the end (or mean loads)
-  std::vector<double> evaluated_;  // loads that the guess led to; before it, at the start of the last step
-  LoadHistory history_;            // the companion's, during a step
+  ObstaclePlaces places_;           // of the obstacles at the start
+  ObstaclePlaces places_after_;     // and at the end
+  State trial_;                     // q_{j+1}, v_{j+1}, z_{j+1} of the sweep at hand
+  State middle_;                    // halfway, where elements look at it
+  Evaluation start_;                // rotation: at the start
+  Evaluation middle_evaluation_;    // rotation: halfway
+  Evaluation evaluation_;           // force: guess of the loads at the end (or mean loads)
+  std::vector<double> evaluated_;   // loads that the guess led to; before it, at the start of the last step
+  LoadHistory* history_ = nullptr;  // the companion's, during a step
   std::vector<std::uint8_t> taken_down_;  // by block: its part of the last change, where that is pending
   StoredEnergies evaluated_energies_;     // of the island, potentials that it led to
   std::vector<int> sweeps_;               // by island, as many as were needed
@@ -240,6 +240,7 @@ private:
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew
   GapProjection projection_;
+  bool guesses_ = false;            // whether any island has loads that change
   bool books_dissipative_ = false;  // whether any element does
   bool books_external_ = false;
   bool loads_need_rotations_ = false;

@@ -17,39 +17,38 @@ void TimeStepper::guess_block(Index block, const Companion& companion, double st
   const double* const now = companion.loads.total.data();
   const Range v = assembly_->blocks()[block].v;
   take_down(block, companion);
-  history_.guess(v, step, now, evaluation_.force.data());
+  history_->guess(v, step, now, evaluation_.force.data());
 }
 
 /// Nothing has been written over the loads at the start of the last step before those of a block are guessed.
 void TimeStepper::take_down(Index block, const Companion& companion) {
-  if (!history_.pending || taken_down_[block] != 0) return;
-  history_.take_down(assembly_->blocks()[block].v, evaluated_.data(), companion.loads.total.data());
+  if (!history_->pending || taken_down_[block] != 0) return;
+  history_->take_down(assembly_->blocks()[block].v, evaluated_.data(), companion.loads.total.data());
   taken_down_[block] = 1;
 }
 
-void TimeStepper::borrow_history(Companion& companion) {
-  std::swap(history_, companion.history);
-  if (history_.known == 0) history_.pending = false;
-  if (!history_.before.empty()) evaluated_.swap(history_.before);
+void TimeStepper::open_history(Companion& companion) {
+  history_ = &companion.history;
+  if (history_->known == 0) history_->pending = false;
+  if (!history_->before.empty()) evaluated_.swap(history_->before);
   evaluated_.resize(trial_.v.size());
-  std::fill(taken_down_.begin(), taken_down_.end(), std::uint8_t{0});
+  if (history_->pending) std::fill(taken_down_.begin(), taken_down_.end(), std::uint8_t{0});
 }
 
 /// After a step that failed: the same history, with nothing pending.
-void TimeStepper::return_history(Companion& companion) {
+void TimeStepper::close_history(const Companion& companion) {
   for (Index block = 0; block < taken_down_.size(); ++block) take_down(block, companion);
-  history_.pending = false;
-  history_.before.clear();
-  std::swap(history_, companion.history);
+  history_->pending = false;
+  history_->before.clear();
 }
 
 /// The loads at the start are kept as those to which the next step compares its own.
 void TimeStepper::remember_loads(Companion& companion) {
-  history_.go_on(report_.step, evaluated_.size());
   companion.loads.total.swap(evaluated_);
-  history_.before.swap(evaluated_);
-  history_.sweeps = sweeps_;
-  std::swap(history_, companion.history);
+  history_->sweeps = sweeps_;
+  if (!guesses_) return;
+  history_->go_on(report_.step, evaluated_.size());
+  history_->before.swap(evaluated_);
 }
 
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.
