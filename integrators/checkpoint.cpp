@@ -167,16 +167,16 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
-  for (int i = 0; i < companion.history.known; ++i) {
-    if (i > 0 || !companion.history.pending) {
-      out.add(companion.history.changes[static_cast<std::size_t>(i)]);
-      continue;
-    }
-    LoadHistory last;
+  LoadHistory last;
+  const bool pending = companion.history.known > 0 && companion.history.pending;
+  if (pending) {
     last.go_on(companion.history.step, state.v.size());
     last.take_down({0, static_cast<Index>(state.v.size())}, companion.history.before.data(),
                    companion.loads.total.data());
-    out.add(last.changes[0]);
+  }
+  for (int i = 0; i < companion.history.known; ++i) {
+    const LoadHistory& from = i == 0 && pending ? last : companion.history;
+    out.add(from.changes[static_cast<std::size_t>(i)]);
   }
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);

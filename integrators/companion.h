@@ -10,7 +10,6 @@
 #include <carom/integrators/load_history.h>
 #include <carom/integrators/step_report.h>
 
-#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>

@@ -1,9 +1,11 @@
-// Problem: which contacts take part in a step, and their impulses against the guess of the loads.
+// Problem: which contacts take part in a step, their impulses against the guess of the loads, and a guess
+// that is good around them too.
 
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace carom {
@@ -32,7 +34,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   response_.resize(trial_.v.size());
   free_.resize(trial_.v.size());
   if (options_.iteration == Iteration::linearly_implicit || jointed(island)) {
-    add_cluster(state, 0, contacts_.size());  // bodies answer together
+    add_cluster(state, 0, contacts_.size());  // bodies answer together, those of all blocks
     const Island& all = assembly_->islands()[island];
     std::fill_n(block_clusters_.begin(), all.blocks.size(), Range{0, 1});
     std::fill(response_.begin() + all.v.begin, response_.begin() + all.v.end, 0.0);

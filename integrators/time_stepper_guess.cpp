@@ -4,7 +4,7 @@
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
-#include <utility>
+#include <cstdint>
 
 namespace carom {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about five
+# Runs benchmarks and writes their figures into the tables of docs/performance.md. All of them take about four
 # minutes; the machine should have nothing else to do. With CAROM_MILLION in the environment the net of a million
 # particles runs for its whole second too, which takes ten minutes more.
 #   scripts/benchmark.sh               all

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -243,9 +244,9 @@ TEST(ClosedContacts, MarginsAreTheLargestOfABallInAV) {
   }
 }
 
-TEST(ClosedContacts, MarginsAreTheLargestOfABoxInACorner) {
-  Random random(2);
-  for (int i = 0; i < 100; ++i) {
+void find_margins_in_a_corner(std::uint64_t seed, int count) {
+  Random random(seed);
+  for (int i = 0; i < count; ++i) {
     System system = brick(random.uniform(0.05, 0.9));
     system.add(HalfPlane{.point = {half_width, 0.0}, .normal = {-1.0, 0.0}},
                Surface{.friction = random.uniform(0.05, 0.9), .normal_restitution = 0.0});
@@ -265,6 +266,9 @@ TEST(ClosedContacts, MarginsAreTheLargestOfABoxInACorner) {
     EXPECT_TRUE(std::isfinite(along));
   }
 }
+
+TEST(ClosedContacts, MarginsAreTheLargestOfABoxInACorner) { find_margins_in_a_corner(2, 100); }
+TEST(ClosedContactsLong, MarginsAreTheLargestOfABoxInACorner) { find_margins_in_a_corner(3, 500); }
 
 TEST(ClosedContacts, WedgedContactsKeepFiniteForces) {
   // Two walls with much friction may press a particle as hard as they like.

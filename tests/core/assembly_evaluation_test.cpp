@@ -53,7 +53,7 @@ public:
   void fingerprint(Fingerprint&) const override {}
 };
 
-/// A net of a dozen blocks in several runs, not at rest.
+/// A net of fifty blocks in several runs, not at rest.
 struct LargeNet {
   explicit LargeNet(bool with_wind) : assembly(described(with_wind)), state(assembly.initial_state()) {
     for (std::size_t i = 0; i < state.v.size(); ++i) state.v[i] = std::sin(static_cast<double>(i));

@@ -25,7 +25,7 @@ using namespace carom::planar;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A dozen blocks, between which springs cross; its lowest row lies along the plane.
+/// Fifty blocks, between which springs cross; its lowest row lies along the plane.
 scenes::Net large() { return {.k = 160, .prestress = 0.01, .tilt = 0.1, .height = -1e-6}; }
 
 System large_net() {
