@@ -43,12 +43,10 @@ bool has_no_solution(const SolverError& error) {
 
 // Open questions, of the scenes 0 to 59,999 (their accounts close to 1e-6 at the default tolerance, all but a
 // dozen to 1e-7, which close to 5e-9 at the tight one):
-//   12873, 13431  two corners of a box at rest but for 1e-5 m/s, one of them pushed into its wall by the
-//   force on
-//                 the other: an error says that the problem of the accelerations is not solved;
-//   22935, 32129  two particles at one place, joined by a spring that is longer: its force has no direction,
-//   and
-//                 what happens hangs on rounding.
+//   12873, 13431: two corners of a box at rest but for 1e-5 m/s, one of them pushed into its wall by the
+//   force on the other; an error says that the problem of the accelerations is not solved.
+//   22935, 32129: two particles at one place, joined by a spring that is longer; its force has no direction,
+//   and what happens hangs on rounding.
 constexpr std::array<std::uint64_t, 4> open_questions{12873, 13431, 22935, 32129};
 
 void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_residual, Findings& findings) {

@@ -1,0 +1,154 @@
+// Problem: how the equations of rest change with positions and velocities, and the masses they are set
+// against.
+
+#include <carom/analysis/resting_model.h>
+#include <carom/core/difference_derivatives.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Eigen::Index at(Index i) { return static_cast<Eigen::Index>(i); }
+
+/// df/dh at 0 of a vector: central differences with halved steps, extrapolated (Ridders' table). The entry
+/// that differs least from its neighbours is taken: near 1e-13 of the size of f wherever f is smooth over
+/// some step of the table.
+template <class F>
+void extrapolated_derivative(F&& f, VectorXd& out) {
+  constexpr int levels = 9;
+  constexpr double widest = 0.05;  // rad, or m at a length scale of 1 m
+  std::array<VectorXd, levels> above, row;
+  double best = std::numeric_limits<double>::infinity();
+  double step = widest;
+  for (int i = 0; i < levels; ++i, step *= 0.5) {
+    VectorXd ahead, behind;
+    f(step, ahead);
+    f(-step, behind);
+    row[0] = (ahead - behind) / (2.0 * step);
+    double weight = 1.0;
+    for (int k = 1; k <= i; ++k) {
+      weight *= 4.0;
+      const auto j = static_cast<std::size_t>(k);
+      row[j] = row[j - 1] + (row[j - 1] - above[j - 1]) / (weight - 1.0);
+      const double error = std::max((row[j] - row[j - 1]).lpNorm<Eigen::Infinity>(),
+                                    (row[j] - above[j - 1]).lpNorm<Eigen::Infinity>());
+      if (error < best) {
+        best = error;
+        out = row[j];
+      }
+    }
+    std::swap(above, row);
+  }
+}
+
+}  // namespace
+
+void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) const {
+  const Eigen::Index size = lengths_.size();
+  by_position.setZero(size, size);
+  by_velocity.setZero(size, size);
+  std::vector<LoadDerivative> entries;
+  for (Index island = 0; island < assembly_->islands().size(); ++island) {
+    const EvaluationContext here{*assembly_, state_.view(), evaluation_, island};
+    std::optional<DifferenceDerivatives> differences;
+    for (Index index = 0; index < assembly_->force_kinds().size(); ++index) {
+      const ForceKind& kind = *assembly_->force_kinds()[index];
+      const Range elements = assembly_->elements(island, index);
+      for (Index element = elements.begin; element < elements.end; ++element) {
+        if (kind.has_derivatives()) {
+          kind.derivatives(here, element, entries);
+        } else {
+          if (!differences) differences.emplace(here);
+          differences->append(kind, element, entries);
+        }
+      }
+    }
+  }
+  for (const LoadDerivative& entry : entries) {
+    by_position(at(entry.row), at(entry.column)) += entry.by_position;
+    by_velocity(at(entry.row), at(entry.column)) += entry.by_velocity;
+  }
+
+  // G^T l: the rows of one body at a time, moved along one of its coordinates.
+  State moved = state_;
+  Evaluation evaluation = evaluation_;
+  const JointView view{moved.view(), evaluation.rotation.data()};
+  std::vector<JointRow> rows = joint_rows_;
+  Contact contact;
+  VectorXd column;
+  const Layout& layout = *assembly_->layout();
+  for (Index body = 0; body < layout.bodies().size(); ++body) {
+    if (joints_of_body_[body].empty() && supports_of_body_[body].empty()) continue;
+    const BodySlot slot = layout.bodies()[body];
+    const BodyKind& kind = *assembly_->body_kinds()[slot.kind];
+    const Range own{slot.slot, slot.slot + 1};
+    std::vector<double> delta(slot.v_size, 0.0);
+    const auto stand = [&] {
+      kind.advance(own, state_.q.data() + slot.q, delta.data(), moved.q.data() + slot.q);
+      if (slot.rotation != none) {
+        kind.rotations(own, moved.q.data() + slot.q, evaluation.rotation.data() + slot.rotation);
+      }
+    };
+    for (Index i = 0; i < slot.v_size; ++i) {
+      extrapolated_derivative(
+          [&](double step, VectorXd& forces) {
+            // Turned by an angle, moved by a part of the body's own length.
+            delta[i] = step;
+            stand();
+            forces.setZero(size);
+            for (const std::size_t j : joints_of_body_[body]) {
+              const Joint& joint = joints_[j];
+              const JointKind& joint_kind = *assembly_->joint_kinds()[joint.kind];
+              joint_kind.evaluate(view, joint.slot, rows.data() + joint.row);
+              for (Index row = joint.row; row < joint.row + joint_kind.rows(); ++row) {
+                rows[row].add_transposed(multiplier(at(row)), forces.data());
+              }
+            }
+            for (const std::size_t j : supports_of_body_[body]) {
+              const Support& support = supports_[j];
+              finder_.contact(support.pair, view.state, evaluation, places_, contact);
+              for (int row = 0; row < support.rows; ++row) {
+                contact.add_transposed(row, multiplier(at(support.row) + row), forces.data());
+              }
+            }
+          },
+          column);
+      delta[i] = 0.0;
+      by_position.col(at(slot.v + i)) += column;
+    }
+    stand();
+  }
+  const VectorXd inverse = lengths_.cwiseInverse();
+  by_position = inverse.asDiagonal() * by_position * inverse.asDiagonal();
+  by_velocity = inverse.asDiagonal() * by_velocity * inverse.asDiagonal();
+}
+
+MatrixXd RestingModel::mass() const {
+  const Eigen::Index size = lengths_.size();
+  MatrixXd mass = MatrixXd::Zero(size, size);
+  for (const BodySlot slot : assembly_->layout()->bodies()) {
+    const BodyKind& kind = *assembly_->body_kinds()[slot.kind];
+    std::vector<double> unit(slot.v_size, 0.0), image(slot.v_size);
+    for (Index column = 0; column < slot.v_size; ++column) {
+      unit[column] = 1.0;
+      kind.apply_mass({slot.slot, slot.slot + 1}, unit.data(), image.data());
+      unit[column] = 0.0;
+      for (Index row = 0; row < slot.v_size; ++row) {
+        const Eigen::Index r = at(slot.v + row), c = at(slot.v + column);
+        mass(r, c) = image[row] / (lengths_[r] * lengths_[c]);
+      }
+    }
+  }
+  return mass;
+}
+
+}  // namespace carom
