@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace carom {
 
@@ -182,21 +183,28 @@ void IslandDriver::take_step() {
   landed_at_ = never;
   pending_ = true;
   told_ = false;
+  const auto end_here = [&](const char* why) {
+    jam_ = why;
+    next_ = {time_, Guard::jam, 0};
+    landed_at_ = time_;
+    landed_ = y_;
+  };
   do {
     try {
       flow_->advance(std::min(longest_step(), until_break));
     } catch (const SolverError& error) {
       if (!find_jam()) fail(error.what(), {});
-      jam_ = error.what();
-      next_ = {time_, Guard::jam, 0};
-      landed_at_ = time_;
-      landed_ = y_;
+      end_here(error.what());
       return;
     }
     if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
     sample_step();
     landed_at_ = never;
     next_ = find_event();
+    if (stands_still(next_) && find_jam()) {
+      end_here("steps have no length any more");
+      return;
+    }
     // Forces that were infinite within the step: nearer to there they are seen to grow.
     constexpr double nearer = 0.25;
     if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
@@ -220,6 +228,14 @@ bool IslandDriver::settle(DriverNews& news) {
   bool changed = false;
   news.flows[EnergyFlow::projection] += motion_.project(y_, changed, news.shift);
   return changed;
+}
+
+/// What has stopped slipping stands, and with it what can only move with it.
+void IslandDriver::settle_stopped(DriverNews& news) {
+  ContactMode& mode = motion_.closed().list()[next_.which].mode;
+  const ContactMode before = std::exchange(mode, ContactMode::stick);
+  settle(news);
+  mode = before;
 }
 
 void IslandDriver::go_to_event(DriverNews& news) {
@@ -266,6 +282,8 @@ void IslandDriver::go_to_event(DriverNews& news) {
             motion_.follow_jump(y_, options_.capture_speed, news.flows[EnergyFlow::external]);
   if (jumped_) {
     list_impulses(news);
+  } else if (next_.guard == Guard::slip) {
+    settle_stopped(news);
   } else {
     settle(news);
   }

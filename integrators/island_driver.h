@@ -122,12 +122,15 @@ private:
   };
   [[nodiscard]] double level(std::size_t pair) const;
   [[nodiscard]] double slip_level(std::size_t closed) const;
+  [[nodiscard]] double force_level(std::size_t body) const;
   [[nodiscard]] GapLook look_at_gap(std::size_t pair, double time);
   [[nodiscard]] double first_closing(std::size_t pair, const GapLook& from, const GapLook& to, int depth);
   [[nodiscard]] Found locate(const Found& rough);
+  [[nodiscard]] bool stands_still(const Found& found) const;
   void go_to_event(DriverNews& news);
   void accept_step(DriverNews& news);
   bool settle(DriverNews& news);
+  void settle_stopped(DriverNews& news);
   [[nodiscard]] bool at_rest();
 
   // Events.
@@ -196,7 +199,8 @@ private:
   double landed_at_ = 0.0;               // where the event was found,
   std::vector<double> landed_;           // and y there
   std::vector<char> closed_at_;          // by pair
-  std::vector<char> passed_over_;        // by pair: false alarms within the step
+  std::vector<char> passed_over_;        // by pair: false alarms within the step,
+  std::vector<char> forces_passed_;      // and by body that touches
   double velocity_scale_ = 0.0;          // of the island at the start of the phase [m/s]
   double force_scale_ = 0.0;             // [N]
   double gap_noise_ = 0.0;               // rounding of gaps [m]

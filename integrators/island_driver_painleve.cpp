@@ -52,7 +52,9 @@ bool IslandDriver::has_jammed() const {
 
 /// Modes of the candidates collected. What is in front of p = 0 cannot be told from what is behind where
 /// time, or the contact problem, has no numbers in between. Then friction is taken for as much larger as it
-/// takes to be behind.
+/// takes to be behind. Where that decides nothing, and forces are neither found nor excluded, there are none
+/// to keep what slides: closed contacts in line stand there within rounding of a singular position, on one
+/// side of which there are none and on the other ones without bound.
 Decision IslandDriver::decide_candidates(std::size_t first, std::size_t last) {
   std::vector<Candidate>& candidates = work_->candidates;
   const auto decide = [&] {
@@ -77,7 +79,14 @@ Decision IslandDriver::decide_candidates(std::size_t first, std::size_t last) {
     jammed_.clear();
     return Decision::impossible;
   }
-  if (!jammed) return Decision::failed;
+  collect_candidates(first, last);
+  if (!jammed) {
+    const bool slides = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+      return candidate.slip != 0.0 && !candidate.at.rubs();
+    });
+    const Decision decision = decide();
+    return decision == Decision::failed && slides ? Decision::impossible : decision;
+  }
   std::vector<std::string> names;
   names.reserve(candidates.size());
   for (const Candidate& candidate : candidates) names.push_back(finder_->name(candidate.at.key));

@@ -17,6 +17,10 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
 constexpr double force_rounding = 1e-11;
 
+// Where closed contacts follow from each other, forces just decided may lie this many times their rounding
+// below zero.
+constexpr double magnified_rounding = 16.0;
+
 // Numbers of kinks this small against their size over the step are zero.
 constexpr double kink_rounding = 1e-13;
 
@@ -87,11 +91,19 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
 
 IslandDriver::Found IslandDriver::find_event() {
   passed_over_.assign(end_.gaps.size(), 0);
+  forces_passed_.assign(end_.margins.size(), 0);
   for (;;) {
     const Found rough = foretell();
     if (rough.guard == Guard::nothing) return rough;
     const Found found = locate(rough);
-    if (rough.guard != Guard::gap || found.guard != Guard::restart) return found;
+    if (found.guard != Guard::restart) return found;
+    // A false alarm of a force at the very start: within such a step p = W_nn - s mu W_nt passes zero
+    // together with the load, and the flow does not know the force in between.
+    if (rough.guard == Guard::force && !(found.time > flow_->begin()) && !find_jam()) {
+      forces_passed_[rough.which] = 1;
+      continue;
+    }
+    if (rough.guard != Guard::gap) return found;
     // A false alarm of a gap that opens: in steps of low order there would be one after each restart.
     const StepPolynomial::End &start = start_.gaps[rough.which], &end = end_.gaps[rough.which];
     const bool opens =
@@ -99,6 +111,13 @@ IslandDriver::Found IslandDriver::find_event() {
     if (!opens) return found;
     passed_over_[rough.which] = 1;
   }
+}
+
+/// True of a false alarm from which nothing is gained by going on anew.
+bool IslandDriver::stands_still(const Found& found) const {
+  constexpr double no_progress = 0.01;  // of the step
+  const double begin = flow_->begin();
+  return found.guard == Guard::restart && found.time - begin <= no_progress * (flow_->end() - begin);
 }
 
 /// The first event by the polynomials.
@@ -130,10 +149,11 @@ IslandDriver::Found IslandDriver::foretell() {
     take(slip.first_fall(), Guard::slip, i);
   }
   for (std::size_t i = 0; i < end_.margins.size(); ++i) {
+    if (forces_passed_[i] != 0) continue;
     std::array<double, samples> values{};
     for (std::size_t k = 0; k < samples; ++k) values[k] = between_[k].margins[i];
     const double noise = std::max(start_.noises[i], end_.noises[i]);
-    take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::force, i);
+    take(StepPolynomial::through(values).raised(noise - force_level(i)).first_fall(), Guard::force, i);
   }
   for (std::size_t i = 0; i < end_.kinks.size(); ++i) {
     std::array<double, samples> values{};
@@ -172,6 +192,11 @@ double IslandDriver::level(std::size_t pair) const { return std::min(0.0, start_
 /// Likewise of sliding: what has just turned round may still creep the other way after a projection.
 double IslandDriver::slip_level(std::size_t closed) const {
   return std::min(0.0, start_.slips[closed].value);
+}
+
+/// And of forces, if by little.
+double IslandDriver::force_level(std::size_t body) const {
+  return std::clamp(start_.margins[body], -magnified_rounding * start_.noises[body], 0.0);
 }
 
 /// When a gap closes first. Between two looks it is taken for a polynomial of degree 5; where that might hide
@@ -219,8 +244,8 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // something below zero was seen
   if (rough.guard == Guard::force) {
-    f_low = start_.margins[rough.which];
-    f_high = end_.margins[rough.which];
+    f_low = start_.margins[rough.which] - force_level(rough.which);
+    f_high = end_.margins[rough.which] - force_level(rough.which);
     below = f_high < 0.0;
   } else if (rough.guard == Guard::kink) {
     f_low = rough.sign * start_.kinks[rough.which];
@@ -250,7 +275,7 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
       noise = 0.25 * kink_rounding * std::max(std::abs(f_low), std::abs(f_high));
     } else {
       motion_.closed().margins(work_->margins);
-      value = work_->margins[rough.which].margin;
+      value = work_->margins[rough.which].margin - force_level(rough.which);
       noise = std::max(start_.noises[rough.which], end_.noises[rough.which]);
     }
     // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.

@@ -72,11 +72,10 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
   cluster_.set_free_velocity(acceleration);
   const bool solved = motion.solve(cluster_, contacts_, JointLevel::acceleration, chain);
   const ContactReport& report = cluster_.report();
-  if (report.outcome == Outcome::no_solution) {
+  if (!solved || report.outcome == Outcome::no_solution) {
     name_culprit(candidates);
-    return Decision::impossible;
+    return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
-  if (!solved) return Decision::failed;
   Decision decision = Decision::made;
   read_modes(candidates, cluster_.impulses());
   if (report.outcome == Outcome::several_solutions) {

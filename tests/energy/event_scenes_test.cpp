@@ -41,13 +41,13 @@ bool has_no_solution(const SolverError& error) {
          message.find("an impact is not solved (no solution)") != std::string::npos;
 }
 
-// Open questions, of the scenes 0 to 59,999 (their accounts close to 1e-6 at the default tolerance, all but a
-// dozen to 1e-7, which close to 5e-9 at the tight one):
-//   12873, 13431: two corners of a box at rest but for 1e-5 m/s, one of them pushed into its wall by the
-//   force on the other; an error says that the problem of the accelerations is not solved.
-//   22935, 32129: two particles at one place, joined by a spring that is longer; its force has no direction,
-//   and what happens hangs on rounding.
-constexpr std::array<std::uint64_t, 4> open_questions{12873, 13431, 22935, 32129};
+// Open questions, of the scenes 0 to 179,999 (their accounts close to 1.4e-6 at the default tolerance, all
+// but three dozen to 1e-7, which close to 1e-8 at the tight one):
+//   22935, 32129, 82959, 85944, 95909: two particles at one place, joined by a spring that is longer; its
+//   force has no direction, and what happens hangs on rounding. 146150, 147131: an impact of three corners,
+//   two of them almost without friction, that has no solution, which is not proved: the error says not
+//   solved.
+constexpr std::array<std::uint64_t, 7> open_questions{22935, 32129, 82959, 85944, 95909, 146150, 147131};
 
 void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_residual, Findings& findings) {
   const std::string name = "scene " + std::to_string(seed) + ": ";
@@ -204,6 +204,17 @@ TEST(EventScenes, WedgedContactsShareTheirForces) { expect_sound_scenes({21881, 
 
 // Of two contacts that break loose one does not slip once the friction of the other has dropped.
 TEST(EventScenes, WhatBreaksLooseTogether) { expect_sound_scenes({41206}); }
+
+// A corner that slides straight below one that sticks: forces grow without bound on one side of that place,
+// there are none on the other, and rounding does not tell which it is.
+TEST(EventScenes, CornersInLineAtASingularPosition) { expect_sound_scenes({12873, 13431}); }
+
+// Sliding passes the place where force is nothing over nothing (Painleve's p and the load are zero at once).
+TEST(EventScenes, ForcesThatAreNothingOverNothing) { expect_sound_scenes({39039, 132523}); }
+
+// Of two corners in almost singular positions one was seen to stop while the other one, which can only move
+// with it, seemed to slide on.
+TEST(EventScenes, WhatMovesTogetherStopsTogether) { expect_sound_scenes({101074, 154292}); }
 
 // A corner was stopped at the price of pushing another one off, which came back at once.
 TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({17418, 36733}); }
