@@ -20,3 +20,10 @@ endif()
 
 list(JOIN carom_sundials_components " " carom_sundials_list)
 string(APPEND carom_private_packages "find_dependency(SUNDIALS COMPONENTS ${carom_sundials_list})\n")
+
+# A SUNDIALS built with MPI (Debian 13) names MPI's library for C, which CMake finds where that is enabled only.
+if(TARGET MPI::MPI_CXX AND NOT TARGET MPI::MPI_C)
+  enable_language(C)
+  find_package(MPI REQUIRED COMPONENTS C CXX)
+  string(APPEND carom_private_packages "enable_language(C)\nfind_dependency(MPI COMPONENTS C CXX)\n")
+endif()
