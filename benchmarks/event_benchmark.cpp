@@ -170,7 +170,8 @@ void bounce_by_hand(benchmark::State& state) {
   ByHand body;
   for (auto _ : state) {
     body.run(bouncing_end);
-    benchmark::DoNotOptimize(body.motion());
+    auto motion = body.motion();
+    benchmark::DoNotOptimize(motion);
   }
   using benchmark::Counter;
   state.counters["per_event"] =

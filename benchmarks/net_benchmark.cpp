@@ -148,7 +148,7 @@ void demand_equal_motion(int k) {
 void plain_step(benchmark::State& state) {
   const int k = static_cast<int>(state.range(0));
   static const bool checked = (demand_equal_motion(10), true);
-  benchmark::DoNotOptimize(checked);
+  static_cast<void>(checked);
   const auto settled = [&] {
     PlainNet net(net_of(Phase::working, k));
     for (int i = 0; i < settling; ++i) benchmarks::plain_step(net, scenes::net_step, tolerance);
