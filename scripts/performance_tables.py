@@ -268,7 +268,8 @@ def stiff_table(flow):
     return table(["0.02 s of motion", "unknowns", "steps", "ms", "ns per step and unknown"], rows)
 
 
-def machine(context, compiler, began):
+def machine(context, compiler, began, idle=1.2):
+    """What was measured on. Up to `idle` is the load of the benchmark before."""
     cpu = "unknown processor"
     if Path("/proc/cpuinfo").exists():
         found = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text())
@@ -277,7 +278,7 @@ def machine(context, compiler, began):
     load = context.get("load_avg", [0.0])[0]
     return (f"{cpu}, {os.cpu_count()} cores; {compiler}, Release. Measured {context['date'][:10]}; "
             f"load of the machine when {began} began: {load:.1f}."
-            + (" The machine was busy: a run on an idle one is due." if load > 0.5 else ""))
+            + (" The machine was busy: a run on an idle one is due." if load > idle else ""))
 
 
 def main():
@@ -293,7 +294,7 @@ def main():
     joint_context, joint = load(folder, "joint")
     parts = {}
     if net:
-        parts |= {"machine": machine(context, compiler, "the net"), "net": net_table(net), "second": second_table(net)}
+        parts |= {"machine": machine(context, compiler, "the net", idle=0.5), "net": net_table(net), "second": second_table(net)}
     if net and impact and tables:
         parts["aims"] = aims_table(net, impact, tables)
     if impact:
