@@ -14,7 +14,6 @@
 namespace {
 
 using namespace joint_scenes;
-using carom_test::events_of;
 
 Scene driven_slider_crank() {
   const double w = 150.0;

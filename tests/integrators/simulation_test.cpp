@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -26,8 +25,6 @@ using carom_test::bits_of;
 using carom_test::ledger_closes;
 using carom_test::motion_bits;
 using carom_test::pair_scene;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Simulation pair_run(double step = 1e-3) { return {pair_scene(), TimeStepping{.step = step}}; }
 
