@@ -84,8 +84,10 @@ Decision IslandDriver::decide_candidates(std::size_t first, std::size_t last) {
     const bool slides = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
       return candidate.slip != 0.0 && !candidate.at.rubs();
     });
+    // Of more contacts not all modes have been looked at.
+    const bool all_seen = candidates.size() <= static_cast<std::size_t>(enumeration_groups);
     const Decision decision = decide();
-    return decision == Decision::failed && slides ? Decision::impossible : decision;
+    return decision == Decision::failed && slides && all_seen ? Decision::impossible : decision;
   }
   std::vector<std::string> names;
   names.reserve(candidates.size());
