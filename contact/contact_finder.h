@@ -6,6 +6,7 @@
 
 #include <carom/contact/contact.h>
 #include <carom/core/assembly.h>
+#include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 #include <carom/core/space.h>
 
@@ -49,8 +50,8 @@ public:
   /// Says where the moving obstacles are at a time; does nothing if `places` already says so for this finder.
   /// Throws SolverError, naming the obstacle, where a prescribed motion is not finite.
   void place(double time, ObstaclePlaces& places) const;
-  /// Writes the times at which motions of obstacles have jumps or kinks, ascending [s]. Made at each call.
-  [[nodiscard]] std::vector<double> breaks() const;
+  /// Times at which motions of obstacles have jumps or kinks, in the order of obstacles. Made at each call.
+  [[nodiscard]] std::vector<Discontinuity> breaks() const;
 
   /// Appends the contacts of one island whose gap is <= `margin` [m], ordered by body, then feature, then
   /// obstacle. The position group of `evaluation` must be up to date. Places obstacles by itself.

@@ -3,7 +3,6 @@
 #include <carom/contact/contact_finder.h>
 #include <carom/contact/prescribed_motion.h>
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -38,12 +37,16 @@ void ContactFinder::place(double time, ObstaclePlaces& places) const {
   places.time_ = time;
 }
 
-std::vector<double> ContactFinder::breaks() const {
+std::vector<Discontinuity> ContactFinder::breaks() const {
+  std::vector<Discontinuity> all;
   std::vector<double> times;
-  for (const Obstacle& obstacle : obstacles_) obstacle.kind->breaks(obstacle.slot, times);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
+  for (const Obstacle& obstacle : obstacles_) {
+    times.clear();
+    obstacle.kind->breaks(obstacle.slot, times);
+    const ObstacleId id{obstacle.serial, assembly_->system().token()};
+    for (const double time : times) all.push_back({.time = time, .obstacle = id});
+  }
+  return all;
 }
 
 void ContactFinder::fill_motion(const BodySlot& body, double radius, const Vec<2>& arm,

@@ -71,7 +71,7 @@ carom::State run(const std::string& title, const carom::Mode& mode, const std::f
   if (!events.empty()) simulation.write_events(events.string());
   for (const carom::EventRecord& event : simulation.events()) {
     std::cout << "  t = " << std::setw(9) << event.time << " s  " << std::setw(8) << to_string(event.kind)
-              << "  " << simulation.name(event.contact) << " (" << to_string(event.mode) << ")\n";
+              << "  " << simulation.name(event) << " (" << to_string(event.mode) << ")\n";
   }
   std::cout << simulation.energy() << "\n";
   return simulation.state();

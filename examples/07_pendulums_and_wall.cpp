@@ -74,7 +74,7 @@ void run(const std::string& title, int links, const std::filesystem::path& folde
   for (const EventRecord& event : simulation.events()) {
     if (event.kind != EventKind::impact) continue;
     if (++impacts > shown) continue;
-    std::cout << "  t = " << std::setw(9) << event.time << " s  " << simulation.name(event.contact) << ": "
+    std::cout << "  t = " << std::setw(9) << event.time << " s  " << simulation.name(event) << ": "
               << event.velocity_before[0] << " -> " << event.velocity_after[0] << " m/s, impulse "
               << event.impulse[0] << " N s\n";
   }

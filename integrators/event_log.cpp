@@ -25,6 +25,26 @@ std::string_view to_string(EventKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
+namespace {
+
+/// "cable 'rope' between ground and particle 'ball'", "applied force 'wind' on particle 'ball'".
+std::string name_with_bodies(const System& system, ElementId element) {
+  std::string text = system.name(element);
+  if (!system.contains(element)) return text;
+  const auto place = system.force_kinds().place(element.serial);
+  std::vector<BodyId> bodies;
+  system.force_kinds().entries()[place.entry].kind->ends(place.slot, bodies);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool last = i + 1 == bodies.size();
+    const char* const joined = last ? " and " : ", ";
+    text += i > 0 ? joined : bodies.size() == 1 ? " on " : " between ";
+    text += system.name(bodies[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
 void write_events(std::ostream& out, const std::vector<EventRecord>& events,
                   const std::function<std::string(const EventRecord&)>& name_of) {
   out << "time [s],kind,part,normal velocity before [m/s],tangential velocity before [m/s],"
@@ -56,12 +76,16 @@ void write_events(std::ostream& out, const std::vector<EventRecord>& events,
   }
 }
 
+std::string Simulation::name(const EventRecord& event) const {
+  const System& model = system();
+  if (event.element.valid()) return name_with_bodies(model, event.element);
+  if (event.joint.valid()) return model.name(event.joint);
+  return event.body.valid() ? name(event.contact) : model.name(event.obstacle);
+}
+
 void Simulation::write_events(const std::string& path) const {
   std::ostringstream text;
-  carom::write_events(text, events(), [this](const EventRecord& event) {
-    if (event.element.valid()) return system().name(event.element);
-    return event.body.valid() ? name(event.contact) : std::string();
-  });
+  carom::write_events(text, events(), [this](const EventRecord& event) { return name(event); });
   write_file(path, text.str(), "events");
 }
 

@@ -40,14 +40,16 @@ inline constexpr std::size_t event_kind_count = 11;
 /// Name of a kind: "impact", "lift-off", ...
 [[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);
 
-/// One event, of one contact (or, for a kink, of one element). Directions: normal first, then tangential.
+/// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
+/// driver or obstacle. Simulation::name() names the part. Directions: normal first, then tangential.
 struct EventRecord {
   double time = 0.0;                        ///< [s]
   EventKind kind = EventKind::impact;       ///< what happened
   ContactKey contact{};                     ///< of a contact
   BodyId body{};                            ///< its body
-  ObstacleId obstacle{};                    ///< what it touches
-  ElementId element{};                      ///< of a kink
+  ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
+  ElementId element{};                      ///< of a kink, or whose law of time jumps
+  JointId joint{};                          ///< driver whose law of time jumps
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts

@@ -177,9 +177,9 @@ double IslandDriver::longest_step() const {
 }
 
 void IslandDriver::take_step() {
-  const std::vector<double>& breaks = motion_.breaks();
-  const auto due = std::upper_bound(breaks.begin(), breaks.end(), time_);
-  const double until_break = due == breaks.end() ? never : *due - time_;
+  const std::vector<Discontinuity>& breaks = motion_.breaks();
+  const auto due = std::ranges::upper_bound(breaks, time_, {}, &Discontinuity::time);
+  const double until_break = due == breaks.end() ? never : due->time - time_;
   landed_at_ = never;
   pending_ = true;
   told_ = false;
@@ -209,8 +209,9 @@ void IslandDriver::take_step() {
     constexpr double nearer = 0.25;
     if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
   } while (next_.guard == Guard::jam);
-  const bool at_break = until_break < never && flow_->end() >= *due - 2.0 * epsilon * std::abs(*due);
-  if (next_.guard == Guard::nothing && at_break) next_ = {*due, Guard::law, 0};
+  const bool at_break =
+      until_break < never && flow_->end() >= due->time - 2.0 * epsilon * std::abs(due->time);
+  if (next_.guard == Guard::nothing && at_break) next_ = {due->time, Guard::law, 0};
 }
 
 void IslandDriver::accept_step(DriverNews& news) {
@@ -270,10 +271,16 @@ void IslandDriver::go_to_event(DriverNews& news) {
       }
     }
   }
-  if (next_.guard == Guard::law || next_.guard == Guard::kink) {
-    const bool kink = next_.guard == Guard::kink;
-    EventRecord& event = tell(kink ? EventKind::kink : EventKind::law_break, {}, news);
-    if (kink) event.element = motion_.kink_element(next_.which);
+  if (next_.guard == Guard::kink) {
+    tell(EventKind::kink, {}, news).element = motion_.kink_element(next_.which);
+  }
+  if (next_.guard == Guard::law) {
+    for (const Discontinuity& at : discontinuities_at(motion_.breaks(), time_)) {
+      EventRecord& event = tell(EventKind::law_break, {}, news);
+      event.element = at.element;
+      event.joint = at.joint;
+      event.obstacle = at.obstacle;
+    }
   }
   stopped_ = next_.guard == Guard::slip ? closed[next_.which].pair : ContactPair{};
   // Contacts push but do not pull: where the rate of a driver jumps, what was closed may part, or be hit.

@@ -31,6 +31,7 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       tolerances_(size_, options.absolute_tolerance),
       pairs_(finder.pairs(island)),
       joints_(assembly, island) {
+  std::vector<double> times;
   if (!joints_.empty()) {
     closed_.bind(assembly, joints_);
     pressure_ = JointPressure(assembly, island, joints_);
@@ -44,7 +45,10 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
       const Range joints = assembly.joints(island, kind);
       for (Index joint = joints.begin; joint < joints.end; ++joint) {
-        assembly.joint_kinds()[kind]->breaks(joint, breaks_);
+        times.clear();
+        assembly.joint_kinds()[kind]->breaks(joint, times);
+        for (const double time : times)
+          breaks_.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
       }
     }
   }
@@ -58,16 +62,20 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
         only_fields_ && elements.is_field() && !elements.books_dissipative() && !elements.depends_on_time();
     const Range acting = assembly.elements(island, kind);
     for (Index element = acting.begin; element < acting.end; ++element) {
-      elements.breaks(element, breaks_);
+      times.clear();
+      elements.breaks(element, times);
+      for (const double time : times)
+        breaks_.push_back({.time = time, .element = assembly.element_id(kind, element)});
       kink_elements_.insert(kink_elements_.end(), elements.guard_size(), assembly.element_id(kind, element));
     }
   }
   if (!pairs_.empty() && finder.has_moving_obstacles()) {
     depends_on_time_ = true;
-    const std::vector<double> of_obstacles = finder.breaks();
+    const std::vector<Discontinuity> of_obstacles = finder.breaks();
     breaks_.insert(breaks_.end(), of_obstacles.begin(), of_obstacles.end());
   }
-  std::sort(breaks_.begin(), breaks_.end());
+  std::ranges::stable_sort(breaks_, {}, &Discontinuity::time);
+  breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
   double mass = 0.0;
   const Island& all = assembly.islands()[island];
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {

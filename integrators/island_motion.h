@@ -129,8 +129,8 @@ public:
   [[nodiscard]] ElementId kink_element(std::size_t kink) const { return kink_elements_[kink]; }
   /// How many there are.
   [[nodiscard]] std::size_t kink_count() const { return kink_elements_.size(); }
-  /// Times at which laws of the island's elements and of obstacles jump, ascending [s].
-  [[nodiscard]] const std::vector<double>& breaks() const { return breaks_; }
+  /// Where laws of the island's elements and drivers and of obstacles jump, in ascending order of times.
+  [[nodiscard]] const std::vector<Discontinuity>& breaks() const { return breaks_; }
   /// True if nothing but uniform fields acts: places are polynomials of time but for turning.
   [[nodiscard]] bool flies_freely() const {
     return only_fields_ && joints_.empty() && closed_.list().empty();
@@ -176,7 +176,7 @@ private:
   std::vector<ContactChange> contact_changes_;
   std::vector<Index> row_multipliers_;  // unknowns of the Jacobian, by row of joints_; none: without force
   std::vector<ElementId> kink_elements_;
-  std::vector<double> breaks_;
+  std::vector<Discontinuity> breaks_;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false, only_fields_ = true;
 };
 

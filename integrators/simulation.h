@@ -82,7 +82,7 @@ public:
   [[nodiscard]] const Assembly& assembly() const;      ///< the model, made ready to run
   [[nodiscard]] const State& state() const;            ///< the state
   [[nodiscard]] double time() const;                   ///< [s]
-  [[nodiscard]] const EnergyLedger& energy() const;    ///< the energy account
+  [[nodiscard]] const EnergyLedger& energy() const;    ///< the energy ledger
   [[nodiscard]] const StepReport& report() const;      ///< what happened in the last step
   [[nodiscard]] const Statistics& statistics() const;  ///< counts since the start
   /// Counts of the contact solvers since the start, over all sweeps of accepted steps.
@@ -98,6 +98,9 @@ public:
 
   /// "particle 'lower' on half-plane #0".
   [[nodiscard]] std::string name(const ContactKey& key) const;
+  /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
+  /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps.
+  [[nodiscard]] std::string name(const EventRecord& event) const;
 
   /// Where worthwhile news is written; quiet until given a sink.
   [[nodiscard]] Log& log();

@@ -33,7 +33,7 @@ void drop_a_ball(std::ostream& out) {
   Simulation simulation(system, EventDriven{});
   simulation.run_until(2.0);
   for (const EventRecord& event : simulation.events()) {
-    out << event.time << " s: " << to_string(event.kind) << " of " << simulation.name(event.contact) << ", "
+    out << event.time << " s: " << to_string(event.kind) << " of " << simulation.name(event) << ", "
         << event.velocity_before[0] << " -> " << event.velocity_after[0] << " m/s\n";
   }
   out << simulation.energy();
@@ -147,7 +147,7 @@ void knock_at_the_wall(std::ostream& out) {
   Simulation simulation(slider_crank(), EventDriven{});
   simulation.run_until(3.0);
   for (const EventRecord& event : simulation.events()) {
-    out << event.time << " s: " << to_string(event.kind) << " of " << simulation.name(event.contact);
+    out << event.time << " s: " << to_string(event.kind) << " of " << simulation.name(event);
     if (event.kind == EventKind::impact) out << ", P = " << event.impulse[0] << " N s";
     out << "\n";
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -65,6 +66,47 @@ TEST(EventLog, WritesALineForEveryEvent) {
   }
   EXPECT_EQ(lines, simulation.events().size());
   EXPECT_THROW(simulation.write_events(folder / "missing/events.csv"), FileError);
+}
+
+// Events without a contact are named by the part whose loads or motion switched, with the bodies it acts on.
+TEST(EventLog, NamesThePartOfEveryEvent) {
+  System system;
+  const BodyId ball = system.add(Particle{.mass = 1.0, .velocity = {1.0, 0.0}}, "ball");
+  system.add(Cable{.from = {ground, {-0.5, 0.0}}, .to = ball, .stiffness = 100.0, .free_length = 0.7},
+             "rope");
+  const std::vector<double> both{0.3};
+  system.add(AppliedForce{.on = ball, .force = [](double) { return Vec<2>(0.0, 0.0); }, .breaks = both},
+             "wind");
+  const BodyId bar = system.add(
+      RigidBody{.mass = rod(1.0, 1.0), .position = {0.5, 5.0}, .velocity = {0.0, 0.05}, .spin = 0.1}, "bar");
+  const JointId pin = system.add(Revolute{.from = {ground, {0.0, 5.0}}, .to = {bar, {-0.5, 0.0}}}, "pin");
+  system.add(Driver{.joint = pin, .position = [](double t) { return 0.1 * t; }, .breaks = {0.4}}, "crank");
+  system.add(Motor{.joint = pin, .torque = [](double, double, double) { return 0.0; }, .breaks = {0.4}});
+  HalfPlane table{.point = {0.0, -9.0}, .normal = {0.0, 1.0}};
+  table.motion.displacement = [](double) { return Vec<2>(0.0, 0.0); };
+  table.motion.breaks = both;
+  system.add(table, Surface{.friction = 0.0, .normal_restitution = 0.0}, "table");
+
+  const carom_test::TemporaryFolder folder;
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(0.6);
+  simulation.write_events(folder / "events.csv");
+  const std::string table_of_events = folder.text_of("events.csv");
+  std::map<std::string, int> named;
+  for (const EventRecord& event : simulation.events()) {
+    const std::string name = simulation.name(event);
+    EXPECT_EQ(name.find("never given"), std::string::npos) << to_string(event.kind);
+    EXPECT_NE(table_of_events.find("," + name + ","), std::string::npos) << name;
+    ++named[std::string(to_string(event.kind)) + " of " + name];
+  }
+  const std::map<std::string, int> expected{
+      {"kink of cable 'rope' between ground and particle 'ball'", 2},
+      {"law break of applied force 'wind' on particle 'ball'", 1},
+      {"law break of driver 'crank'", 1},
+      {"law break of motor #2 between ground and rigid body 'bar'", 1},
+      {"law break of half-plane 'table'", 1},
+  };
+  EXPECT_EQ(named, expected);
 }
 
 TEST(EventLog, RecordsNothingWhereNotAskedTo) {

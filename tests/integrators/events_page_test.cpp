@@ -34,7 +34,7 @@ void tell_what_happens(std::ostream& out, const std::string& file) {
   Simulation simulation(bouncing_bar(), EventDriven{.relative_tolerance = 1e-10, .interval = 0.02});
   simulation.run_until(4.0);
   for (const EventRecord& event : simulation.events()) {
-    out << event.time << " s: " << to_string(event.kind) << ", " << simulation.name(event.contact) << ", "
+    out << event.time << " s: " << to_string(event.kind) << ", " << simulation.name(event) << ", "
         << to_string(event.mode) << ", P_n = " << event.impulse[0] << " N s\n";
   }
   out << simulation.energy();

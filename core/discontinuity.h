@@ -1,0 +1,29 @@
+#pragma once
+
+/// \file
+/// Times at which laws of time jump or have a kink, with the part whose law it is.
+
+#include <carom/core/ids.h>
+
+#include <algorithm>
+#include <span>
+
+namespace carom {
+
+/// A time at which a law of time is not smooth, as its part says (`breaks`). One of the identities is valid.
+struct Discontinuity {
+  double time = 0.0;      ///< [s]
+  ElementId element{};    ///< whose load jumps
+  JointId joint{};        ///< the driver whose prescribed coordinate jumps
+  ObstacleId obstacle{};  ///< whose prescribed motion jumps
+  friend bool operator==(const Discontinuity&, const Discontinuity&) = default;
+};
+
+/// Those at one time, of a list in ascending order of times.
+[[nodiscard]] inline std::span<const Discontinuity> discontinuities_at(std::span<const Discontinuity> list,
+                                                                       double time) {
+  const auto found = std::ranges::equal_range(list, time, {}, &Discontinuity::time);
+  return {found.begin(), found.end()};
+}
+
+}  // namespace carom
