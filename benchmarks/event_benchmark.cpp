@@ -1,6 +1,6 @@
 // The event-driven mode by its events: a disc that bounces without loss, beside a loop written by hand for
 // this purpose (classical Runge-Kutta of fixed step, the impact by Newton's method on the gap, its law in
-// closed form, without contacts, error control or energy account); balls that come to rest; contacts that
+// closed form, without contacts, error control or energy ledger); balls that come to rest; contacts that
 // last; a slider that sticks and slips. `per_event` in seconds; `steps` and `evaluations` per event.
 
 #include <carom/carom.h>
@@ -52,8 +52,7 @@ void time_run(benchmark::State& state, const Mode& mode, double end, Make&& make
     steps = static_cast<double>(simulation.statistics().flow_steps);
     evaluations = static_cast<double>(simulation.statistics().flow_evaluations);
     const double balance = std::abs(simulation.energy().residual());
-    if (!(balance <= 1e-5 * simulation.energy().scale()))
-      throw std::logic_error("the account does not close");
+    if (!(balance <= 1e-5 * simulation.energy().scale())) throw std::logic_error("the ledger does not close");
     state.ResumeTiming();
   }
   using benchmark::Counter;

@@ -250,7 +250,7 @@ void time_steps(benchmark::State& state, const carom::System& system, carom::Flo
     unknowns = static_cast<double>(simulation.state().q.size() + simulation.state().v.size());
     const double energy = simulation.energy().kinetic();
     if (!(energy > 0.0) || !(std::abs(simulation.energy().residual()) <= 1e-2 * energy)) {
-      throw std::logic_error("the energy account of stiff motion does not close");
+      throw std::logic_error("the energy ledger of stiff motion does not close");
     }
   }
   state.counters["unknowns"] = unknowns;

@@ -42,7 +42,7 @@ void plain_sweep_blocked_avx2(PlainNet& net, double step);
 void plain_sweep_blocked(PlainNet& net, double step);
 /// One step of the trapezoidal rule, sweeps until the next one would change positions and h times velocities
 /// by less than `tolerance` [m]; forces at its end are guessed from those of the last three. No contact, no
-/// energy account. Returns the sweeps.
+/// energy ledger. Returns the sweeps.
 int plain_step(PlainNet& net, double step, double tolerance);
 /// Whether this machine has AVX2 and FMA.
 bool has_avx2();

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The energy account. It is fed by what acted (impulses and forces), never by differences of the total, so
+/// The energy ledger. It is fed by what acted (impulses and forces), never by differences of the total, so
 /// that its residual checks the library's bookkeeping.
 
 #include <carom/core/compensated_sum.h>
@@ -17,7 +17,7 @@ namespace carom {
 ///     stored = initial + sum of gains - sum of losses + residual.
 class CAROM_API EnergyLedger {
 public:
-  /// Opens the account.
+  /// Opens the ledger.
   void open(const StoredEnergies& stored);
   /// Books a step: what flowed, and what is stored after it.
   void book(const EnergyFlows& flows, const StoredEnergies& stored);
@@ -32,13 +32,13 @@ public:
   [[nodiscard]] double potential() const { return stored_.potential(); }
   /// Kinetic and potential energy [J].
   [[nodiscard]] double total() const { return stored_.total(); }
-  /// Total when the account was opened [J].
+  /// Total when the ledger was opened [J].
   [[nodiscard]] double initial() const { return initial_; }
   /// What flowed by one way since the start [J].
   [[nodiscard]] double flow(EnergyFlow term) const { return flows_[static_cast<std::size_t>(term)].value(); }
   /// Sum of the losses since the start [J].
   [[nodiscard]] double lost() const;
-  /// What the account cannot explain [J]: zero but for rounding if the bookkeeping is right.
+  /// What the ledger cannot explain [J]: zero but for rounding if the bookkeeping is right.
   [[nodiscard]] double residual() const;
   /// The largest term that entered so far [J], by which the residual is judged.
   [[nodiscard]] double scale() const { return scale_; }
@@ -55,7 +55,7 @@ private:
   std::array<CompensatedSum, energy_flow_count> flows_{};
 };
 
-/// Writes the account as a table of terms that are not zero.
+/// Writes the ledger as a table of terms that are not zero.
 CAROM_API std::ostream& operator<<(std::ostream& out, const EnergyLedger& ledger);
 
 }  // namespace carom

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The terms of the energy account.
+/// The terms of the energy ledger.
 
 #include <carom/core/export.h>
 

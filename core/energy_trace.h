@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The trace of a run: the energy account, the momenta and the largest violation of a constraint at chosen
+/// The trace of a run: the energy ledger, the momenta and the largest violation of a constraint at chosen
 /// times, and the events between them. A value that can be saved, loaded and compared (trace_comparison.h).
 
 #include <carom/core/energy_term.h>
@@ -30,10 +30,10 @@ struct TraceRow {
   double time = 0.0;          ///< [s]
   StoredEnergies stored{};    ///< [J]
   double total = 0.0;         ///< sum of the stored energies [J]
-  double initial = 0.0;       ///< total when the account was opened [J]
-  EnergyFlows flows{};        ///< what flowed since the account was opened [J]
-  double residual = 0.0;      ///< what the account cannot explain [J]
-  double energy_scale = 0.0;  ///< largest term of the account so far [J]
+  double initial = 0.0;       ///< total when the ledger was opened [J]
+  EnergyFlows flows{};        ///< what flowed since the ledger was opened [J]
+  double residual = 0.0;      ///< what the ledger cannot explain [J]
+  double energy_scale = 0.0;  ///< largest term of the ledger so far [J]
 
   std::array<double, 3> momentum{};          ///< x, y, z (0 in the plane) [N s]
   double momentum_scale = 0.0;               ///< largest part that one body had [N s]

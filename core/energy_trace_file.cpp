@@ -45,7 +45,7 @@ Columns read_header(CsvReader& reader) {
     if (std::find(known.begin(), known.end(), i) != known.end()) continue;
     const bool twice = std::count(columns.names.begin(), columns.names.end(), columns.names[i]) > 1;
     reader.refuse("column '" + columns.names[i] + "' is " + (twice ? "there twice" : "unknown") +
-                  "; allowed: time, the terms of the energy account, momenta, errors, their scales, event");
+                  "; allowed: time, the terms of the energy ledger, momenta, errors, their scales, event");
   }
   return columns;
 }

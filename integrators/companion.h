@@ -39,7 +39,7 @@ struct Rhythm {
 
 /// With the state, all that a checkpoint holds (but `loads` where they follow from the state).
 struct Companion {
-  EnergyLedger ledger;                 ///< the energy account
+  EnergyLedger ledger;                 ///< the energy ledger
   Statistics statistics;               ///< counts since the start
   ChainStatistics contact_statistics;  ///< of the contact solvers in accepted steps
   std::vector<float>

@@ -15,7 +15,7 @@ namespace carom {
 class Simulation;
 
 /// Writes a row for the present state and one after every accepted step: time, positions, angles, velocities
-/// and spins of the chosen bodies, and every term of the energy account. The first line names the columns
+/// and spins of the chosen bodies, and every term of the energy ledger. The first line names the columns
 /// with their units, e.g. "time [s],lower.x [m],...,kinetic [J]".
 class CAROM_API CsvRecorder {
 public:
@@ -23,7 +23,7 @@ public:
   struct Options {
     std::vector<BodyId> bodies{};  ///< all bodies if empty
     int every_steps = 1;           ///< a row after every so many steps, >= 1
-    bool energies = true;          ///< the energy account too
+    bool energies = true;          ///< the energy ledger too
   };
 
   /// Records `simulation` into a file until the simulation ends. Throws FileError if it cannot be written,

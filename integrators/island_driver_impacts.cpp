@@ -1,4 +1,4 @@
-// Problem: impacts at one instant, where they come from and where they lead to: accumulations, the account.
+// Problem: impacts at one instant, where they come from and where they lead to: accumulations, the ledger.
 
 #include <carom/integrators/island_driver.h>
 
@@ -14,7 +14,7 @@ namespace {
 // e = 1 in a corner.
 constexpr int most_impacts_at_once = 10000;
 
-/// Line of the account for the work of an impact along a row of a contact.
+/// Line of the ledger for the work of an impact along a row of a contact.
 EnergyFlow line_of(EventKind kind, int row) {
   if (kind == EventKind::accumulation) return EnergyFlow::accumulation;
   if (kind == EventKind::impact_without_collision) return EnergyFlow::impact_without_collision;

@@ -1,4 +1,4 @@
-// Problem: tell the account, the report and the statistics what a step did, and make the step's end the
+// Problem: tell the ledger, the report and the statistics what a step did, and make the step's end the
 // state.
 
 #include <carom/core/pair.h>
@@ -62,7 +62,7 @@ void TimeStepper::book_couplings(Index island, const State& state, double step) 
     inside = with_step(island, state, step,
                        [&](const StepContext& at) { return internal_loss(assembly, island, at); });
   }
-  // Potentials enter the account unseen by any sweep.
+  // Potentials enter the ledger unseen by any sweep.
   if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(island, state, step);
   coupling_work_.add(total - dissipative - external + inside);
   flows_[EnergyFlow::dashpot] += inside - dissipative;

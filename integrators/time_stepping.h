@@ -58,7 +58,7 @@ struct TimeStepping {
   int max_sweeps = 200;  ///< sweeps after which the iteration is given up
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
-  /// about lines of the energy account only, never about the motion [m/s].
+  /// about lines of the energy ledger only, never about the motion [m/s].
   double capture_speed = 1e-2;
   /// Refuse, with a SolverError, a step in which contact adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;

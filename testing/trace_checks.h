@@ -24,8 +24,8 @@ struct Coordinates {
 
 /// Checks throw ModelError for a trace without rows, and for a tolerance that is negative or not finite.
 
-/// In every row, the residual of the account is at most `relative` times the largest term so far; both the
-/// residual that the account gave and the one that the recorded terms leave, which costs some 20 roundings
+/// In every row, the residual of the ledger is at most `relative` times the largest term so far; both the
+/// residual that the ledger gave and the one that the recorded terms leave, which costs some 20 roundings
 /// more. Rounding of a run is at most 1e3 eps = 2.2e-13.
 [[nodiscard]] Verdict check_ledger_closes(const EnergyTrace& trace, double relative);
 

@@ -74,7 +74,7 @@ void where_did_it_go(std::ostream& out, const EnergyLedger& energy) {
   out << struck << " J of " << energy.initial() << " J were lost in impacts, "
       << energy.flow(EnergyFlow::sliding) << " J in sliding\n";
   if (std::abs(energy.residual()) > 1e-12 * energy.scale()) {  // in time stepping
-    throw std::logic_error("the account does not close");
+    throw std::logic_error("the ledger does not close");
   }
 }
 

@@ -79,7 +79,7 @@ int main(int count, char** arguments) {
   const EnergyLedger& energy = simulation.energy();
   expect(simulation.state().position(lower).y() > -0.02, "the floor holds");
   expect(energy.total() < energy.initial(), "the impact takes energy");
-  expect(std::abs(energy.residual()) < 1e-10 * energy.scale(), "the energy account closes");
+  expect(std::abs(energy.residual()) < 1e-10 * energy.scale(), "the energy ledger closes");
 
   if (count > 1) {
     ContactProblem problem;  // a particle strikes a floor

@@ -1,4 +1,4 @@
-// The energy account of whole runs: it closes to round-off through everything that can happen, and its lines
+// The energy ledger of whole runs: it closes to round-off through everything that can happen, and its lines
 // say what closed forms say.
 
 #include "examples/scenes/incline.h"
@@ -204,7 +204,7 @@ TEST(Account, WorkOfAnOscillatingForce) {
 }
 
 TEST(Account, ForceOffTheCentreDoesWorkAtItsPoint) {
-  // A force at the end of a free rod: the account closes only if its torque works too.
+  // A force at the end of a free rod: the ledger closes only if its torque works too.
   System system;
   const BodyId bar = system.add(RigidBody{.mass = rod(1.0, 2.0)});
   system.add(

@@ -1,4 +1,4 @@
-// The energy account of the event-driven mode: its residual follows the tolerance; elastic bounces keep their
+// The energy ledger of the event-driven mode: its residual follows the tolerance; elastic bounces keep their
 // energy.
 
 #include "examples/scenes/incline.h"

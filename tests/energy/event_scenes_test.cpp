@@ -1,5 +1,5 @@
 // Random models of everything there is in the event-driven mode: no corner ever stands behind a wall, the
-// account closes, and a run ends with an error only where the contact problem of an impact has no solution.
+// ledger closes, and a run ends with an error only where the contact problem of an impact has no solution.
 // Scenes are named by their number, so that one can be repeated.
 
 #include "tests/energy/event_scenes.h"
@@ -29,7 +29,7 @@ struct Findings {
   int scenes_with_contact = 0;
   int without_solution = 0;
   double deepest = 0.0;
-  double worst_residual = 0.0;  // of the account, against its scale
+  double worst_residual = 0.0;  // of the ledger, against its scale
   double longest = 0.0;         // [s] of processor time
   std::vector<std::string> failures;
 };
@@ -41,7 +41,7 @@ bool has_no_solution(const SolverError& error) {
          message.find("an impact is not solved (no solution)") != std::string::npos;
 }
 
-// Open questions, of the scenes 0 to 179,999 (their accounts close to 1.4e-6 at the default tolerance, all
+// Open questions, of the scenes 0 to 179,999 (their ledgers close to 1.4e-6 at the default tolerance, all
 // but three dozen to 1e-7, which close to 1e-8 at the tight one):
 //   22935, 32129, 82959, 85944, 95909: two particles at one place, joined by a spring that is longer; its
 //   force has no direction, and what happens hangs on rounding. 146150, 147131: an impact of three corners,
@@ -75,7 +75,7 @@ void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_re
     const double residual = scale > 0.0 ? std::abs(simulation.energy().residual()) / scale : 0.0;
     findings.worst_residual = std::max(findings.worst_residual, residual);
     if (!(residual <= allowed_residual)) {
-      findings.failures.push_back(name + "account open by " + to_text(residual) + " of its scale");
+      findings.failures.push_back(name + "ledger open by " + to_text(residual) + " of its scale");
     }
   } catch (const std::exception& error) {
     findings.failures.push_back(name + error.what());

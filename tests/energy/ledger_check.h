@@ -1,6 +1,6 @@
 #pragma once
 
-// What must hold of the energy account of every run.
+// What must hold of the energy ledger of every run.
 
 #include <carom/carom.h>
 #include <carom/testing/trace_checks.h>

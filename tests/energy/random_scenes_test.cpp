@@ -1,4 +1,4 @@
-// Random models of everything there is, stepped for a while: the account closes, every contact problem is
+// Random models of everything there is, stepped for a while: the ledger closes, every contact problem is
 // solved with its certificate, no exception. Scenes are named by their number, so that one can be repeated.
 //
 // A solution of the contact problem is guaranteed if no impulses in the friction cones cancel each other

@@ -94,7 +94,7 @@ struct TurningRun {
   double amplitude = 0.0;   // largest |T + V - start|
   double first_mean = 0.0;  // mean of T + V - start over the first and the second half
   double second_mean = 0.0;
-  double discretisation = 0.0;  // what the account says of it
+  double discretisation = 0.0;  // what the ledger says of it
   double difference = 0.0;      // largest |T + V - start + discretisation|
   double scale = 0.0;
   bool closes = false;
@@ -126,7 +126,7 @@ TEST(SpringPair, TurningPairHasBoundedEnergyErrorWithoutDrift) {
   EXPECT_GT(run.amplitude, 1e-6);
   EXPECT_LE(std::abs(run.second_mean - run.first_mean), run.amplitude * 131.0 / 50000.0);
   EXPECT_LE(run.amplitude, 1e-3 * run.scale);
-  // All of it stands in its line of the account, at every step.
+  // All of it stands in its line of the ledger, at every step.
   EXPECT_TRUE(run.closes);
   EXPECT_LE(run.difference, 1e3 * eps * run.scale);
 }

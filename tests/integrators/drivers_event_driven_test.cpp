@@ -191,7 +191,7 @@ TEST(DriversEventDriven, AJumpPartsAContactOrPressesIt) {
 
 TEST(DriversEventDriven, WorksInAnImpact) {
   // A slide driven at a constant rate carries a rod that swings down on a floor: the driver's share of the
-  // impulse does work, or the account would not close.
+  // impulse does work, or the ledger would not close.
   Scene scene;
   scene.system.add(Gravity{{0.0, -g}});
   const BodyId block = scene.system.add(RigidBody{.mass = box(1.0, 0.1, 0.1), .velocity = {0.0, -0.5}});

@@ -1,6 +1,6 @@
 #pragma once
 
-// Event-driven runs as the reference tests make them: tight tolerances, the energy account watched all along.
+// Event-driven runs as the reference tests make them: tight tolerances, the energy ledger watched all along.
 
 #include <carom/carom.h>
 
@@ -21,7 +21,7 @@ inline carom::EventDriven tight(carom::FlowMethod method = carom::FlowMethod::ex
   return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-13, .method = method};
 }
 
-/// Watches the energy account from its making on: the terms of the event-driven mode are quadratures, so that
+/// Watches the energy ledger from its making on: the terms of the event-driven mode are quadratures, so that
 /// the residual may be 100 tolerances per 1,000 steps of the integrator, of the largest of |dV|, T and the
 /// sum of what flowed, or of the absolute tolerance of works (mass times 1 m^2/s^2) where these are smaller;
 /// besides there is the rounding of the terms. Must live as long as the simulation runs.

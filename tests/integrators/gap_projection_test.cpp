@@ -1,4 +1,4 @@
-// Option project_gaps: bodies stay out of obstacles, and the account knows.
+// Option project_gaps: bodies stay out of obstacles, and the ledger knows.
 
 #include "tests/energy/ledger_check.h"
 

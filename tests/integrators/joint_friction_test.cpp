@@ -1,5 +1,5 @@
 // Dry friction in joints, in both modes: rest where the law says, against closed forms; breaking away; bounds
-// by the force in the joint; the account.
+// by the force in the joint; the ledger.
 
 #include "tests/allocation_counter.h"
 #include "tests/energy/ledger_check.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Event-driven runs of mechanisms, watched: joints at every output, the energy account.
+// Event-driven runs of mechanisms, watched: joints at every output, the energy ledger.
 
 #include "tests/integrators/event_run.h"
 #include "tests/integrators/joint_scenes.h"
@@ -16,7 +16,7 @@ inline constexpr double gap_limit = 1e-10, speed_limit = 1e-9;  // [m, rad], [m/
 /// Of the event-driven runs with joints.
 inline EventDriven fine() { return {.relative_tolerance = 1e-12, .absolute_tolerance = 1e-12}; }
 
-/// A run that is watched: joints at every output, the energy account.
+/// A run that is watched: joints at every output, the energy ledger.
 struct WatchedRun {
   Simulation simulation;
   JointCheck joints;

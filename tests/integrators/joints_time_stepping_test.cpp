@@ -32,7 +32,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
-/// Runs a scene with steps h, h/2, ...; each run must obey its joints and close its account.
+/// Runs a scene with steps h, h/2, ...; each run must obey its joints and close its ledger.
 struct Refined {
   std::vector<double> steps, errors;
   [[nodiscard]] double slope() const { return analytic::slope(steps, errors); }

@@ -1,4 +1,4 @@
-// Time stepping against obstacles that move as prescribed: the account closes with their work, a uniform
+// Time stepping against obstacles that move as prescribed: the ledger closes with their work, a uniform
 // motion cannot be told from rest, impacts on a vibrating table are where they must be.
 
 #include "tests/allocation_counter.h"

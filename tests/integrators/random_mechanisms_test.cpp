@@ -1,4 +1,4 @@
-// Random mechanisms without contact: event-driven runs keep their joints and their account, time stepping
+// Random mechanisms without contact: event-driven runs keep their joints and their ledger, time stepping
 // converges to them with order two.
 
 #include "tests/integrators/random_mechanisms.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Is it bit for bit the same? State, energy account, statistics, and all else that a later step depends on.
+// Is it bit for bit the same? State, energy ledger, statistics, and all else that a later step depends on.
 
 #include <carom/carom.h>
 

@@ -26,7 +26,7 @@ struct InclineRun {
   std::vector<double> q;  // at the end, in the order of the reference: bar x y angle, pair lower, upper
   double deepest_gap = 0.0;
   carom::Statistics statistics;
-  double residual = 0.0, scale = 0.0;  // of the energy account
+  double residual = 0.0, scale = 0.0;  // of the energy ledger
   double energy = 0.0;                 // total at the end
 };
 
