@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// What happened, as data: impacts, contacts that close, open, stick and slip, accumulations, kinks.
+/// Events as data: impacts, contacts that close, open, stick and slip, accumulations (Zeno), switching
+/// points.
 
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_solver.h>
@@ -22,16 +23,16 @@ namespace carom {
 
 /// Kinds of events.
 enum class EventKind : std::uint8_t {
-  impact,                    ///< a contact that took part in an impact
-  accumulation,              ///< a contact closed where impacts pile up, or slower than the capture speed
-  closing,                   ///< an open contact stays closed
-  lift_off,                  ///< a closed contact opens
-  stick,                     ///< a slipping contact sticks
-  slip,                      ///< a sticking contact slips, or one that slips turns round
-  impact_without_collision,  ///< forces that keep the contact do not exist (Painleve): an impact at no speed
+  impact,        ///< a contact that took part in an impact
+  accumulation,  ///< a contact closed by an impact without restitution below the capture speed (Zeno)
+  closing,       ///< an open contact joins the active set: it stays closed
+  lift_off,      ///< a closed contact opens
+  stick,         ///< a slipping contact sticks
+  slip,          ///< a sticking contact slips, or a slipping one reverses
+  impact_without_collision,  ///< no contact forces exist (Painleve): an impact at zero normal speed
   several_accelerations,     ///< several accelerations are possible (Painleve): one was chosen by rule
-  kink,                      ///< loads of an element change their form
-  law_break,                 ///< a law of time jumps or has a kink, as told by its part
+  kink,                      ///< switching point: loads of an element change their form
+  law_break,                 ///< discontinuity of a law of time: it jumps or has a kink, as its part says
   mode_switch                ///< a contact was opened when the simulation changed to the event-driven mode
 };
 /// Number of kinds.
@@ -56,22 +57,22 @@ struct EventRecord {
   double energy_before = 0.0;               ///< kinetic energy of the body [J]
   double energy_after = 0.0;                ///< likewise after
   ContactMode mode = ContactMode::open;     ///< of the contact, after
-  Outcome outcome = Outcome::not_solved;    ///< what is known of the solutions of the problem that decided
+  Outcome outcome = Outcome::not_solved;    ///< number of solutions of the problem that decided, if known
   double residual = 0.0;                    ///< certificate of its answer
-  std::string_view solver{};                ///< whose answer it was
-  /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration by a unit of normal force while slipping
+  std::string_view solver{};                ///< solver whose answer was used
+  /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration per unit of normal force while slipping
   /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].
   double stiffness = 0.0, free_acceleration = 0.0;
-  /// Of an accumulation: time at which the impacts would have piled up by the ratio of their intervals;
-  /// NaN where the ratios had not settled [s].
+  /// Of an accumulation: time at which infinitely many impacts would have ended, by the ratio of their
+  /// intervals; NaN where the ratios had not converged [s].
   double accumulation_time = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Events by kind.
 using EventCounts = std::array<std::int64_t, event_kind_count>;
 
-/// Writes events as CSV, a line each: time, kind, names, numbers with units in the head, exact digits.
-/// \param name_of tells the name of a contact or element
+/// Writes events as CSV, one line each: time, kind, name, numbers with units in the header, exact digits.
+/// \param name_of gives the name of the part of an event (Simulation::name())
 CAROM_API void write_events(std::ostream& out, const std::vector<EventRecord>& events,
                             const std::function<std::string(const EventRecord&)>& name_of);
 

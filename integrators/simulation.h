@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// A model that runs: state, companion, and the mode that advances them.
+/// The simulation of a model: its state, all that influences later steps, and the mode that advances them.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -26,27 +26,28 @@ namespace carom {
 /// The modes of integration, as values.
 using Mode = std::variant<TimeStepping, EventDriven>;
 
-/// Takes a copy of a system and runs it. Every advance works on a trial and commits it when accepted: after
-/// an error the simulation stands at the last good state and can be saved, inspected and continued.
+/// Takes a copy of a system and runs it. A step works on a trial state, which replaces the state when the
+/// step succeeds: after an error the simulation is at its last good state and can be saved, inspected and
+/// continued.
 class CAROM_API Simulation {
 public:
   using Observer = std::function<void(const Simulation&)>;
   using Action = std::function<void(Simulation&)>;
 
-  /// Assembles `system`, with its described positions and velocities, at time 0. Where these do not obey the
-  /// joints they are corrected (joint_closure.h); report().projected tells the largest displacement. Throws
-  /// ModelError for a model or options that cannot be, in the event-driven mode for bodies deeper in
-  /// obstacles than EventDriven::gap_tolerance too; so do edit() and set_state().
+  /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
+  /// joints they are corrected (joint_closure.h); report().projected has the largest displacement. Throws
+  /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in obstacles
+  /// than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Makes one step of the mode's length (EventDriven: of its interval), shorter where a periodic event is
-  /// due before its end. Throws SolverError; the simulation then stands where it stood.
+  /// Makes one step of the mode's length (EventDriven: of its interval), shorter if a periodic action is due
+  /// before its end. Throws SolverError; the simulation is then as before the step.
   const StepReport& step();
   /// Runs until exactly `time` [s]. Throws ModelError for a time that is not finite or in the past,
-  /// SolverError as step(): the simulation then stands at the last good state.
+  /// SolverError as step(): the simulation is then at the last good state.
   void run_until(double time);
 
   /// Calls `observer` after every accepted step. Observers cannot change the run.
@@ -55,27 +56,28 @@ public:
   /// Actions may change the state or edit the model. Throws ModelError for an interval that is not > 0.
   void every(double interval, Action action);
 
-  /// Changes a copy of the model, assembles it and maps the state by identity; new bodies start as described.
-  /// An error changes nothing. Energy brought in or taken out is booked as `intervention`.
+  /// Changes a copy of the model, assembles it and transfers the state by identity; new bodies start as
+  /// described. An error changes nothing. The change of the energy is booked as `intervention`.
   void edit(const std::function<void(System&)>& change);
-  /// Replaces the state (time included); positions and velocities are corrected to obey the joints. Throws
-  /// ModelError naming the body for numbers that are not finite. Energy brought in or taken out is booked as
-  /// `intervention`. Which contacts stuck and slipped is forgotten: in the event-driven mode it is decided
-  /// from the state, in time stepping a contact sticks if its speed is exactly zero.
+  /// Replaces the state (time included); positions and velocities are projected onto the joints. Throws
+  /// ModelError naming the body for numbers that are not finite. The change of the energy is booked as
+  /// `intervention`. The modes of contacts (stick, slip) are discarded: in the event-driven mode they are
+  /// computed from the state, in time stepping a contact sticks if its speed is exactly zero.
   void set_state(const State& state);
-  /// Goes on in another mode, or with other options, from the same state. From time stepping to the
-  /// event-driven mode, bodies may have sunk into obstacles: contacts that approach there are resolved by an
-  /// impact, then bodies are moved out by the smallest displacement in the sense of their masses; energies
-  /// are booked as `mode_switch`, the largest displacement is told by report().projected. Throws as the
-  /// constructor, and SolverError where bodies cannot be moved out; the mode then stays as it is.
+  /// Continues in another mode, or with other options, from the same state. At a change from time stepping to
+  /// the event-driven mode, bodies may have penetrated obstacles: an impact is solved for contacts that
+  /// approach there, then bodies are moved out by the smallest displacement in the mass norm; energies are
+  /// booked as `mode_switch`, and report().projected has the largest displacement. Throws as the constructor,
+  /// and SolverError if bodies cannot be moved out; the mode then does not change.
   void switch_to(Mode mode);
 
   /// Counts the degrees of freedom that joints leave at the present state, and names redundant joints.
   [[nodiscard]] Mobility mobility() const;
 
-  /// What a joint does to its body `to`, forces at the present time. In time stepping the mean over the last
-  /// step. Before the first step no contact is known: forces are those without. Of a redundant joint one of
-  /// many possible ones. Throws ModelError for a joint that is not of this model or only limits.
+  /// Reaction of a joint on its body `to`: forces at the present time, in time stepping the mean over the
+  /// last step. Before the first step contacts are not known, and forces are those without contact. For a
+  /// redundant joint one of many possible reactions. Throws ModelError for a joint that is not of this model,
+  /// or a limit.
   [[nodiscard]] JointReaction reaction(JointId joint) const;
 
   [[nodiscard]] const System& system() const;          ///< the model
@@ -83,36 +85,36 @@ public:
   [[nodiscard]] const State& state() const;            ///< the state
   [[nodiscard]] double time() const;                   ///< [s]
   [[nodiscard]] const EnergyLedger& energy() const;    ///< the energy ledger
-  [[nodiscard]] const StepReport& report() const;      ///< what happened in the last step
+  [[nodiscard]] const StepReport& report() const;      ///< report of the last step
   [[nodiscard]] const Statistics& statistics() const;  ///< counts since the start
   /// Counts of the contact solvers since the start, over all sweeps of accepted steps.
   [[nodiscard]] const ChainStatistics& contact_statistics() const;
-  /// Events of the event-driven mode so far, in time (EventDriven::record_events).
+  /// Events of the event-driven mode so far, in order of time (EventDriven::record_events).
   [[nodiscard]] const std::vector<EventRecord>& events() const;
-  /// Forgets these.
+  /// Deletes the records of events.
   void clear_events();
-  /// Writes these as CSV (event_log.h). Throws FileError.
+  /// Writes the records of events as CSV (event_log.h). Throws FileError.
   void write_events(const std::string& path) const;
   [[nodiscard]] const Companion& companion() const;  ///< all that can influence a later step
   [[nodiscard]] const Mode& mode() const;            ///< the mode and its options
 
-  /// "particle 'lower' on half-plane #0".
+  /// Name of a contact: "particle 'lower' on half-plane #0".
   [[nodiscard]] std::string name(const ContactKey& key) const;
   /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
   /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps.
   [[nodiscard]] std::string name(const EventRecord& event) const;
 
-  /// Where worthwhile news is written; quiet until given a sink.
+  /// Log of warnings and notes; nothing is written until it has a sink.
   [[nodiscard]] Log& log();
   /// Draws a progress bar during run_until() where the standard error is a terminal and the run is long.
   void show_progress(bool on);
 
   /// Saves state and companion with a fingerprint of the model. Throws FileError.
   void save(const std::string& path) const;
-  /// Loads what save() wrote; a time-stepping run then continues bit for bit, an event-driven one starts its
-  /// integrators anew and continues within their tolerance. Periodic events must have been
-  /// set up as they were. Throws FileError for a file that cannot be read or is of another model; the
-  /// simulation then stands where it stood.
+  /// Loads what save() wrote; a time-stepping run then continues bit for bit, an event-driven one restarts
+  /// its integrators and continues within their tolerance. The periodic actions (every()) must be the same.
+  /// Throws FileError for a file that cannot be read or is of another model; the simulation is then
+  /// unchanged.
   void load(const std::string& path);
 
 private:

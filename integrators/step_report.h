@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What happened in a step, and in all steps so far.
+/// Report of a step, and statistics of all steps so far.
 
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_solver.h>
@@ -22,53 +22,53 @@ namespace carom {
 struct ContactRecord {
   ContactKey key;                           ///< identity
   BodyId body;                              ///< the body
-  ObstacleId obstacle;                      ///< what it met
+  ObstacleId obstacle;                      ///< what it touches
   int directions = 2;                       ///< 2 in the plane, 3 in space
-  double gap = 0.0;                         ///< when the contact was found [m]
+  double gap = 0.0;                         ///< when the contact was detected [m]
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]
   std::array<double, 3> work{};             ///< P (gamma^- + gamma^+)/2, by direction [J]
   ContactMode mode = ContactMode::open;     ///< of the mean velocities
   bool impact = false;                      ///< closed faster than the capture speed
-  Outcome outcome = Outcome::not_solved;    ///< what is known of the solutions of its problem
+  Outcome outcome = Outcome::not_solved;    ///< number of solutions of its problem, if known
   double residual = 0.0;                    ///< certificate of its problem
   std::string_view solver{};                ///< solver whose answer was used
 };
 
-/// What a joint did over a step of time stepping: its mean force is the impulse divided by the length of the
-/// step. Or in an impact of the event-driven mode.
+/// Impulse of a joint over a step of time stepping, whose mean force is the impulse divided by the length of
+/// the step; or in an impact of the event-driven mode.
 struct JointImpulse {
   JointId joint;          ///< identity
-  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the configuration halfway or of the impact
+  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the middle of the step or at the impact
   double time = 0.0;      ///< end of the step, or time of the impact [s]
 };
 
-/// What step control did (TimeStepping::control). The step that it made was kept as two halves, which the
-/// report's other numbers span; contacts are those of the first half, then of the second.
+/// Report of step control (TimeStepping::control). The step was kept as two halves, and the other numbers of
+/// the report are of both; contacts are those of the first half, then of the second.
 struct ControlReport {
   double error = 0.0;          ///< estimated error of the step [m]; 0 across an impact
-  int rejected = 0;            ///< lengths that were tried before and given up
-  bool across_impact = false;  ///< contact kept the error from being estimated
+  int rejected = 0;            ///< lengths that were tried before and rejected
+  bool across_impact = false;  ///< the error could not be estimated because of contact
   double next_step = 0.0;      ///< length that will be tried next [s]; 0 without step control
 };
 
-/// What happened in the last accepted step.
+/// The last accepted step.
 struct StepReport {
   double time = 0.0;                             ///< at its end [s]
   double step = 0.0;                             ///< its length [s]
-  Iteration iteration = Iteration::fixed_point;  ///< which ran
+  Iteration iteration = Iteration::fixed_point;  ///< the one that was used
   int sweeps = 0;                                ///< of the iteration, the most over all islands
-  int local_sweeps = 0;      ///< before them, of the bodies around contacts alone; the most over all islands
-  double contraction = 0.0;  ///< ratio of successive changes, the largest over islands (0: none seen)
-  ElementId worst_coupling{};        ///< coupling that limits the contraction most, invalid if there is none
+  int local_sweeps = 0;        ///< sweeps before, of the bodies near contacts only; the most over all islands
+  double contraction = 0.0;    ///< ratio of successive changes, the largest over islands (0: none seen)
+  ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
   double energy_gain = 0.0;          ///< energy that contact added, summed over problems that gained [J]
   double projected = 0.0;            ///< largest displacement by which a body was moved out of obstacles [m]
   ControlReport control;             ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
-  /// All joints, what contact asks of them included; by island, then by kind. In the
-  /// event-driven mode those of impacts: impact after impact, joints without an impulse left out.
+  /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
+  /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
   std::vector<JointImpulse> joint_impulses;
 };
 
@@ -82,8 +82,8 @@ struct Statistics {
   std::int64_t contact_steps = 0;         ///< contacts that took part in steps
   std::int64_t several_solutions = 0;     ///< of contact problems with more than one end velocity
   std::int64_t forces_not_unique = 0;     ///< contact problems with more than one set of impulses
-  std::int64_t rejected_steps = 0;        ///< lengths that step control gave up
-  std::int64_t steps_across_impacts = 0;  ///< steps whose error step control could not estimate for contact
+  std::int64_t rejected_steps = 0;        ///< lengths that step control rejected
+  std::int64_t steps_across_impacts = 0;  ///< steps whose error could not be estimated because of contact
   std::int64_t energy_gains = 0;          ///< steps in which contact added energy
   double energy_gained = 0.0;             ///< sum of those gains [J]
   double deepest_gap = 0.0;               ///< the most negative gap found [m]
