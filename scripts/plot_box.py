@@ -66,10 +66,12 @@ def draw_path(axes, exact, stepped, events):
     for i in (0, -1):
         axes.add_patch(plt.Circle((exact["ball.x"][i], exact["ball.y"][i]), RADIUS, fill=False, color="tab:blue",
                                   linewidth=0.8))
+    axes.annotate("end", (exact["ball.x"][-1], exact["ball.y"][-1]), xytext=(22, 14), textcoords="offset points",
+                  fontsize=9)
     axes.annotate("start", (exact["ball.x"][0], exact["ball.y"][0]), xytext=(-8, 22), textcoords="offset points",
                   fontsize=9, ha="right")
     axes.set(xlim=(-0.18, 1.18), ylim=(-0.05, top), aspect="equal", xlabel="x [m]", ylabel="y [m]",
-             title="Path of the centre")
+             title="Path of the centre; symbols: events; circles: the ball")
 
 
 def draw_velocities(axes, exact, stepped, events):
@@ -94,7 +96,7 @@ def draw_energies(axes, exact, events):
         axes.plot(times, [rows[kind]] * len(times), marker, color=colour, markersize=4, label=kind,
                   markerfacecolor=colour if filled else "none", linestyle="none")
     axes.set(xlim=(0, END), ylim=(0, 1.2 * initial), xlabel="t [s]", ylabel="energy [J]",
-             title="Where the energy is (event-driven)")
+             title="Energies (event-driven), stacked; above: the events")
     handles, labels = axes.get_legend_handles_labels()
     axes.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=9)
 

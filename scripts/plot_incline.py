@@ -40,13 +40,17 @@ def draw_motion(axes, run, ends, style, title):
     assert min(lowest) < 5, "the bodies never came near the plane"
     for i in steps:
         (x0, x1), (y0, y1) = ends(run, i)
-        axes.plot([x0, x1], [y0, y1], **style)
-        axes.plot(x0, y0, "o", color="tab:red", markersize=2.5)  # the end that is lower at the start
+        axes.plot([x0, x1], [y0, y1], label=None if i else "body" if style["linestyle"] == "-" else "particles and spring",
+                  **style)
+        axes.plot(x0, y0, "o", color="tab:red", markersize=2.5,
+                  label=None if i else "its end that is lower at the start" if style["linestyle"] == "-"
+                  else "the particle that is lower at the start")
     reach = [-2, 37]
     heights = [math.tan(SLOPE) * x for x in reach]
-    axes.plot(reach, heights, color="black", linewidth=1)
+    axes.plot(reach, heights, color="black", linewidth=1, label=f"plane, inclined {SLOPE} rad")
     axes.fill_between(reach, heights, [-2, -2], color="0.9")
     axes.set(xlim=reach, ylim=(-1, 22.5), aspect="equal", xlabel="x [m]", ylabel="y [m]", title=title)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.1), frameon=False, fontsize=7)
 
 
 def draw_energies(axes, run, title, elastic):
@@ -70,11 +74,11 @@ def main():
     plt.rcParams["svg.hashsalt"] = "carom"  # equal pictures are equal files
     bar, pair = read(data / "bar.csv"), read(data / "pair.csv")
 
-    bar_style = dict(color="tab:blue", linewidth=1.5)
+    bar_style = dict(color="tab:blue", linewidth=1.5, linestyle="-")
     pair_style = dict(color="tab:blue", linewidth=0.7, linestyle=":", marker="o", markersize=2.5)
     motion, axes = plt.subplots(2, 1, figsize=(8, 10), layout="constrained")
-    draw_motion(axes[0], bar, ends_of_bar, bar_style, "Bar, drawn every 100th step")
-    draw_motion(axes[1], pair, ends_of_pair, pair_style, "Particles on a spring, drawn every 100th step")
+    draw_motion(axes[0], bar, ends_of_bar, bar_style, "Bar, drawn every 100th step (1/12 s)")
+    draw_motion(axes[1], pair, ends_of_pair, pair_style, "Particles on a spring, drawn every 100th step (1/12 s)")
     save(motion, figures, "figure6_motion")
 
     for name, run, title, elastic in (
@@ -86,10 +90,10 @@ def main():
         save(figure, figures, name)
 
     both, axes = plt.subplots(2, 2, figsize=(13, 8), layout="constrained")
-    draw_motion(axes[0][0], bar, ends_of_bar, bar_style, "A bar …")
-    draw_motion(axes[0][1], pair, ends_of_pair, pair_style, "… and two particles on a spring hit a rough incline")
-    draw_energies(axes[1][0], bar, "", False)
-    draw_energies(axes[1][1], pair, "", True)
+    draw_motion(axes[0][0], bar, ends_of_bar, bar_style, "A bar hits a rough incline; drawn every 1/12 s")
+    draw_motion(axes[0][1], pair, ends_of_pair, pair_style, "Two particles on a spring hit it; drawn every 1/12 s")
+    draw_energies(axes[1][0], bar, "Energies of the bar", False)
+    draw_energies(axes[1][1], pair, "Energies of the particles on a spring", True)
     save(both, figures, "bar_and_pair")
 
 

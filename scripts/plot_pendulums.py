@@ -21,22 +21,30 @@ def strobe(axes, run, links, title):
         x = [0.0] + [run[f"x{link}"][i] for link in range(1, links + 1)]
         y = [0.0] + [run[f"y{link}"][i] for link in range(1, links + 1)]
         axes.plot(x, y, color=shades(run["time"][i] / UNTIL), linewidth=1.2, marker="o", markersize=2.5)
-    axes.axvline(WALL, color="0.3", linewidth=2.0)
+    wall = axes.axvline(WALL, color="0.3", linewidth=2.0)
+    pins = axes.plot([], [], color=shades(0.5), linewidth=1.2, marker="o", markersize=2.5)
+    axes.legend([pins[0], wall], ["rods; dots: pins and tip", "wall"], loc="lower right", frameon=False)
     axes.set(aspect="equal", title=title, xlabel="x [m]", ylabel="y [m]")
+    colours = plt.cm.ScalarMappable(plt.Normalize(0.0, UNTIL), shades)
+    axes.figure.colorbar(colours, ax=axes, label="t [s]", location="left", shrink=0.8)
 
 
 def course(axes, run, links, impacts):
-    for time in impacts:
-        axes.axvline(time, color="0.85", linewidth=0.8, zorder=0)
+    for number, time in enumerate(impacts):
+        axes.axvline(time, color="0.85", linewidth=0.8, zorder=0, label=None if number else "impacts")
     for link in range(1, links + 1):
-        axes.plot(run["time"], run[f"x{link}"], label="tip" if link == links else "elbow")
-    axes.axhline(WALL, color="0.3", linewidth=1.0)
+        of_tip = link == links
+        axes.plot(run["time"], run[f"x{link}"], color="tab:blue" if of_tip else "tab:orange",
+                  label="x of the tip" if of_tip else "x of the pin between the rods")
+    axes.axhline(WALL, color="0.3", linewidth=1.0, label="wall")
     axes.set(xlim=(0, run["time"][-1]), xlabel="t [s]", ylabel="x [m]")
-    axes.legend(loc="upper right", frameon=False)
     energy = axes.twinx()
-    energy.plot(run["time"], run["energy"], color="tab:red", linestyle=":", linewidth=1.5)
-    energy.set_ylabel("energy above rest [J]", color="tab:red")
+    line = energy.plot(run["time"], run["energy"], color="tab:red", linestyle=":", linewidth=1.5)
+    energy.set_ylabel("energy above that of hanging at rest [J]", color="tab:red")
     energy.set_ylim(bottom=0.0)
+    handles, labels = axes.get_legend_handles_labels()
+    axes.legend(handles + line, labels + ["energy (right axis)"], loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=5,
+                frameon=False, fontsize=9)
 
 
 def main():

@@ -46,7 +46,7 @@ def main():
     above.plot(stepped["time"], stepped["velocity of the block"], color="black", linewidth=0.8, linestyle="--",
                label="block, time stepping")
     above.set(ylabel="velocity along the plane,\ndownhill [m/s]",
-              title="A block on a plane that shakes along itself: $\\mu_s$ = 0.4, $\\mu_k$ = 0.3, slope 0.1 rad")
+              title="A block on a plane that oscillates in its own direction: $\\mu_s$ = 0.4, $\\mu_k$ = 0.3, slope 0.1 rad")
 
     told = set()
     for row, (_, of_contact) in enumerate(phases.items()):
@@ -57,7 +57,7 @@ def main():
     modes.set(ylim=(-0.6, len(phases) - 0.4), yticks=range(len(phases)), yticklabels=("left", "right"),
               ylabel="corner")
     of_lines = above.legend(loc="upper left", frameon=False)
-    above.legend(*modes.get_legend_handles_labels(), loc="lower left", frameon=False)
+    above.legend(*modes.get_legend_handles_labels(), loc="lower left", frameon=False, title="background: left corner")
     above.add_artist(of_lines)
 
     below.plot(exact["time"], [1e3 * x for x in exact["slipped"]], color="tab:red", linewidth=1.8,

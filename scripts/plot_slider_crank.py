@@ -17,22 +17,26 @@ def main():
 
     figure, (above, middle, below) = plt.subplots(3, 1, figsize=(11, 9), layout="constrained", sharex=True)
     for axes in (above, middle, below):
-        for time in impacts:
-            axes.axvline(time, color="0.8", linewidth=0.8, zorder=0)
+        for number, time in enumerate(impacts):
+            axes.axvline(time, color="0.8", linewidth=0.8, zorder=0, label=None if number or axes is below else "impacts")
     above.plot(exact["time"], exact["slider"], color="tab:red", linewidth=1.8, label="event-driven")
     above.plot(stepped["time"], stepped["slider"], color="black", linewidth=0.8, linestyle="--",
                label="time stepping")
-    above.axhline(0.42, color="0.4", linewidth=1.0)
-    above.set(ylabel="slider [m]", title="A driven slider-crank whose slider hits a stop at 0.42 m, e = 0.6")
-    above.legend(frameon=False)
-    middle.plot(exact["time"], exact["speed of the crank"], color="tab:red", linewidth=1.8)
-    middle.plot(stepped["time"], stepped["speed of the crank"], color="black", linewidth=0.8, linestyle="--")
-    middle.set(ylabel="speed of the crank [rad/s]")
+    above.axhline(0.42, color="0.4", linewidth=1.0, label="limit (stop) at 0.42 m")
+    above.set(ylabel="position of the slider [m]",
+              title="A driven slider-crank whose slider hits a limit at 0.42 m, e = 0.6")
+    above.legend(frameon=False, ncols=4, loc="upper center", bbox_to_anchor=(0.5, 0.98))
+    above.set_ylim(top=0.48)
+    middle.plot(exact["time"], exact["speed of the crank"], color="tab:red", linewidth=1.8, label="event-driven")
+    middle.plot(stepped["time"], stepped["speed of the crank"], color="black", linewidth=0.8, linestyle="--",
+                label="time stepping")
+    middle.set(ylabel="spin of the crank [rad/s]")
+    middle.legend(frameon=False)
     below.stackplot(exact["time"], exact["kinetic"], exact["gravity"], exact["lost in impacts"],
-                    labels=("kinetic", "gravity", "lost in impacts"), colors=("#9ecae1", "#c7e9c0", "#fcbba1"))
+                    labels=("kinetic energy", "potential energy", "lost in impacts"), colors=("#9ecae1", "#c7e9c0", "#fcbba1"))
     start = exact["kinetic"][0] + exact["gravity"][0]
     below.plot(exact["time"], [start + work for work in exact["work of the motor"]], color="black", linewidth=1.2,
-               label="start + work of the motor")
+               label="energy at the start + work of the motor")
     below.set(xlim=(0, exact["time"][-1]), xlabel="t [s]", ylabel="energy [J]")
     below.legend(loc="lower right", frameon=True)
     save(figure, figures, "slider_crank_and_stop")

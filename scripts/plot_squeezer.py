@@ -38,11 +38,11 @@ def main():
             drawing.plot(*zip(*closed), color=colour, linewidth=1.4, marker="o", markersize=3,
                          label=f"{1e3 * moment:.0f} ms" if index == 0 else None)
     drawing.set(aspect="equal", xlabel="x [mm]", ylabel="y [mm]", title="Seven bodies, ten pins, one degree of freedom")
-    drawing.legend(frameon=False, fontsize="small")
+    drawing.legend(frameon=False, fontsize="small", title="bodies and pins (dots) at")
 
     for name, symbol in ANGLES.items():
         (turns if name in ("beta", "Theta") else swings).plot(time, run[name], label=symbol)
-    turns.set(xlim=(0, time[-1]), ylabel="angle [rad]", title="Angles")
+    turns.set(xlim=(0, time[-1]), ylabel="angle [rad]", title="Angles as named by Hairer and Wanner")
     swings.set(xlim=(0, time[-1]), xlabel="t [ms]", ylabel="angle [rad]")
     for graph in (turns, swings):
         graph.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

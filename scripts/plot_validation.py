@@ -15,6 +15,7 @@ from plotting import columns_of
 
 plt.rcParams.update({"figure.dpi": 110, "font.size": 9, "axes.grid": False, "legend.frameon": False})
 BLUE, ORANGE, GREEN, RED = "tab:blue", "tab:orange", "tab:green", "tab:red"
+NAMES = {"x": "crosses", "o": "circles"}
 
 
 def tables(data, restitution):
@@ -22,9 +23,9 @@ def tables(data, restitution):
     runs = [columns_of(data / f"tables_et{restitution}_vx{speed}.csv") for speed in speeds]
     left = min(min(run["ball.x"]) for run in runs) - 0.08
     right = max(max(run["ball.x"]) for run in runs) + 0.08
-    figure, axes = plt.subplots(1, 2, figsize=(10.5, 4.3), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(10.5, 5.4), layout="constrained")
     for one, run, speed in zip(axes, runs, speeds):
-        plot_tables.draw(one, run, f"$e_t$ = {restitution}, thrown at {speed} m/s to the right", left, right)
+        plot_tables.draw(one, run, f"$e_t$ = {restitution}, thrown at {speed} m/s to the right", left, right, one is axes[0])
     return figure
 
 
@@ -34,6 +35,12 @@ def figure3_tables(data):
 
 def figure4_tables(data):
     return tables(data, "0.68")
+
+
+def meaning(axes, line, marker, point):
+    """Legend entries, in grey, for what lines and markers of any colour stand for."""
+    axes.plot([], [], color="0.4", label=f"lines: {line}")
+    axes.plot([], [], marker, color="0.4", markerfacecolor="none", markersize=4, linestyle="none", label=f"{NAMES[marker]}: {point}")
 
 
 def figure5_horak(data):
@@ -46,7 +53,8 @@ def figure5_horak(data):
         line, points = columns_of(data / f"horak_{name}.csv"), columns_of(data / f"horak_reference_{name}.csv")
         axes.plot(line["before"], line["after"], color=color, label=label)
         axes.plot(points["before"], points["after"], "x", color=color, markersize=4)
-    axes.plot([0, 200], [0, 200], ":", color="0.6", label="equal spins")
+    meaning(axes, "event-driven run", "x", "exact solution of the law")
+    axes.plot([0, 200], [0, 200], ":", color="0.6", label="spin after = spin before")
     axes.set(xlabel="spin before [rad/s]", ylabel="spin after [rad/s]", xlim=(0, 200))
     axes.axhline(0, color="0.8", linewidth=0.8, zorder=0)
     axes.legend()
@@ -56,10 +64,10 @@ def figure5_horak(data):
 def figure6_motion(data):
     bar, pair = columns_of(data / "bar.csv"), columns_of(data / "pair.csv")
     figure, axes = plt.subplots(1, 2, figsize=(10.5, 3.9), layout="constrained")
-    style = dict(color=BLUE, linewidth=1.5)
+    style = dict(color=BLUE, linewidth=1.5, linestyle="-")
     dotted = dict(color=BLUE, linewidth=0.7, linestyle=":", marker="o", markersize=2.5)
-    plot_incline.draw_motion(axes[0], bar, plot_incline.ends_of_bar, style, "Bar, drawn every 100th step")
-    plot_incline.draw_motion(axes[1], pair, plot_incline.ends_of_pair, dotted, "Particles on a spring, every 100th step")
+    plot_incline.draw_motion(axes[0], bar, plot_incline.ends_of_bar, style, "Bar, drawn every 100th step (1/12 s)")
+    plot_incline.draw_motion(axes[1], pair, plot_incline.ends_of_pair, dotted, "Particles on a spring, every 100th step (1/12 s)")
     return figure
 
 
@@ -89,10 +97,10 @@ def energy_gain(data):
     border = columns_of(data / "energy_gain_border.csv")
     figure, axes = plt.subplots(figsize=(5.8, 4.6), layout="constrained")
     image = axes.pcolormesh(xs, ys, share, cmap="RdBu_r", vmin=-0.4, vmax=0.4, shading="nearest", rasterized=True)
-    figure.colorbar(image, label="ΔT/T, limited to ±0.4", extend="min")
+    figure.colorbar(image, label="ΔT/T, change of the kinetic energy (shown from −0.4 to 0.4)", extend="min")
     e_t = [0.01 * i for i in range(101)]
-    axes.plot(e_t, [(e + math.sqrt(12 - 3 * e * e)) / 4 for e in e_t], color="black", label="formula")
-    axes.plot(border["e_t"], border["e_n"], "o", color="black", markerfacecolor="white", markersize=4, label="by bisection")
+    axes.plot(e_t, [(e + math.sqrt(12 - 3 * e * e)) / 4 for e in e_t], color="black", label="no change, by the formula")
+    axes.plot(border["e_t"], border["e_n"], "o", color="black", markerfacecolor="white", markersize=4, label="no change, by runs and bisection")
     axes.plot([0, 1], [0, 1], "--", color="0.3", linewidth=0.8, label="$e_t = e_n$")
     axes.text(0.06, 0.955, "gain", fontsize=9)
     axes.text(0.55, 0.3, "loss", fontsize=9)
@@ -110,8 +118,9 @@ def foerster(data):
         shown = [k for k, psi in enumerate(line["psi1"]) if psi >= first]
         axes.plot([line["psi1"][k] for k in shown], [line["psi2"][k] for k in shown], color=color, label=name)
         axes.plot(law["psi1"], law["psi2"], "o", color=color, markerfacecolor="none", markersize=4)
+    meaning(axes, "event-driven runs", "o", "the law in closed form")
     axes.axhline(0, color="0.8", linewidth=0.8, zorder=0)
-    axes.set(xlabel="ψ1, tangential over normal speed before", ylabel="ψ2, tangential after over normal before", xlim=(0, 4))
+    axes.set(xlabel="ψ1, tangential over normal velocity before [–]", ylabel="ψ2, tangential after over normal before [–]", xlim=(0, 4))
     axes.legend()
     return figure
 
@@ -120,7 +129,7 @@ def kharaz(data):
     figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.4), layout="constrained")
     for one, name, label in zip(
         axes, ("omega", "ratio", "rebound"),
-        ("spin after [rad/s]", "tangential speed, after/before", "angle of rebound [degrees]"),
+        ("spin after [rad/s]", "tangential velocity, after/before [–]", "angle of rebound [degrees]"),
     ):
         for e_t, style in (("0", "-"), ("0.3", "--")):
             line = columns_of(data / f"kharaz_et{e_t}.csv")
@@ -139,7 +148,8 @@ def incline_variants(data):
         shown = [i for i, value in enumerate(run["case"]) if value == case]
         axes.loglog([run["step"][i] for i in shown], [run["error"][i] for i in shown], ".", label=f"case {case + 1:.0f}")
     axes.loglog([1e-4, 8e-3], [1e-3, 8e-2], color="black", linewidth=1, label="slope 1")
-    axes.set(xlabel="step [s]", ylabel="error of the coordinates at 3.5 s [m]")
+    axes.set(xlabel="step of time stepping [s]", ylabel="error of the coordinates at 3.5 s [m]",
+             title="Dots: one run each")
     axes.legend(ncols=2, fontsize=8)
     return figure
 
@@ -150,7 +160,7 @@ def bouncing_ball(data):
         for name, color, style, label in (("events", BLUE, "-", "event-driven"), ("stepping", ORANGE, "--", "time stepping, h = 1 ms")):
             run = columns_of(data / f"ball_{name}{late}.csv")
             one.plot(run["time"], [scale * y for y in run["height"]], style, color=color, label=label, linewidth=1)
-        one.axvline(4.063712768871578, color="0.6", linestyle=":", label="impacts pile up")
+        one.axvline(4.063712768871578, color="0.6", linestyle=":", label="end of the impacts (Zeno)")
         one.set(xlabel="t [s]", ylabel=f"height [{unit}]", xlim=(run["time"][0], run["time"][-1]))
     axes[0].legend()
     return figure
@@ -160,11 +170,11 @@ def rolling(data):
     events, steps = columns_of(data / "rolling_events.csv"), columns_of(data / "rolling_stepping.csv")
     known = columns_of(data / "rolling_reference.csv")
     figure, axes = plt.subplots(figsize=(6, 3.8), layout="constrained")
-    for name, color, label in (("speed", BLUE, "centre"), ("r spin", ORANGE, "rim, r ω")):
+    for name, color, label in (("speed", BLUE, "velocity of the centre"), ("r spin", ORANGE, "velocity of the rim, r ω")):
         axes.plot(events["time"], events[name], color=color, label=label)
         axes.plot(steps["time"][::5], steps[name][::5], "o", color=color, markerfacecolor="none", markersize=4)
-    axes.axvline(known["time"][0], color="0.5", linestyle="--", linewidth=0.9)
-    axes.text(known["time"][0] + 0.01, 0.4, "rolls", color="0.4")
+    meaning(axes, "event-driven", "o", "time stepping")
+    axes.axvline(known["time"][0], color="0.5", linestyle="--", linewidth=0.9, label="rolls from here on (exact)")
     axes.set(xlabel="t [s]", ylabel="speed [m/s]", xlim=(0, 1), ylim=(0, None))
     axes.legend()
     return figure
@@ -174,12 +184,12 @@ def coulomb_oscillator(data):
     events, steps = columns_of(data / "coulomb_events.csv"), columns_of(data / "coulomb_stepping.csv")
     known = columns_of(data / "coulomb_reference.csv")
     figure, axes = plt.subplots(figsize=(6.5, 3.6), layout="constrained")
-    axes.axhspan(-0.02943, 0.02943, color="0.92", label="held by friction")
+    axes.axhspan(-0.02943, 0.02943, color="0.92", label="friction can hold the mass here")
     axes.plot(events["time"], events["place"], color=BLUE, label="event-driven")
     axes.plot(steps["time"][::4], steps["place"][::4], "o", color=ORANGE, markerfacecolor="none", markersize=4,
               label="time stepping, h = 10 ms")
-    axes.plot(known["time"], known["place"], "x", color="black", label="turning points")
-    axes.set(xlabel="t [s]", ylabel="place [m]", xlim=(0, 1.3))
+    axes.plot(known["time"], known["place"], "x", color="black", label="turning points (exact)")
+    axes.set(xlabel="t [s]", ylabel="displacement [m]", xlim=(0, 1.3))
     axes.legend()
     return figure
 
@@ -192,7 +202,7 @@ def ladder(data):
     axes.plot(steps["friction"][::3], steps["turn"][::3], "o", color=ORANGE, markerfacecolor="none", markersize=4,
               label="time stepping, h = 1 ms")
     axes.axvline(least, color="0.4", linestyle="--", linewidth=0.9, label="least friction by statics")
-    axes.set(xlabel="friction of the floor", ylabel="turn in 0.2 s [rad]", xlim=(0, 0.6))
+    axes.set(xlabel="coefficient of friction of the floor [–]", ylabel="angle turned in 0.2 s [rad]", xlim=(0, 0.6))
     axes.legend()
     return figure
 
@@ -216,7 +226,7 @@ def impact_oscillator(data):
     axes.plot([known["time"][i] for i in shown], [known["place"][i] for i in shown], "o", color=RED, markersize=4,
               label="impacts of the reference")
     axes.axhline(known["place"][0], color="black", linewidth=0.8)
-    axes.fill_between([0, run["time"][-1]], 0, 0.08, color="0.9")
+    axes.fill_between([0, run["time"][-1]], 0, 0.08, color="0.9", label="obstacle")
     axes.set(xlabel="t [s]", ylabel="x [m]", xlim=(0, run["time"][-1]), ylim=(None, 0.08))
     axes.legend(loc="lower right")
     return figure
@@ -227,7 +237,7 @@ def vibrating_table(data):
     figure, axes = plt.subplots(figsize=(6.5, 3.4), layout="constrained")
     axes.plot(run["time"], [1e3 * y for y in run["ball"]], color=BLUE, label="ball")
     axes.plot(run["time"], [1e3 * y for y in run["table"]], color="0.4", label="table")
-    axes.set(xlabel="t [s]", ylabel="height [mm]", xlim=(0, run["time"][-1]), ylim=(-3, 27))
+    axes.set(xlabel="t [s]", ylabel="height [mm]", xlim=(0, run["time"][-1]), ylim=(-3, 27), title="Event-driven run")
     axes.legend(loc="upper right", ncols=2)
     return figure
 
@@ -242,14 +252,14 @@ def painleve(data):
     states = columns_of(data / "painleve_states.csv")
     figure, axes = plt.subplots(figsize=(6, 4.2), layout="constrained")
     image = axes.pcolormesh([math.degrees(x) for x in xs], ys, p, cmap="viridis", shading="nearest", rasterized=True)
-    figure.colorbar(image, label="p, where no forces exist [1/kg]")
+    figure.colorbar(image, label="p = $W_{nn} - s\\mu W_{nt}$ [1/kg], coloured where no forces exist")
     thetas, border = rod_border()
     axes.plot([math.degrees(t) for t in thetas], border, color="black", label="p = 0")
-    for count, marker, label in ((0, "x", "states without solution"), (1, "o", "with one"), (2, "s", "with two")):
+    for count, marker, label in ((0, "x", "tested states, no solution"), (1, "o", "one solution"), (2, "s", "two solutions")):
         shown = [i for i, n in enumerate(states["solutions"]) if n == count]
         axes.plot([math.degrees(states["theta"][i]) for i in shown], [states["friction"][i] for i in shown], marker,
                   color=RED, markerfacecolor="none", markersize=5 + 3 * count, linestyle="none", label=label)
-    axes.set(xlabel="angle of the rod to the floor [degrees]", ylabel="friction μ", xlim=(0, 90), ylim=(0.5, 3))
+    axes.set(xlabel="angle of the rod to the floor [degrees]", ylabel="coefficient of friction μ [–]", xlim=(0, 90), ylim=(0.5, 3))
     axes.legend(loc="lower right", fontsize=8, ncols=2)
     return figure
 
@@ -259,12 +269,12 @@ def three_solutions(data):
     figure, axes = plt.subplots(figsize=(6, 4.2), layout="constrained")
     cells = [[100 * value if value > 0 else math.nan for value in row] for row in share]
     image = axes.pcolormesh([math.degrees(x) for x in xs], ys, cells, cmap="viridis", shading="nearest", rasterized=True)
-    figure.colorbar(image, label="directions with three solutions [%]")
+    figure.colorbar(image, label="share of directions of impact with three solutions [%]")
     thetas, border = rod_border()
     axes.plot([math.degrees(t) for t in thetas], border, color="black", label="$\\mu\\,|W_{nt}| = W_{nn}$")
     axes.plot([math.degrees(math.atan(2))], [4 / 3], "o", color=RED, markersize=5, label="μ = 4/3 at tan θ = 2")
     axes.text(45, 0.6, "one solution", ha="center")
-    axes.set(xlabel="angle of the rod to the floor [degrees]", ylabel="friction μ", xlim=(0, 90), ylim=(0, 4))
+    axes.set(xlabel="angle of the rod to the floor [degrees]", ylabel="coefficient of friction μ [–]", xlim=(0, 90), ylim=(0, 4))
     axes.legend(loc="lower left", fontsize=8)
     return figure
 
@@ -279,9 +289,9 @@ def random_contacts(data):
         axes.semilogy([run["solver"][i] + shift + s for i, s in zip(shown, spread)],
                       [max(run["certificate"][i], 1e-19) for i in shown], ".", color=color, markersize=4,
                       label="one contact" if contacts == 1 else "two contacts")
-    axes.axhline(1e-12, color="0.4", linestyle="--", linewidth=0.9, label="taken at once below")
+    axes.axhline(1e-12, color="0.4", linestyle="--", linewidth=0.9, label="accepted below this value")
     axes.set_xticks(range(len(names)), names)
-    axes.set(ylabel="certificate (0 drawn at 1e-19)", ylim=(3e-20, 1e-11))
+    axes.set(xlabel="solver", ylabel="certificate (residual) [–], 0 drawn at 1e-19", ylim=(3e-20, 1e-11))
     axes.legend(loc="upper right", fontsize=8, ncols=3)
     return figure
 
@@ -290,9 +300,10 @@ def stacks(data):
     figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
     for name, color, label in (("discs", BLUE, "disc on disc"), ("blocks", ORANGE, "each corner of a block")):
         run = columns_of(data / f"stack_{name}.csv")
-        axes.plot([level + 1 for level in run["level"]], run["force"], "o", color=color, markerfacecolor="none", label=label)
-        axes.plot([level + 1 for level in run["level"]], run["reference"], "x", color="black", markersize=4)
-    axes.set(xlabel="contact, from the floor upwards", ylabel="force [N]", ylim=(0, None))
+        axes.plot([level + 1 for level in run["level"]], run["force"], "o", color=color, markerfacecolor="none", label=f"{label}, solver")
+        axes.plot([level + 1 for level in run["level"]], run["reference"], "x", color="black", markersize=4,
+                  label="statics" if name == "blocks" else None)
+    axes.set(xlabel="number of the contact, from the floor upwards", ylabel="normal force [N]", ylim=(0, None))
     axes.set_xticks(range(1, 11))
     axes.legend()
     return figure
@@ -318,7 +329,7 @@ def lcp_cases(data):
 def mechanisms(data):
     run, known = columns_of(data / "slider_course.csv"), columns_of(data / "slider_reference.csv")
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 3.4), layout="constrained")
-    for one, name, label in ((axes[0], "slider", "place of the slider [m]"), (axes[1], "crank speed", "speed of the crank [rad/s]")):
+    for one, name, label in ((axes[0], "slider", "position of the slider [m]"), (axes[1], "crank speed", "spin of the crank [rad/s]")):
         one.plot(run["time"], run[name], color=BLUE, label="event-driven")
         one.plot(known["time"], known[name], "o", color=RED, markersize=5, label="reference", clip_on=False)
         one.set(xlabel="t [s]", ylabel=label, xlim=(0, 0.1))
@@ -356,7 +367,7 @@ def convergence(data):
             below.loglog(run["cost"], run["error"], **shown)
             if mode == "stepping":
                 slope_line(above, run["step"], run["error"], slope)
-        above.set(title=title, xlabel="step, event-driven the mean [s]")
+        above.set(title=title, xlabel="step (event-driven: mean step) [s]")
         below.set(xlabel="CPU time [s]")
         above.legend(fontsize=8)
     for one in axes:
