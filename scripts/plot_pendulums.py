@@ -23,7 +23,8 @@ def strobe(axes, run, links, title):
         axes.plot(x, y, color=shades(run["time"][i] / UNTIL), linewidth=1.2, marker="o", markersize=2.5)
     wall = axes.axvline(WALL, color="0.3", linewidth=2.0)
     pins = axes.plot([], [], color=shades(0.5), linewidth=1.2, marker="o", markersize=2.5)
-    axes.legend([pins[0], wall], ["rods; dots: pins and tip", "wall"], loc="lower right", frameon=False)
+    axes.legend([pins[0], wall], ["rods; dots: pins and tip", "wall"], loc="upper center", bbox_to_anchor=(0.5, -0.14),
+                ncols=2, frameon=False, fontsize=9)
     axes.set(aspect="equal", title=title, xlabel="x [m]", ylabel="y [m]")
     colours = plt.cm.ScalarMappable(plt.Normalize(0.0, UNTIL), shades)
     axes.figure.colorbar(colours, ax=axes, label="t [s]", location="left", shrink=0.8)
