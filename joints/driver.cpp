@@ -14,12 +14,8 @@ void DriverKind::add(const Driver& part, const PartCheck& check) {
     check.refuse("velocity", "not given", "a function of time where there is an acceleration");
   }
   check.breaks(part.breaks, "breaks");
-  const System& system = check.system();
-  for (const JointId other : system.joints()) {
-    const auto place = system.joint_kinds().place(other.serial);
-    const JointKind& kind = *system.joint_kinds().entries()[place.entry].kind;
-    if (kind.rows() == 0 || kind.on_joint(place.slot) != part.joint) continue;
-    check.refuse("joint", system.name(part.joint) + ", which " + system.name(other) + " drives",
+  if (const Index other = slot_on(part.joint); other != none) {
+    check.refuse("joint", check.system().name(part.joint) + ", which " + parts_[other].name + " drives",
                  "a joint without a driver");
   }
   const Course<double> start = course(part.position, part.velocity, part.acceleration, 0.0, part.breaks);

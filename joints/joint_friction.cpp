@@ -16,12 +16,8 @@ void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
   if (!(part.static_factor >= 1.0) || !std::isfinite(part.static_factor)) {
     check.refuse("static_factor", to_text(part.static_factor), "a finite number >= 1");
   }
-  const System& system = check.system();
-  for (const JointId other : system.joints()) {
-    const auto place = system.joint_kinds().place(other.serial);
-    const JointKind& kind = *system.joint_kinds().entries()[place.entry].kind;
-    if (!kind.rubs() || kind.on_joint(place.slot) != part.joint) continue;
-    check.refuse("joint", system.name(part.joint) + ", in which " + system.name(other) + " rubs",
+  if (const Index other = slot_on(part.joint); other != none) {
+    check.refuse("joint", check.system().name(part.joint) + ", in which " + parts_[other].name + " rubs",
                  "a joint without friction");
   }
   store(part, check);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,7 +44,11 @@ public:
     return copy;
   }
   /// Removes a part; later ones move up.
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
+  void remove(Index slot) override {
+    parts_.erase(parts_.begin() + slot);
+    slots_.clear();
+    for (Index at = 0; at < parts_.size(); ++at) slots_[parts_[at].part.joint.serial] = at;
+  }
   [[nodiscard]] int dimension() const override { return 0; }  ///< likewise
   [[nodiscard]] Index size() const override {
     return static_cast<Index>(parts_.size());
@@ -62,13 +67,22 @@ protected:
     std::vector<BodyId> ends;  ///< of its joint
     std::string name;          ///< in messages
   };
+  /// Slot of the (last) part that acts on a joint, `none` if there is none.
+  [[nodiscard]] Index slot_on(JointId joint) const {
+    const auto found = slots_.find(joint.serial);
+    return found == slots_.end() ? none : found->second;
+  }
   /// Stores a part that has been checked.
   void store(const P& part, const PartCheck& check) {
+    slots_[part.joint.serial] = static_cast<Index>(parts_.size());
     parts_.push_back({part, bodies_of(check.system(), part.joint), check.part()});
   }
 
   std::vector<Stored> parts_;       ///< in the order of slots
   const Layout* layout_ = nullptr;  ///< of an arranged kind
+
+private:
+  std::unordered_map<Index, Index> slots_;  // by serial number of the joint; not of an arranged kind
 };
 
 }  // namespace carom
