@@ -3,6 +3,7 @@
 #include <carom/analysis/cross_check.h>
 #include <carom/core/text_table.h>
 #include <carom/integrators/simulation.h>
+#include <carom/integrators/time_resolution.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,9 @@ void check(const CrossCheckOptions& options) {
     refuse("the number of steps", std::to_string(options.steps.size()), "at least 5");
   for (const double step : options.steps) {
     if (!(step > 0.0 && step < options.end)) refuse("a step", to_text(step), "> 0 s and below the end");
+    if (step < shortest_step_at(options.end)) {
+      refuse("a step", to_text(step), "> 0 s and not lost in the rounding of the end");
+    }
   }
   if (options.time_stepping.control) refuse("time_stepping.control", "given", "steps of fixed length");
 }
@@ -75,6 +79,7 @@ CrossCheck cross_check(const System& system, const CrossCheckOptions& options) {
     events.record_events = false;
     Simulation stepped(system, stepping);
     Simulation exact(system, events);
+    for (Simulation* const run : {&stepped, &exact}) run->stop_when(options.stop_when);
     const std::vector<double> lengths = stepped.assembly().length_scales();
     CrossCheckLevel& level = result.levels.emplace_back();
     level.step = step;

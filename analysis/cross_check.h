@@ -6,6 +6,7 @@
 #include <carom/core/export.h>
 #include <carom/core/system.h>
 #include <carom/integrators/event_driven.h>
+#include <carom/integrators/stop_request.h>
 #include <carom/integrators/time_stepping.h>
 
 #include <iosfwd>
@@ -20,6 +21,7 @@ struct CrossCheckOptions {
   std::vector<double> steps{};   ///< of time stepping, at least five, > 0 (required; see spread_steps()) [s]
   TimeStepping time_stepping{};  ///< its other options; `step` is taken from `steps`, `control` must be empty
   EventDriven event_driven{};    ///< of the run that is taken for exact
+  StopFunction stop_when{};      ///< of all runs: Simulation::stop_when()
 };
 
 /// Differences of one run of time stepping from the event-driven one.

@@ -51,12 +51,14 @@ SolverError failure(const RestingModel& model, const std::string& message, doubl
 /// The search: where it stands, and what counts there.
 class Search {
 public:
-  Search(RestingModel& model, const EquilibriumOptions& options) : model_(&model), options_(&options) {}
+  Search(RestingModel& model, const EquilibriumOptions& options)
+      : model_(&model), options_(&options), stop_(options.stop_when) {}
 
   int run() {
     model_->balance();
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0;; ++step) {
+      stop_.check();
       model_->differentiate(by_position_, by_velocity_);
       size_ = model_->size();
       // Forces of springs that balance are large where their sum is not.
@@ -125,6 +127,7 @@ private:
     if (longest > farthest_turn) x *= farthest_turn / longest;
     const RestingModel::Place from = model_->place();
     for (int halving = 0; halving < most_halvings; ++halving, x *= 0.5) {
+      stop_.check();
       model_->move(from, x);
       model_->balance();
       const double then = off();
@@ -190,6 +193,7 @@ private:
 
   RestingModel* model_;
   const EquilibriumOptions* options_;
+  StopRequest stop_;
   MatrixXd by_position_, by_velocity_;
   VectorXd free_motion_;  // one without stiffness; empty if there is none
   double size_ = 1.0, scale_ = 0.0, force_ = 0.0;

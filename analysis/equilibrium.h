@@ -14,6 +14,7 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
+#include <carom/integrators/stop_request.h>
 
 #include <array>
 #include <string>
@@ -30,6 +31,8 @@ struct EquilibriumOptions {
   /// Newton's method makes no more progress. > 0
   double tolerance = 1e-10;
   int most_steps = 200;  ///< of Newton's method, >= 1
+  /// Asked at every trial; where it returns true the search ends with Cancelled. May be empty.
+  StopFunction stop_when{};
 };
 
 /// What a joint does in equilibrium.

@@ -40,6 +40,7 @@ struct CsvRecorder::Impl {
   Options options;
   std::ofstream file;
   std::string line;
+  std::vector<std::size_t> columns;  // by body
   long rows = 0;
   long steps = 0;
 };
@@ -60,6 +61,7 @@ void CsvRecorder::Impl::write_header(const Simulation& simulation) {
     if (oriented) column("angle [rad]");
     for (std::size_t i = 0; i < dimension; ++i) column("v" + std::string(axes[i]) + " [m/s]");
     if (oriented) column("spin [rad/s]");
+    columns.push_back(layout.slot(body).q_size + layout.slot(body).v_size);
   }
   if (options.energies) {
     const auto column = [&](std::string_view name) { line.append(name).append(" [J],"); };
@@ -75,10 +77,15 @@ void CsvRecorder::Impl::write_row(const Simulation& simulation) {
   const State& state = simulation.state();
   const Layout& layout = *state.layout();
   add(state.time);
-  for (const BodyId body : options.bodies) {
+  for (std::size_t i = 0; i < options.bodies.size(); ++i) {
+    const BodyId body = options.bodies[i];
+    if (!layout.contains(body)) {
+      line.append(columns[i], ',');
+      continue;
+    }
     const BodySlot& slot = layout.slot(body);
-    for (Index i = 0; i < slot.q_size; ++i) add(state.q[slot.q + i]);
-    for (Index i = 0; i < slot.v_size; ++i) add(state.v[slot.v + i]);
+    for (Index k = 0; k < slot.q_size; ++k) add(state.q[slot.q + k]);
+    for (Index k = 0; k < slot.v_size; ++k) add(state.v[slot.v + k]);
   }
   if (options.energies) {
     const EnergyLedger& energy = simulation.energy();
@@ -105,7 +112,7 @@ CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const 
   if (impl_->options.bodies.empty()) impl_->options.bodies = simulation.system().bodies();
   impl_->write_header(simulation);
   impl_->write_row(simulation);
-  simulation.observe([impl = impl_](const Simulation& run) {
+  observer_ = simulation.observe([impl = impl_](const Simulation& run) {
     if (++impl->steps % impl->options.every_steps == 0) impl->write_row(run);
   });
 }
@@ -113,6 +120,11 @@ CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const 
 void CsvRecorder::flush() {
   impl_->file.flush();
   impl_->demand_written();
+}
+
+void CsvRecorder::detach(Simulation& simulation) {
+  simulation.remove_callback(observer_);
+  flush();
 }
 
 long CsvRecorder::rows() const { return impl_->rows; }

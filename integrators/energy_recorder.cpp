@@ -123,13 +123,19 @@ EnergyRecorder::EnergyRecorder(Simulation& simulation, const Options& options)
   impl_->rows.add_row(simulation);
   // Observers come before actions: an interval's row finds the events of the step that led to it.
   const int every = options.interval > 0.0 ? 0 : std::max(options.every_steps, 1);
-  simulation.observe([impl = impl_, every](const Simulation& run) {
+  if (options.interval > 0.0) {
+    action_ =
+        simulation.every(options.interval, [impl = impl_](Simulation& run) { impl->rows.add_row(run); });
+  }
+  observer_ = simulation.observe([impl = impl_, every](const Simulation& run) {
     impl->rows.take_step(run);
     if (every > 0 && ++impl->steps % every == 0) impl->rows.add_row(run);
   });
-  if (options.interval > 0.0) {
-    simulation.every(options.interval, [impl = impl_](Simulation& run) { impl->rows.add_row(run); });
-  }
+}
+
+void EnergyRecorder::detach(Simulation& simulation) {
+  simulation.remove_callback(observer_);
+  if (action_) simulation.remove_callback(*action_);
 }
 
 const EnergyTrace& EnergyRecorder::trace() const { return impl_->rows.trace(); }
@@ -143,17 +149,23 @@ EnergyTrace record_at(Simulation& simulation, const std::vector<double>& times) 
     }
     before = time;
   }
-  // An observer stays with its simulation: once this function is left, it has nothing to write to.
-  const auto rows = std::make_shared<RowMaker>();
-  simulation.observe([open = std::weak_ptr<RowMaker>(rows)](const Simulation& run) {
-    if (const auto maker = open.lock()) maker->take_step(run);
-  });
-  rows->add_row(simulation);
+  RowMaker rows;
+  // Ends with this function, however it is left.
+  struct Watch {
+    Watch(Simulation& run, RowMaker& maker)
+        : simulation(&run), id(run.observe([&maker](const Simulation& now) { maker.take_step(now); })) {}
+    ~Watch() { simulation->remove_callback(id); }
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+    Simulation* simulation;
+    CallbackId id;
+  } const watch(simulation, rows);
+  rows.add_row(simulation);
   for (const double time : times) {
     simulation.run_until(time);
-    rows->add_row(simulation);
+    rows.add_row(simulation);
   }
-  return rows->trace();
+  return rows.trace();
 }
 
 }  // namespace carom

@@ -5,8 +5,10 @@
 
 #include <carom/core/energy_trace.h>
 #include <carom/core/export.h>
+#include <carom/integrators/callbacks.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace carom {
@@ -26,18 +28,23 @@ public:
     double interval = 0.0;  ///< when this time has passed, twice this time, ... from now; 0: no interval [s]
   };
 
-  /// Records at every step until the simulation ends.
+  /// Records at every step until the simulation ends or detach().
   explicit EnergyRecorder(Simulation& simulation);
-  /// Records at chosen times until the simulation ends. Throws ModelError for a negative or not finite option
-  /// or if both are given.
+  /// Records at chosen times until the simulation ends or detach(). Throws ModelError for a negative or not
+  /// finite option or if both are given.
   EnergyRecorder(Simulation& simulation, const Options& options);
 
   /// What was recorded so far.
   [[nodiscard]] const EnergyTrace& trace() const;
+  /// Ends the recording of this simulation, and that its steps end at the times of the interval. Throws
+  /// ModelError if the simulation is not the one that is recorded, or no longer is.
+  void detach(Simulation& simulation);
 
 private:
   struct Impl;
   std::shared_ptr<Impl> impl_;
+  CallbackId observer_;
+  std::optional<CallbackId> action_;  // of an interval
 };
 
 /// Runs to each of the listed times in turn, steps ending exactly there, and records a row at the present and

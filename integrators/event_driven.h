@@ -39,6 +39,12 @@ struct EventDriven {
   /// A run with more events per second of simulated time, over the last 1,000 events of an island, ends with
   /// a SolverError, > 0 [1/s].
   double event_limit = 1e6;
+  /// More steps of the integrator than this per second of simulated time, over the last 10,000 of an island,
+  /// end a run with a SolverError that names its stiffest coupling, > 0 [1/s].
+  double step_limit = 1e9;
+  /// More evaluations of the motion of an island than this within one of its steps, its events or between
+  /// two looks at it end a run with a SolverError, > 0.
+  std::int64_t evaluation_limit = 10'000'000;
   /// Keep a record of every event (Simulation::events()).
   bool record_events = true;
 

@@ -23,14 +23,19 @@ void check_options(const EventDriven& options) {
   positive("gap_tolerance", options.gap_tolerance, " m");
   positive("capture_speed", options.capture_speed, " m/s");
   positive("event_limit", options.event_limit, " 1/s");
+  positive("step_limit", options.step_limit, " 1/s");
+  if (options.evaluation_limit < 1) {
+    throw ModelError("event-driven mode: evaluation_limit is " + std::to_string(options.evaluation_limit) +
+                     "; allowed: at least 1");
+  }
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
-EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options)
+EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
       finder_(assembly),
-      work_(assembly, options),
+      work_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
   for (Index island = 0; island < assembly.islands().size(); ++island) {

@@ -22,12 +22,13 @@ namespace carom {
 class CAROM_API EventDriver {
 public:
   /// Throws ModelError for impossible options, a contact without a law, contact in space.
-  EventDriver(const Assembly& assembly, const EventDriven& options);
+  /// \param stop asked within the work, may be null; must outlive this
+  EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop = nullptr);
 
   /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start.
   void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
-  /// tells what happened and `events` got what there was; on SolverError none of them has changed. Throws
+  /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
   /// ModelError where bodies are too deep in obstacles at a start.
   void advance(State& state, Companion& companion, double target, StepReport& report,
                std::vector<EventRecord>& events);

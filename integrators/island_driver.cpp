@@ -37,6 +37,7 @@ IslandDriver::IslandDriver(const Assembly& assembly, const ContactFinder& finder
 
 void IslandDriver::demand_start(const State& state) {
   work_->y.resize(motion_.size());
+  work_->motion.limit.restart();
   motion_.gather(state, work_->y);
   motion_.evaluate(state.time, work_->y.data(), false);
   Contact contact;
@@ -64,8 +65,8 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   last_impacts_.clear();
   breaking_.clear();
   lifting_.clear();
-  counted_ = 0;
-  window_start_ = time_;
+  events_.start(time_);
+  steps_.start(time_);
 
   motion_.closed().list().clear();
   motion_.evaluate(time_, y_.data(), false);
@@ -82,8 +83,9 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   }
 }
 
-void IslandDriver::advance(double target, DriverNews& news) {
+void IslandDriver::go_to(double target, DriverNews& news) {
   for (;;) {
+    work_->motion.limit.restart();
     if (!in_phase_) begin_phase(news);
     if (resting_) time_ = target;
     if (time_ == target) {
@@ -92,7 +94,11 @@ void IslandDriver::advance(double target, DriverNews& news) {
       break;
     }
     borrow_flow();
-    if (!pending_) take_step();
+    if (!pending_) {
+      demand_time(target);
+      count_step();
+      take_step();
+    }
     const double until = next_.guard == Guard::nothing ? flow_->end() : next_.time;
     if (target < until) {
       show_within_step(target, news);
@@ -153,6 +159,7 @@ void IslandDriver::write(State& state, ContactModes& modes) const {
 }
 
 JointReaction IslandDriver::reaction(const JointKind& kind, Index slot, JointId joint) {
+  work_->motion.limit.restart();
   motion_.evaluate(looked_at_, seen_.data(), true);
   const MotionWorkspace& work = work_->motion;
   const JointView at{work.trial.view(), work.evaluation.rotation.data()};

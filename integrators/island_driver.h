@@ -18,6 +18,7 @@
 #include <carom/integrators/mode_decision.h>
 #include <carom/integrators/step_polynomial.h>
 #include <carom/integrators/step_report.h>
+#include <carom/integrators/work_limits.h>
 
 #include <memory>
 #include <span>
@@ -29,8 +30,11 @@ namespace carom {
 
 /// What islands share: memory and solvers.
 struct CAROM_API DriverWorkspace {
-  DriverWorkspace(const Assembly& assembly, const EventDriven& options)
-      : motion(assembly), flows(options.method, options.relative_tolerance) {}
+  /// \param stop asked within the work, may be null
+  DriverWorkspace(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
+      : motion(assembly), flows(options.method, options.relative_tolerance) {
+    motion.limit = EvaluationLimit(options.evaluation_limit, stop);
+  }
 
   /// For one island at a time.
   MotionWorkspace motion;
@@ -155,6 +159,10 @@ private:
   EventRecord& tell(EventKind kind, const Contact& contact, DriverNews& news);
   [[nodiscard]] bool touches(std::size_t pair) const;
   [[nodiscard]] double speed_noise() const;
+  // Bounds of the work (island_driver_limits.cpp).
+  void go_to(double target, DriverNews& news);
+  void demand_time(double target) const;
+  void count_step();
   void count_event();
   void tell_joints(DriverNews& news);
   void list_impulses(DriverNews& news);
@@ -221,8 +229,7 @@ private:
   };
   static constexpr std::size_t remembered = 16;
   std::vector<Impact> last_impacts_;  // the latest, in time
-  std::int64_t counted_ = 0;          // events in the window
-  double window_start_ = 0.0;         // of event_limit
+  RateLimit events_{1000}, steps_{10'000};
 };
 
 }  // namespace carom

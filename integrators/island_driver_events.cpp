@@ -230,10 +230,7 @@ EventRecord& IslandDriver::tell(EventKind kind, const Contact& contact, DriverNe
 }
 
 void IslandDriver::count_event() {
-  constexpr std::int64_t window = 1000;
-  if (++counted_ < window) return;
-  const double allowed = static_cast<double>(window) / options_.event_limit;
-  if (time_ - window_start_ < allowed) {
+  if (events_.exceeds(options_.event_limit, time_)) {
     const std::size_t pair =
         next_.guard == Guard::gap ? next_.which
         : motion_.closed().list().empty()
@@ -245,8 +242,6 @@ void IslandDriver::count_event() {
     fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)",
          {finder_->name(work_->contacts[pair].key)});
   }
-  counted_ = 0;
-  window_start_ = time_;
 }
 
 void IslandDriver::fail(const std::string& what, std::vector<std::string> parts,

@@ -116,6 +116,7 @@ void IslandMotion::scatter(std::span<const double> y, State& state) const {
 bool IslandMotion::evaluate(double time, const double* y, bool with_reactions) {
   MotionWorkspace& work = *work_;
   const Assembly& assembly = *assembly_;
+  work.limit.take();
   scatter({y, size_}, work.trial);
   work.trial.time = time;
   finder_->place(time, work.places);

@@ -17,6 +17,7 @@
 #include <carom/core/island_joints.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
+#include <carom/integrators/work_limits.h>
 
 #include <array>
 #include <cstddef>
@@ -40,6 +41,7 @@ struct CAROM_API MotionWorkspace {
   std::vector<double> lengths;                             ///< Assembly::length_scales()
   std::vector<double> z_rates;
   ObstaclePlaces places;  ///< at the time of the state looked at
+  EvaluationLimit limit;  ///< of evaluations
 };
 
 /// Works that are integrated along.

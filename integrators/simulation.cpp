@@ -1,14 +1,18 @@
 #include <carom/core/joint_closure.h>
+#include <carom/integrators/call_guard.h>
+#include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/event_driver.h>
 #include <carom/integrators/mode_takeover.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/simulation.h>
 #include <carom/integrators/step_controller.h>
+#include <carom/integrators/time_resolution.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <iostream>
 #include <limits>
 #include <optional>
@@ -31,12 +35,12 @@ StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
 struct Simulation::Impl {
   // The machines of the mode, over one assembly.
   struct Machines {
-    Machines(const Assembly& assembly, const Mode& mode) {
+    Machines(const Assembly& assembly, const Mode& mode, const StopRequest& stop) {
       if (const auto* options = std::get_if<TimeStepping>(&mode)) {
-        stepper = std::make_unique<TimeStepper>(assembly, *options);
+        stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
         controller = std::make_unique<StepController>(assembly, *options);
       } else {
-        driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode));
+        driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
       }
     }
     [[nodiscard]] const ContactFinder& finder() const {
@@ -49,7 +53,8 @@ struct Simulation::Impl {
   };
   // Everything made from the model, so that an edit can replace it as a whole.
   struct Model {
-    Model(System system, const Mode& mode) : assembly(std::move(system)), machines(assembly, mode) {}
+    Model(System system, const Mode& mode, const StopRequest& stop)
+        : assembly(std::move(system)), machines(assembly, mode, stop) {}
     /// Brings a state onto the joints, and refuses one that a run cannot start from. The largest
     /// displacement.
     [[nodiscard]] double prepare(State& start) const {
@@ -63,7 +68,7 @@ struct Simulation::Impl {
   };
 
   Impl(System system, Mode chosen)
-      : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode)) {
+      : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode, stop)) {
     state = model->assembly.initial_state();
     report.projected = model->prepare(state);
     forget_history();
@@ -104,31 +109,49 @@ struct Simulation::Impl {
     companion.grid_start = state.time;
     companion.grid_steps = 0;
   }
-  void demand_outside(const char* what) const {
-    if (!in_callback) return;
-    throw ModelError(std::string("simulation: ") + what +
-                     " was called by its own observer or action; allowed: from outside");
-  }
+  void demand_times(const char* call, double time) const;
   void step(Simulation& simulation, double limit);
+  void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
+  void rethrow(const std::vector<std::exception_ptr>& thrown);
   void advance(double limit);
   void write_news();
   void write_event_news(std::size_t told);
   [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
-    return std::make_unique<Model>(std::move(system), mode);
+    return std::make_unique<Model>(std::move(system), mode, stop);
   }
 
+  CallGuard guard;
+  StopRequest stop;
   Mode mode;
   std::unique_ptr<Model> model;
   State state;
   Companion companion;
   StepReport report;
   std::vector<EventRecord> events;
-  std::vector<Action> actions;  // of the periodic events, as Companion::rhythms
-  std::vector<Observer> observers;
+  Callbacks callbacks;
   Log log;
   bool progress = false;
-  bool in_callback = false;
 };
+
+/// Demands that the steps of the mode and all periodic events move times up to this one.
+void Simulation::Impl::demand_times(const char* call, double time) const {
+  const double shortest = shortest_step_at(time);
+  const auto refuse = [&](const std::string& what, double length, double allowed) {
+    throw ModelError(std::string(call) + ": " + what + " is " + to_text(length) + " s; allowed: at least " +
+                     to_text(allowed) + " s, or it is lost in the rounding of times around " + to_text(time) +
+                     " s");
+  };
+  const auto* const stepping = std::get_if<TimeStepping>(&mode);
+  const bool controlled = stepping != nullptr && stepping->control;
+  const double length = controlled ? stepping->control->largest : grid();
+  if (length < shortest) {
+    refuse(controlled ? "control.largest" : stepping != nullptr ? "step" : "interval", length, shortest);
+  }
+  const double apart = std::max(shortest, closeness());
+  for (const Rhythm& rhythm : companion.rhythms) {
+    if (rhythm.interval < apart) refuse("interval of a periodic event (every)", rhythm.interval, apart);
+  }
+}
 
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
 void Simulation::Impl::step(Simulation& simulation, double limit) {
@@ -137,26 +160,52 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
     state.time = limit;
     return;
   }
-  const std::size_t told = events.size();
-  advance(std::min(limit, next_due()));
-  write_news();
-  write_event_news(told);
-
-  struct Guard {
-    bool& flag;
-    explicit Guard(bool& f) : flag(f) { flag = true; }
-    ~Guard() { flag = false; }
-    Guard(const Guard&) = delete;
-    Guard& operator=(const Guard&) = delete;
-  } guard(in_callback);
-  for (const Observer& observer : observers) observer(simulation);
-  for (std::size_t i = 0; i < actions.size(); ++i) {
-    Rhythm& rhythm = companion.rhythms[i];
-    if (rhythm.due() > state.time + close) continue;
-    ++rhythm.fired;
-    const Action action = actions[i];  // a copy: the action may add further ones
-    action(simulation);
+  // Left over where an observer saved the state: actions come after observers.
+  std::vector<std::exception_ptr> thrown;
+  if (next_due() <= state.time + close) {
+    call_actions(simulation, thrown);
+    rethrow(thrown);
   }
+  const std::size_t told = events.size();
+  {
+    const CallGuard::Scope scope(guard, CallGuard::Caller::law);
+    stop.check();
+    advance(std::min(limit, next_due()));
+  }
+  try {
+    const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
+    write_news();
+    write_event_news(told);
+  } catch (...) {
+    thrown.push_back(std::current_exception());
+  }
+  callbacks.call_observers(simulation, guard, thrown);
+  call_actions(simulation, thrown);
+  rethrow(thrown);
+}
+
+void Simulation::Impl::call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown) {
+  const double close = closeness();
+  callbacks.call_actions(simulation, companion.rhythms, guard, thrown,
+                         [&](const Rhythm& rhythm) { return rhythm.due() <= state.time + close; });
+}
+
+/// Lets out the first exception of callbacks; the log is told the others.
+void Simulation::Impl::rethrow(const std::vector<std::exception_ptr>& thrown) {
+  if (thrown.empty()) return;
+  const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
+  for (std::size_t i = 1; i < thrown.size() && log.enabled(LogLevel::error); ++i) {
+    std::string what = "an unknown exception";
+    try {
+      std::rethrow_exception(thrown[i]);
+    } catch (const std::exception& error) {
+      what = error.what();
+    } catch (...) {  // it has no text
+    }
+    log.write(LogLevel::error,
+              "t = " + to_text(state.time) + " s: one more observer or action threw: " + what);
+  }
+  std::rethrow_exception(thrown.front());
 }
 
 void Simulation::Impl::advance(double limit) {
@@ -229,7 +278,8 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const StepReport& Simulation::step() {
-  impl_->demand_outside("step");
+  impl_->guard.demand("step", CallGuard::Need::outside);
+  impl_->demand_times("step", impl_->state.time);
   impl_->step(*this, std::numeric_limits<double>::infinity());
   return impl_->report;
 }
@@ -241,7 +291,8 @@ void Simulation::run_until(double time) {
   };
   if (!std::isfinite(time)) refuse("a finite time");
   if (time < self.state.time) refuse("not before the present, " + to_text(self.state.time) + " s");
-  self.demand_outside("run_until");
+  self.guard.demand("run_until", CallGuard::Need::outside);
+  if (time > self.state.time) self.demand_times("run_until", std::max(time, std::abs(self.state.time)));
 
   std::optional<ProgressBar> bar;
   if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
@@ -251,24 +302,51 @@ void Simulation::run_until(double time) {
   }
 }
 
-void Simulation::observe(Observer observer) {
+CallbackId Simulation::observe(Observer observer) {
+  impl_->guard.demand("observe", CallGuard::Need::no_step);
   if (!observer) throw ModelError("observe: observer is empty; allowed: a function");
-  impl_->observers.push_back(std::move(observer));
+  return impl_->callbacks.add_observer(std::move(observer));
 }
 
-void Simulation::every(double interval, Action action) {
+CallbackId Simulation::every(double interval, Action action) {
+  Impl& self = *impl_;
+  self.guard.demand("every", CallGuard::Need::no_step);
+  const double shortest = std::max(shortest_step_at(self.state.time), self.closeness());
   if (!(std::isfinite(interval) && interval > 0.0)) {
     throw ModelError("every: interval is " + to_text(interval) + " s; allowed: finite and > 0");
   }
+  if (interval < shortest) {
+    throw ModelError("every: interval is " + to_text(interval) + " s; allowed: at least " +
+                     to_text(shortest) + " s, the distance of times that are told apart at " +
+                     to_text(self.state.time) + " s");
+  }
   if (!action) throw ModelError("every: action is empty; allowed: a function");
-  impl_->actions.push_back(std::move(action));
-  impl_->companion.rhythms.push_back({impl_->state.time, interval, 0});
+  self.companion.rhythms.push_back({self.state.time, interval, 0});
+  return self.callbacks.add_action(std::move(action));
+}
+
+void Simulation::remove_callback(const CallbackId& callback) {
+  impl_->guard.demand("remove_callback", CallGuard::Need::no_step);
+  if (impl_->callbacks.remove(callback, impl_->companion.rhythms)) return;
+  throw ModelError(
+      "remove_callback: the function is not called by this simulation; allowed: one given to its observe() "
+      "or every() and not yet removed");
+}
+
+void Simulation::stop_when(StopFunction stop) {
+  impl_->guard.demand("stop_when", CallGuard::Need::no_step);
+  impl_->stop = StopRequest(std::move(stop));
 }
 
 void Simulation::edit(const std::function<void(System&)>& change) {
   Impl& self = *impl_;
+  self.guard.demand("edit", CallGuard::Need::no_reader);
   System system = self.model->assembly.system();
-  change(system);
+  {
+    const CallGuard::Scope scope(self.guard, CallGuard::Caller::change);
+    change(system);
+  }
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   std::unique_ptr<Impl::Model> edited = self.assembled(std::move(system));
 
   State state = edited->assembly.initial_state();
@@ -298,6 +376,8 @@ void Simulation::edit(const std::function<void(System&)>& change) {
 
 void Simulation::set_state(const State& state) {
   Impl& self = *impl_;
+  self.guard.demand("set_state", CallGuard::Need::no_reader);
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   check_state(self.model->assembly, state);
   if (state.layout() != self.state.layout() || state.z.size() != self.state.z.size()) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
@@ -320,8 +400,10 @@ void Simulation::set_state(const State& state) {
 
 void Simulation::switch_to(Mode mode) {
   Impl& self = *impl_;
+  self.guard.demand("switch_to", CallGuard::Need::no_reader);
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   const Assembly& assembly = self.model->assembly;
-  Impl::Machines machines(assembly, mode);
+  Impl::Machines machines(assembly, mode, self.stop);
   if (machines.driver && self.model->machines.stepper) {
     take_over(assembly, machines.driver->finder(), self.state, self.companion, self.report, self.events);
   }
@@ -333,10 +415,15 @@ void Simulation::switch_to(Mode mode) {
   self.restart_grid();
 }
 
-Mobility Simulation::mobility() const { return carom::mobility(impl_->model->assembly, impl_->state); }
+Mobility Simulation::mobility() const {
+  const CallGuard::Scope scope(impl_->guard, CallGuard::Caller::law);
+  return carom::mobility(impl_->model->assembly, impl_->state);
+}
 
 JointReaction Simulation::reaction(JointId joint) const {
   Impl& self = *impl_;
+  self.guard.demand("reaction", CallGuard::Need::no_step);
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   const Assembly& assembly = self.model->assembly;
   const System& system = assembly.system();
   if (!system.contains(joint)) {
@@ -374,7 +461,10 @@ const ChainStatistics& Simulation::contact_statistics() const { return impl_->co
 const Companion& Simulation::companion() const { return impl_->companion; }
 const Mode& Simulation::mode() const { return impl_->mode; }
 const std::vector<EventRecord>& Simulation::events() const { return impl_->events; }
-void Simulation::clear_events() { impl_->events.clear(); }
+void Simulation::clear_events() {
+  impl_->guard.demand("clear_events", CallGuard::Need::no_step);
+  impl_->events.clear();
+}
 
 std::string Simulation::name(const ContactKey& key) const {
   return impl_->model->machines.finder().name(key);
@@ -383,10 +473,12 @@ Log& Simulation::log() { return impl_->log; }
 void Simulation::show_progress(bool on) { impl_->progress = on; }
 
 void Simulation::save(const std::string& path) const {
+  impl_->guard.demand("save", CallGuard::Need::no_step);
   save_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
 }
 
 void Simulation::load(const std::string& path) {
+  impl_->guard.demand("load", CallGuard::Need::no_reader);
   load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
 }

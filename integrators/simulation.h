@@ -9,10 +9,12 @@
 #include <carom/core/log.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
+#include <carom/integrators/callbacks.h>
 #include <carom/integrators/companion.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/step_report.h>
+#include <carom/integrators/stop_request.h>
 #include <carom/integrators/time_stepping.h>
 
 #include <functional>
@@ -29,10 +31,14 @@ using Mode = std::variant<TimeStepping, EventDriven>;
 /// Takes a copy of a system and runs it. A step works on a trial state, which replaces the state when the
 /// step succeeds: after an error the simulation is at its last good state and can be saved, inspected and
 /// continued.
+///
+/// One thread at a time may use a simulation. Functions that it calls (laws, elements, observers, actions,
+/// sinks) may not destroy, move or assign it, which cannot be noticed; which of its own functions they may
+/// call is in docs/errors.md, others throw ModelError.
 class CAROM_API Simulation {
 public:
-  using Observer = std::function<void(const Simulation&)>;
-  using Action = std::function<void(Simulation&)>;
+  using Observer = Callbacks::Observer;
+  using Action = Callbacks::Action;
 
   /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
   /// joints they are corrected (joint_closure.h); report().projected has the largest displacement. Throws
@@ -43,18 +49,27 @@ public:
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Makes one step of the mode's length (EventDriven: of its interval), shorter if a periodic action is due
-  /// before its end. Throws SolverError; the simulation is then as before the step.
+  /// Makes one step of the mode's length (EventDriven: of its interval), shorter where a periodic event is
+  /// due before its end. Throws SolverError, Cancelled; the simulation then stands where it stood. ModelError
+  /// where such steps are lost in the rounding of time.
   const StepReport& step();
-  /// Runs until exactly `time` [s]. Throws ModelError for a time that is not finite or in the past,
-  /// SolverError as step(): the simulation is then at the last good state.
+  /// Runs until exactly `time` [s]. Throws ModelError, before any work, for a time that is not finite or in
+  /// the past, or where steps or intervals of every() are lost in the rounding of time; SolverError and
+  /// Cancelled as step(): the simulation then stands at the last good state.
   void run_until(double time);
 
-  /// Calls `observer` after every accepted step. Observers cannot change the run.
-  void observe(Observer observer);
+  /// Calls `observer` after every accepted step. Observers cannot change the run. Where one throws, the
+  /// others and the actions are called all the same; then the (first) exception comes out of step().
+  CallbackId observe(Observer observer);
   /// Calls `action` when `interval` [s], twice `interval`, ... have passed from now; steps end exactly there.
-  /// Actions may change the state or edit the model. Throws ModelError for an interval that is not > 0.
-  void every(double interval, Action action);
+  /// Actions may change the state or edit the model. Throws ModelError for an interval that is not > 0, or
+  /// too short for the times around the present to be told apart.
+  CallbackId every(double interval, Action action);
+  /// Ends what observe() or every() began. Throws ModelError for what this simulation does not call.
+  void remove_callback(const CallbackId& callback);
+  /// Asks `stop` again and again within steps; when it returns true they end with Cancelled, at the last good
+  /// state. An empty function ends the asking. What it throws comes out unchanged.
+  void stop_when(StopFunction stop);
 
   /// Changes a copy of the model, assembles it and transfers the state by identity; new bodies start as
   /// described. An error changes nothing. The change of the energy is booked as `intervention`.

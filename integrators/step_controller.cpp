@@ -38,6 +38,7 @@ void StepController::step(TimeStepper& stepper, State& state, Companion& compani
   double step = wanted >= room ? room : std::min(wanted, 0.5 * room);
   int rejected = 0;
   for (;;) {
+    if (!(state.time + 0.5 * step > state.time)) fail_short(state.time, step);
     const bool cut = step < wanted && rejected == 0;
     const double end = step == room ? limit : state.time + step;
     double asked = 0.0;
@@ -84,6 +85,15 @@ void StepController::step(TimeStepper& stepper, State& state, Companion& compani
     step = std::max(asked, std::min(control.smallest, step));
     ++rejected;
   }
+}
+
+void StepController::fail_short(double time, double step) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.step = step;
+  throw SolverError("time stepping at t = " + to_text(time) + " s: a step of " + to_text(step) +
+                        " s is lost in the rounding of time; allowed: steps that move it (control.smallest)",
+                    std::move(failure));
 }
 
 /// Makes the step at once and in halves. Returns whether the two can be compared.

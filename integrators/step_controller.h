@@ -29,6 +29,7 @@ private:
                 double end);
   [[nodiscard]] double error(double step) const;
   void merge(StepReport& report);
+  [[noreturn]] static void fail_short(double time, double step);
 
   struct Run {
     State state;

@@ -13,9 +13,10 @@ constexpr double settled_pressure = 1e-12;
 
 }  // namespace
 
-TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options)
+TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_(options),
+      stop_(stop),
       workers_(std::max(options.threads, 1)),
       finder_(assembly),
       trial_(assembly.layout()),
@@ -165,6 +166,7 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
   bool confirming = false;
   for (;;) {
+    if (stop_ != nullptr) stop_->check();
     SweepsMade made = sweep_on(island, state, companion, step, expected, judge);
     if (made == SweepsMade::failed) return false;
     // Newton's method has its own change: that of the loads is magnified where couplings are stiff.

@@ -42,6 +42,7 @@
 #include <carom/integrators/gap_projection.h>
 #include <carom/integrators/implicit_solver.h>
 #include <carom/integrators/step_report.h>
+#include <carom/integrators/stop_request.h>
 #include <carom/integrators/time_stepping.h>
 
 #include <span>
@@ -58,10 +59,11 @@ CAROM_API void check_options(const TimeStepping& options);
 class CAROM_API TimeStepper {
 public:
   /// Throws ModelError for impossible options or a contact without a law.
-  TimeStepper(const Assembly& assembly, const TimeStepping& options);
+  /// \param stop asked between sweeps, may be null; must outlive this
+  TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop = nullptr);
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
-  /// those at its end and `report` tells what happened; on SolverError none of the three has changed.
+  /// those at its end and `report` tells what happened; on an error none of the three has changed.
   void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
 
   /// Names of contacts.
@@ -212,6 +214,7 @@ private:
 
   const Assembly* assembly_;
   TimeStepping options_;
+  const StopRequest* stop_;  // may be null
   Workers workers_;
   ContactFinder finder_;
   std::vector<SolverChain> chains_;  // one for each run of an island; the first for what is not shared out

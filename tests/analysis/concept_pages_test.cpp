@@ -16,6 +16,7 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <variant>
@@ -76,6 +77,11 @@ void where_did_it_go(std::ostream& out, const EnergyLedger& energy) {
   if (std::abs(energy.residual()) > 1e-12 * energy.scale()) {  // in time stepping
     throw std::logic_error("the ledger does not close");
   }
+}
+
+void run_unless_stopped(Simulation& simulation, double end, const std::stop_token& token) {
+  simulation.stop_when([token] { return token.stop_requested(); });
+  simulation.run_until(end);  // or throws Cancelled: simulation.time() tells how far it came
 }
 
 void run_with_shorter_steps(Simulation& simulation, double end) {
@@ -265,6 +271,9 @@ TEST(ErrorsPage, StepsBecomeShorterUntilTheySucceed) {
   run_with_shorter_steps(simulation, 0.02);
   EXPECT_EQ(simulation.time(), 0.02);
   EXPECT_LT(std::get<TimeStepping>(simulation.mode()).step, 1e-3);
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(run_unless_stopped(simulation, 0.1, source.get_token()), Cancelled);
 }
 
 /// A ball over a floor with or without a law.
