@@ -172,6 +172,7 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
       unknown_[i] = -at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
     }
     solved = solve() && solved;
+    if (least_ && rank_ < n) take_least();
     for (std::size_t k = 0; k < rank_; ++k) {
       pivots_.push_back({rows_[row_order_[k]], rows_[column_order_[k]]});
     }
@@ -196,17 +197,8 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
 /// Keeps the vectors along which forces may change without anybody noticing.
 void ClosedContacts::spread(std::size_t first, std::size_t last) {
   const std::size_t n = rows_.size();
-  const auto entry = [&](std::size_t i, std::size_t j) {
-    return matrix_[row_order_[i] * n + column_order_[j]];
-  };
   for (std::size_t free = rank_; free < n; ++free) {
-    work_.assign(n, 0.0);
-    work_[column_order_[free]] = 1.0;
-    for (std::size_t i = rank_; i-- > 0;) {
-      double sum = -entry(i, free);
-      for (std::size_t j = i + 1; j < rank_; ++j) sum -= entry(i, j) * work_[column_order_[j]];
-      work_[column_order_[i]] = sum / entry(i, i);
-    }
+    find_null_vector(free);
     spreads_.push_back({first, last, null_.size()});
     null_.resize(null_.size() + 2 * (last - first), 0.0);
     double* const vector = null_.data() + spreads_.back().vector;

@@ -68,6 +68,9 @@ class CAROM_API ClosedContacts {
 public:
   /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
   void bind(const Assembly& assembly, IslandJoints& joints);
+  /// Of forces that are not unique the least in the sense of least squares, in place of any: for those who
+  /// depend on them, since they are continuous.
+  void ask_least() { least_ = true; }
 
   /// The contacts.
   [[nodiscard]] std::vector<ClosedContact>& list() { return contacts_; }
@@ -99,6 +102,8 @@ private:
   void lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing);
   void rub(std::size_t first, std::size_t last, double* acceleration);
   bool solve();
+  void find_null_vector(std::size_t free);
+  void take_least();
   void spread(std::size_t first, std::size_t last);
   bool share_out(std::size_t from, std::size_t to);
 
@@ -118,6 +123,8 @@ private:
   std::vector<double> work_;
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;
+  bool least_ = false;
+  std::vector<double> orthonormal_;  // null vectors, of take_least()
   std::vector<ContactPivot> pivots_;
   std::vector<double> null_;  // null vectors of the systems last solved, by group
   struct Spread {

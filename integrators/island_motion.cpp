@@ -35,6 +35,7 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
   if (!joints_.empty()) {
     closed_.bind(assembly, joints_);
     pressure_ = JointPressure(assembly, island, joints_);
+    if (!pressure_.empty()) closed_.ask_least();  // bounds of friction follow from forces
     const std::vector<ContactPair> rubbing = finder.rubbing(island);
     pairs_.insert(pairs_.end(), rubbing.begin(), rubbing.end());
     // What answers together stands together.
