@@ -29,18 +29,22 @@ double off(IslandJoints& joints, const State& state, const Evaluation& evaluatio
 
 }  // namespace
 
-/// Contacts near enough to matter, of those that took part (both lists are in the finder's order).
+/// Contacts near enough to matter, of those that are asked for (both lists are in the finder's order).
 void GapProjection::find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
-                         std::span<const Contact> taking_part, double margin, const State& state,
+                         const Which& which, double margin, const State& state,
                          const Evaluation& evaluation) {
   found_.clear();
   contacts_.clear();
   finder.find(island, state.view(), evaluation, places, nullptr, margin, found_);
-  auto wanted = taking_part.begin();
+  if (which.all) {
+    contacts_ = found_;
+    return;
+  }
+  auto wanted = which.taking_part.begin();
   for (const Contact& contact : found_) {
     auto at = wanted;
-    while (at != taking_part.end() && at->key != contact.key) ++at;
-    if (at == taking_part.end()) continue;  // has not taken part
+    while (at != which.taking_part.end() && at->key != contact.key) ++at;
+    if (at == which.taking_part.end()) continue;  // has not taken part
     wanted = at + 1;
     contacts_.push_back(contact);
   }
@@ -48,8 +52,8 @@ void GapProjection::find(Index island, const ContactFinder& finder, const Obstac
 
 GapProjection::Result GapProjection::project(const Assembly& assembly, Index island,
                                              const ContactFinder& finder, const ObstaclePlaces& places,
-                                             std::span<const Contact> taking_part, SolverChain& chain,
-                                             State& state, Evaluation& evaluation, IslandJoints& joints) {
+                                             const Which& which, SolverChain& chain, State& state,
+                                             Evaluation& evaluation, IslandJoints& joints) {
   // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
   constexpr int most_passes = 20;
   const double depth = rounding_depth(assembly, island, state);
@@ -60,7 +64,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
   Result result;
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
-    find(island, finder, places, taking_part, 2.0 * result.shift, state, evaluation);
+    find(island, finder, places, which, 2.0 * result.shift, state, evaluation);
     // Bodies that joints bind come last, and together.
     const auto owner = [&](const Contact& contact) {
       return assembly.is_bound(contact.body) ? none : contact.body;
@@ -83,6 +87,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
         if (-contact.gap <= worst) continue;
         worst = -contact.gap;
         result.left = &contact;
+        result.together = of_body;
       }
       const bool deep = std::any_of(of_body.begin(), of_body.end(),
                                     [&](const Contact& at) { return at.gap < -2.0 * depth; });

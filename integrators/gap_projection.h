@@ -28,20 +28,27 @@ public:
     bool moved = false;             ///< a body was moved
     double shift = 0.0;             ///< largest displacement of a body, angles weighed by its size [m]
     const Contact* left = nullptr;  ///< deepest contact that could not be opened
+    /// The contacts of its bodies that had to be open together, it among them. Valid, as `left`, until the
+    /// next projection.
+    std::span<const Contact> together{};
+  };
+  /// Gaps that are to be opened.
+  struct Which {
+    std::span<const Contact> taking_part{};  ///< these, in the order of the finder,
+    bool all = false;                        ///< or all, those that a displacement closes included
   };
 
-  /// Moves bodies until the gaps of `taking_part`, in the order of the finder, are at most rounding below
-  /// zero; those that keep a body from falling back end there, still closed. Obstacles are at `places`. The
-  /// position group of `evaluation` must be up to date, and is so afterwards.
+  /// Moves bodies until the gaps asked for are at most rounding below zero; those that keep a body from
+  /// falling back end there, still closed. Obstacles are at `places`. The position group of `evaluation` must
+  /// be up to date, and is so afterwards.
   /// \param joints of the island; may be empty
   Result project(const Assembly& assembly, Index island, const ContactFinder& finder,
-                 const ObstaclePlaces& places, std::span<const Contact> taking_part, SolverChain& chain,
-                 State& state, Evaluation& evaluation, IslandJoints& joints);
+                 const ObstaclePlaces& places, const Which& which, SolverChain& chain, State& state,
+                 Evaluation& evaluation, IslandJoints& joints);
 
 private:
-  void find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
-            std::span<const Contact> taking_part, double margin, const State& state,
-            const Evaluation& evaluation);
+  void find(Index island, const ContactFinder& finder, const ObstaclePlaces& places, const Which& which,
+            double margin, const State& state, const Evaluation& evaluation);
   /// Makes a better estimate for one body; false if there is none.
   bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
                  State& state, double depth);

@@ -13,6 +13,25 @@ namespace carom {
 
 namespace {
 
+/// Names all obstacles that leave no room between them, the deepest contact first.
+[[noreturn]] void fail_wedged(const ContactFinder& finder, const GapProjection::Result& result, double time) {
+  std::vector<Contact> contacts(result.together.begin(), result.together.end());
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+  SolverFailure failure;
+  failure.time = time;
+  failure.residual = -result.left->gap;
+  std::string names;
+  for (const Contact& contact : contacts) {
+    failure.parts.push_back(finder.name(contact.key));
+    names += (names.empty() ? "" : ", ") + failure.parts.back();
+  }
+  const std::string message = "change to the event-driven mode at t = " + to_text(time) +
+                              " s: no displacement opens the gaps of " + names + " together; left is " +
+                              to_text(result.left->gap) + " m; allowed: bodies that have room";
+  throw SolverError(message, std::move(failure));
+}
+
 [[noreturn]] void fail(const ContactFinder& finder, const Contact& contact, double time, const char* what) {
   SolverFailure failure;
   failure.time = time;
@@ -86,9 +105,10 @@ void take_over(const Assembly& assembly, const ContactFinder& finder, State& sta
         event.solver = cluster.report().solver;
       }
     }
+    // All of them: out of one obstacle a body may come into another.
     const GapProjection::Result result =
-        projection.project(assembly, island, finder, places, contacts, chain, trial, evaluation, joints);
-    if (result.left != nullptr) fail(finder, *result.left, state.time, "no way is found to open the gap");
+        projection.project(assembly, island, finder, places, {.all = true}, chain, trial, evaluation, joints);
+    if (result.left != nullptr) fail_wedged(finder, result, state.time);
     shift = std::max(shift, result.shift);
   }
   // Where bodies were moved their joints stand elsewhere.

@@ -76,7 +76,7 @@ void TimeStepper::project(Index island, const State& state, const Companion& com
   IslandJoints none_there;
   IslandJoints& joints = jointed(island) ? joints_[island].end : none_there;
   const GapProjection::Result result = projection_.project(
-      assembly, island, finder_, places_after_, contacts_, chains_.front(), trial_, evaluation_, joints);
+      assembly, island, finder_, places_after_, {contacts_}, chains_.front(), trial_, evaluation_, joints);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
