@@ -52,7 +52,10 @@ struct Contact {
   Index rub = none;       ///< of friction in a joint: its number in the finder
   double pressed = 0.0;   ///< then: `friction` times this is the largest force [N, N m] or impulse
   double gap = 0.0;       ///< negative where violated [m]
-  Surface law;            ///< coefficients
+  /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
+  /// with which it may still approach at its end [m/s]. Else 0.
+  double allowed_approach = 0.0;
+  Surface law;  ///< coefficients
   /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
   /// law.sticking_friction() where it stuck in the step before.
   double friction = 0.0;

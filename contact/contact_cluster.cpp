@@ -186,6 +186,9 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       b[row] = contacts_[c].velocity_after(i, velocity_free) + restitution_[row] * before_[row];
     }
+    if (contacts_[c].allowed_approach > 0.0) {
+      b[static_cast<std::size_t>(first_row_[c])] += contacts_[c].allowed_approach;
+    }
   }
 }
 

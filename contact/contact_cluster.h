@@ -3,7 +3,8 @@
 /// \file
 /// Contacts that share bodies are one problem. This makes that problem from the contacts and the velocities
 /// before and without impulses, and applies its answer:
-///     W = H M^-1 H^T,   b = H v_free + E H v^-,   v^+ = v_free + M^-1 H^T P.
+///     W = H M^-1 H^T,   b = H v_free + E H v^-,   v^+ = v_free + M^-1 H^T P,
+/// to b in normal direction Contact::allowed_approach is added.
 
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_problem.h>

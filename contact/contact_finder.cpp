@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <type_traits>
 
 namespace carom {
@@ -143,14 +144,15 @@ void ContactFinder::find(Index island, const StateView& state, const Evaluation&
                          std::vector<Contact>& out) const {
   ObstaclePlaces places;
   place(state.time, places);
-  find(island, {state, evaluation, &places, nullptr, margin}, out);
+  find(island, {state, evaluation, &places, nullptr, margin, nullptr}, out);
 }
 
 void ContactFinder::find(Index island, const StateView& state, const Evaluation& evaluation,
                          const ObstaclePlaces& places, const ObstaclePlaces* after, double margin,
-                         std::vector<Contact>& out) const {
+                         std::vector<Contact>& out, const LastingContacts* lasting) const {
   assert(moving_ == 0 || places.time_ == state.time);
-  find(island, {state, evaluation, &places, after, margin}, out);
+  if (lasting != nullptr && lasting->empty()) lasting = nullptr;
+  find(island, {state, evaluation, &places, after, margin, lasting}, out);
 }
 
 void ContactFinder::find(Index island, const Query& query, std::vector<Contact>& out) const {
@@ -163,7 +165,13 @@ void ContactFinder::find(Index island, const Query& query, std::vector<Contact>&
   for (Index stop = stops.begin; stop < stops.end; ++stop) {
     Contact contact;
     make_stop(stop, query.state, query.evaluation, contact);
-    if (contact.gap <= query.margin) out.push_back(contact);
+    if (!(contact.gap <= query.margin)) {
+      if (query.lasting == nullptr || !lasts(query, contact.key, contact.gap, std::abs(contact.drift[0]))) {
+        continue;
+      }
+      contact.allowed_approach = contact.gap / query.lasting->step();
+    }
+    out.push_back(contact);
   }
 }
 
@@ -219,15 +227,32 @@ void ContactFinder::add(const BodySlot& body, const Feature& feature, const Quer
                         std::vector<Contact>& out) const {
   const Vec<D> off = arm<D>(body, feature, query.evaluation);
   const Vec<D> centre = Eigen::Map<const Vec<D>>(query.state.q + body.q) + off;
+  double turning = 0.0;  // bound on the centripetal acceleration
+  if constexpr (Space<D>::has_orientation) {
+    if (query.lasting != nullptr && body.rotation != none) {
+      turning = Space<D>::centripetal(query.state.v + body.v + D, off).template lpNorm<1>();
+    }
+  }
   for (Index o = 0; o < obstacles_.size(); ++o) {
     const Obstacle& obstacle = obstacles_[o];
     const ObstacleMotion* const motion =
         obstacle.moving == none ? nullptr : &query.places->motions_[obstacle.moving];
     const Gap gap = motion == nullptr ? obstacle.kind->gap(obstacle.slot, centre.data())
                                       : obstacle.kind->moved_gap(obstacle.slot, *motion, centre.data());
-    if (!(gap.distance - feature.radius <= query.margin)) continue;
+    const double distance = gap.distance - feature.radius;
+    const bool touches = distance <= query.margin;
+    if (!touches) {
+      if (query.lasting == nullptr) continue;
+      double rate = turning;
+      if constexpr (D == 2) {
+        if (motion != nullptr) rate += turning_of(body, off, query.state, *motion, gap.distance);
+      }
+      const ContactKey key{feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
+      if (!lasts(query, key, distance, rate)) continue;
+    }
     Contact& contact = out.emplace_back();
     fill<D>(body, feature, o, gap, off, query.state, contact);
+    if (!touches) contact.allowed_approach = distance / query.lasting->step();
     if constexpr (D == 2) {
       if (motion != nullptr) {
         const ObstacleMotion* const after =
@@ -322,6 +347,7 @@ void ContactFinder::find_in(Index island, const Query& query, std::vector<Contac
     }
   };
   const auto any_touches = [&](Range some) {
+    if (query.lasting != nullptr && query.lasting->any_centre(some)) return true;
     const BodySlot slot = bodies[some.begin];
     const double* const points = query.state.q + slot.q;
     return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {

@@ -5,6 +5,8 @@
 /// closed (Johansson 1999, section 4: violated contacts take part in a step).
 
 #include <carom/contact/contact.h>
+#include <carom/contact/contact_solver.h>
+#include <carom/contact/lasting_contacts.h>
 #include <carom/core/assembly.h>
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
@@ -12,7 +14,9 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -60,8 +64,14 @@ public:
   /// Likewise with the obstacles at `places`, which must be of the state's time.
   /// \param after obstacles at the end of the step that begins with the state, for
   /// Contact::obstacle_velocity_after; null: no time passes
+  /// \param lasting contacts of the step before, found also where turning may have opened them; null: none
   void find(Index island, const StateView& state, const Evaluation& evaluation, const ObstaclePlaces& places,
-            const ObstaclePlaces* after, double margin, std::vector<Contact>& out) const;
+            const ObstaclePlaces* after, double margin, std::vector<Contact>& out,
+            const LastingContacts* lasting = nullptr) const;
+  /// Says which contacts of a step turning may have opened. \param contacts of the step, as
+  /// Companion::modes \param step length of a step that gaps may come from [s]
+  void remember(std::span<const std::pair<ContactKey, ContactMode>> contacts, double step,
+                LastingContacts& out) const;
 
   /// All pairs of one island, in the order of find(). Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index island) const;
@@ -134,6 +144,7 @@ private:
     const ObstaclePlaces* places;  // null where nothing moves
     const ObstaclePlaces* after;   // null where no time passes
     double margin;
+    const LastingContacts* lasting;  // null where there are none
   };
 
   void collect_obstacles();
@@ -161,6 +172,11 @@ private:
   // What the motion of the obstacle adds. `after` may be null.
   static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
                           const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
+  // Whether an open contact lasts. `turning`: bound on its drift by turning.
+  [[nodiscard]] static bool lasts(const Query& query, const ContactKey& key, double gap, double turning);
+  // What the motion of the obstacle adds to that bound.
+  [[nodiscard]] static double turning_of(const BodySlot& body, const Vec<2>& arm, const StateView& state,
+                                         const ObstacleMotion& motion, double above);
   // Friction where it depends on the speed of sliding.
   static void set_friction(const StateView& state, Contact& contact);
   void make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,

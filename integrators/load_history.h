@@ -17,7 +17,8 @@ namespace carom {
 struct CAROM_API LoadHistory {
   static constexpr int most = 3;  ///< steps that are remembered
   int known = 0;                  ///< how many of the changes are known
-  double step = 0.0;              ///< length of the last step; of the last `known` if there are several [s]
+  double step = 0.0;              ///< length of the last step, where nothing changes too; of the last
+                                  ///< `known` if there are several [s]
   std::array<std::vector<float>, most> changes;  ///< over the last step, over the one before it, and so on
                                                  ///< [N, N m]; empty before the first step
   bool pending = false;  ///< the last change is that from `before` to the present loads, changes[0] is void

@@ -408,7 +408,13 @@ void Simulation::switch_to(Mode mode) {
     take_over(assembly, machines.driver->finder(), self.state, self.companion, self.report, self.events);
   }
   if (machines.driver && self.model->machines.driver) machines.driver->demand_start(self.state);
-  if (machines.stepper && self.model->machines.driver) self.forget_history();
+  if (machines.stepper && self.model->machines.driver) {
+    // Closed contacts last: what stuck goes on sticking.
+    auto modes = std::move(self.companion.modes);
+    self.forget_history();
+    self.companion.modes = std::move(modes);
+    self.companion.history.step = 0.0;
+  }
   self.mode = std::move(mode);
   self.model->machines = std::move(machines);
   self.companion.next_step = 0.0;

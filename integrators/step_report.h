@@ -20,11 +20,12 @@ namespace carom {
 
 /// One contact that took part in a step. Directions: normal first, then tangential (one in the plane).
 struct ContactRecord {
-  ContactKey key;                           ///< identity
-  BodyId body;                              ///< the body
-  ObstacleId obstacle;                      ///< what it touches
-  int directions = 2;                       ///< 2 in the plane, 3 in space
-  double gap = 0.0;                         ///< when the contact was detected [m]
+  ContactKey key;       ///< identity
+  BodyId body;          ///< the body
+  ObstacleId obstacle;  ///< what it touches
+  int directions = 2;   ///< 2 in the plane, 3 in space
+  double gap = 0.0;     ///< when the contact was detected; > 0 of a lasting one that turning
+                        ///< has opened [m]
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]

@@ -98,7 +98,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.control = {};
   place_obstacles(state, step, end_time);
   start_loads(state, companion);
-  remember_sticking(companion);
+  remember_contacts(companion, step);
   for (SolverChain& chain : chains_) {
     if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
   }

@@ -3,7 +3,8 @@
 /// \file
 /// The machine of the time-stepping mode. One step from t_j to t_{j+1} (Johansson 1999, section 4):
 ///
-///   contacts     those with gap <= 0 at t_j; against the velocities of the obstacles at t_j and t_{j+1}
+///   contacts     those with gap <= 0 at t_j, and of the step before those that turning has opened
+///                (contact/lasting_contacts.h); against the velocities of the obstacles at t_j and t_{j+1}
 ///   guess        F_{j+1} by extrapolation
 ///   repeat       v_free = v_j + M^-1 h (F_j + F_{j+1})/2
 ///                v_{j+1} = v_free + M^-1 H^T P,  P from the contact problem
@@ -72,7 +73,7 @@ public:
 private:
   void place_obstacles(const State& state, double step, double end_time);
   void start_loads(const State& state, Companion& companion);
-  void remember_sticking(const Companion& companion);
+  void remember_contacts(const Companion& companion, double step);
   void advance_island(Index island, const State& state, const Companion& companion, double step);
   /// Sweeps until the judge is content; false if the iteration does not contract.
   [[nodiscard]] bool iterate(Index island, const State& state, const Companion& companion, double step,
@@ -256,6 +257,7 @@ private:
   std::vector<double> update_;    // changes of velocities, of the linearly implicit iteration
   std::vector<std::pair<ContactKey, ContactMode>> rubbing_modes_;  // of friction in joints
   std::vector<ContactKey> sticking_;  // in the last step, ordered; where static friction asks
+  LastingContacts lasting_;           // contacts of the last step that turning may have opened
   std::vector<Contact> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;

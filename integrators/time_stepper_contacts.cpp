@@ -10,7 +10,9 @@
 
 namespace carom {
 
-void TimeStepper::remember_sticking(const Companion& companion) {
+/// A gap was opened by the step before, which the one at hand may be a small part of.
+void TimeStepper::remember_contacts(const Companion& companion, double step) {
+  finder_.remember(companion.modes, std::max(step, companion.history.step), lasting_);
   if (!finder_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : companion.modes) {
@@ -22,7 +24,7 @@ void TimeStepper::remember_sticking(const Companion& companion) {
 void TimeStepper::find_contacts(Index island, const State& state) {
   contacts_.clear();
   clusters_in_use_ = 0;
-  finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_);
+  finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_, &lasting_);
   finder_.find_rubbing(island, state.view(), start_, contacts_);
   if (contacts_.empty()) return;
   if (finder_.has_static_friction()) {

@@ -46,7 +46,10 @@ void TimeStepper::close_history(const Companion& companion) {
 void TimeStepper::remember_loads(Companion& companion) {
   companion.loads.total.swap(evaluated_);
   history_->sweeps = sweeps_;
-  if (!guesses_) return;
+  if (!guesses_) {
+    history_->step = report_.step;
+    return;
+  }
   history_->go_on(report_.step, evaluated_.size());
   history_->before.swap(evaluated_);
 }
