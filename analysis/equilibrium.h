@@ -1,12 +1,12 @@
 #pragma once
 
 /// \file
-/// Static equilibrium: where loads, reactions of joints and forces of closed contacts balance,
+/// Static equilibrium: loads, reactions of joints and forces of closed contacts balance,
 ///
 ///     f(q) + G(q)^T l = 0,   g(q) = 0,
 ///
-/// G being the rows of the joints, the normals of the closed contacts and the tangents of those that stick.
-/// Matrices are dense: for models of some hundred bodies.
+/// where G has the rows of the joints, the normals of the closed contacts and the tangents of those that
+/// stick. Matrices are dense: for models of a few hundred bodies.
 
 #include <carom/contact/contact.h>
 #include <carom/core/assembly.h>
@@ -22,7 +22,7 @@
 
 namespace carom {
 
-/// How an equilibrium is looked for.
+/// Options of the search for an equilibrium.
 struct EquilibriumOptions {
   /// Contacts with gaps up to this at the start are taken as closed, and stay so; with friction, they stick
   /// where they touch. >= 0 [m]
@@ -35,14 +35,14 @@ struct EquilibriumOptions {
   StopFunction stop_when{};
 };
 
-/// What a joint does in equilibrium.
+/// Forces of a joint in equilibrium.
 struct JointForce {
   JointId joint;                    ///< identity
   std::vector<double> multipliers;  ///< of its rows [N, N m]
   JointReaction reaction;           ///< on its body `to`
 };
 
-/// What a closed contact or a stop does in equilibrium.
+/// Forces of a closed contact or a limit in equilibrium.
 struct ContactForce {
   ContactKey key;                      ///< identity
   std::string name;                    ///< "particle 'lower' on half-plane #0"
@@ -61,20 +61,20 @@ struct Equilibrium {
   double gap = 0.0;                    ///< largest gap left in joints and closed contacts [m, rad]
   int steps = 0;                       ///< of Newton's method
 
-  /// What a joint does. Throws ModelError for a joint that is not in it.
+  /// Forces of a joint. Throws ModelError for a joint that is not in it.
   [[nodiscard]] CAROM_API const JointForce& force(JointId joint) const;
 };
 
-/// Looks for an equilibrium near a state by Newton's method, at the state's time: what moves as prescribed
-/// stands where it then is. Stable or not is not asked (find_modes() tells). Throws ModelError for options,
-/// a state or elements (with internal variables) that cannot be; SolverError, naming the parts,
-///  - where no equilibrium is found: what is furthest from balance or from being closed,
-///  - where something can move without being held back: the bodies that do,
-///  - where a contact would have to pull, would slip, or an open one would be entered.
+/// Computes an equilibrium near a state by Newton's method, at the time of the state: prescribed motions are
+/// at their positions at that time. Stability is not tested (see find_modes()). Throws ModelError for invalid
+/// options or states and for elements with internal variables; SolverError, naming the parts,
+///  - if no equilibrium is found: the parts furthest from balance or from being closed,
+///  - if there is a motion without stiffness: the bodies that can move,
+///  - if a contact would have to pull, would slip, or an open one would be penetrated.
 [[nodiscard]] CAROM_API Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
                                                      const EquilibriumOptions& options = {});
-/// The same from positions as described, at time 0. A Simulation takes states of its own assembly only: for
-/// one, give its assembly() and state().
+/// The same from the described positions, at time 0. A Simulation accepts states of its own assembly only:
+/// for that, pass its assembly() and state().
 [[nodiscard]] CAROM_API Equilibrium find_equilibrium(const System& system,
                                                      const EquilibriumOptions& options = {});
 

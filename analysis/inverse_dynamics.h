@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Forces of drivers: what it takes to move a mechanism as prescribed. Contacts and stops do not act.
+/// Forces of drivers that move a mechanism as prescribed (inverse dynamics). Contacts and limits are ignored.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -27,20 +27,20 @@ struct InverseDynamics {
   std::vector<DriverForces> samples;  ///< by time
 };
 
-/// Drivers of a model, in the order in which their forces are told: by island.
+/// Drivers of a model, in the order of their forces: by island.
 [[nodiscard]] CAROM_API std::vector<JointId> drivers(const Assembly& assembly);
 
-/// Forces of the drivers at a state that obeys the joints. Motions that drivers do not prescribe accelerate
-/// as loads make them. Throws ModelError for a state that cannot be, and SolverError, naming it, where the
-/// force of a driver is not determined (it and others prescribe the same).
+/// Forces of the drivers at a state that satisfies the joints. Accelerations that drivers do not prescribe
+/// follow from the loads. Throws ModelError for an invalid state, and SolverError, naming the driver, if its
+/// force is not determined (because others prescribe the same).
 [[nodiscard]] CAROM_API DriverForces driver_forces(const Assembly& assembly, const State& state);
 
-/// Forces of the drivers at times given: the positions at each are those that joints and drivers leave, found
-/// from those at the time before. Times must lie so near to each other that no joint is closed in another
-/// way than in the motion that is meant. \param times finite, ascending [s]; the first near the described
-/// positions
-/// Throws ModelError for times that cannot be, for a system without drivers or with freedom that they leave,
-/// and for joints that cannot be closed; SolverError as driver_forces().
+/// Forces of the drivers at given times: the positions at each time are determined by joints and drivers, and
+/// computed from those at the time before. Times must be so close to each other that the joints are not
+/// closed in another configuration than the intended one. \param times finite, ascending [s]; the first near
+/// the described positions Throws ModelError for invalid times, for a system without drivers or with degrees
+/// of freedom that no driver prescribes, and for joints that cannot be closed; SolverError as
+/// driver_forces().
 [[nodiscard]] CAROM_API InverseDynamics inverse_dynamics(const System& system, std::span<const double> times);
 
 }  // namespace carom

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Small motions about a state of rest: linearisation, eigenfrequencies, mode shapes. With displacements
-/// V y that keep joints and closed contacts, V^T M V = 1,
+/// Small vibrations about a state of rest: linearisation, eigenfrequencies, mode shapes. With displacements
+/// V y that satisfy joints and closed contacts, V^T M V = 1,
 ///
 ///     y'' + D y' + K y = 0,   D = -V^T df/dv V,   K = -V^T d(f + G^T l)/dq V,
 ///
@@ -20,7 +20,7 @@
 
 namespace carom {
 
-/// What a state to linearise about must be.
+/// Options of the linearisation about a state.
 struct ModesOptions {
   double contact_tolerance = 1e-6;  ///< contacts with gaps up to this are closed, >= 0 [m]
   /// Forces that may be out of balance against those that act, and gaps of joints against coordinates (at
@@ -53,7 +53,7 @@ struct VibrationMode {
 };
 
 /// Linearises about a state of rest. Throws ModelError for options, elements (with internal variables) or a
-/// state that cannot be: one that moves, or is not in equilibrium; SolverError for a contact that would pull
+/// state that is not allowed: one in motion, or not in equilibrium; SolverError for a contact that would pull
 /// or slip.
 [[nodiscard]] CAROM_API Linearisation linearise(const Assembly& assembly, const State& state,
                                                 const ModesOptions& options = {});

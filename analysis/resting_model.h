@@ -2,7 +2,7 @@
 
 /// \file
 /// A whole model at rest as equations with dense matrices, f(q) + G(q)^T l = 0, g(q) = 0, and their
-/// derivatives. What equilibria and modes share.
+/// derivatives. Used for equilibria and modes.
 
 #include <carom/contact/contact_finder.h>
 #include <carom/core/assembly.h>
@@ -86,14 +86,14 @@ public:
   /// Demands that supports press and are within their cones of friction; shares forces that are not
   /// determined so that they do. Throws SolverError. \param allowed what forces may be outside [N]
   void check_supports(double allowed);
-  /// Demands that no open contact is entered. Throws SolverError.
+  /// Demands that no open contact is penetrated. Throws SolverError.
   void check_open_contacts(double tolerance) const;
 
   /// Multiplier of a row as the joint or contact means it.
   [[nodiscard]] double multiplier(Eigen::Index row) const { return l_[row] / norms_[row]; }
   /// Gap of a row as the joint or contact means it.
   [[nodiscard]] double gap(Eigen::Index row) const { return gaps_[row] * norms_[row]; }
-  /// What a joint does.
+  /// Forces of a joint.
   [[nodiscard]] JointReaction reaction(const Joint& joint) const;
 
 private:

@@ -16,7 +16,7 @@ namespace carom {
 template <int D>
 struct MassProperties;
 
-/// Of a planar body.
+/// Mass properties of a planar body.
 template <>
 struct MassProperties<2> {
   double mass = std::numeric_limits<double>::quiet_NaN();     ///< [kg]
@@ -48,7 +48,7 @@ namespace planar {
 /// areas A_i, centroids c_i and sides of lengths a, b, c,
 ///     A = sum A_i,   centre = sum A_i c_i / A,
 ///     I = m sum A_i / A ((a^2 + b^2 + c^2) / 36 + |c_i - centre|^2).
-/// All differences are taken to the first vertex, so that a polygon far from the origin loses nothing.
+/// Coordinates are taken relative to the first vertex, so a polygon far from the origin loses no digits.
 /// \param vertices at least 3, in order [m]; a vertex may be repeated, the first one at the end too
 /// Throws ModelError also if the outline crosses itself or its area is not above the rounding of its
 /// vertices.
@@ -57,14 +57,14 @@ namespace planar {
 /// A point mass at the origin, I = 0: a part for compose(). By itself it is a Particle, not a RigidBody.
 [[nodiscard]] CAROM_API MassProperties<2> point_mass(double mass);
 
-/// One body made of parts at their centres:
+/// One body composed of parts at their centres:
 ///     m = sum m_i,   centre = sum m_i c_i / m,   I = sum (I_i + m_i |c_i - centre|^2).
-/// Throws ModelError if there is no part or a part cannot be.
+/// Throws ModelError if there is no part or a part is invalid.
 [[nodiscard]] CAROM_API MassProperties<2> compose(std::span<const MassProperties<2>> parts);
 /// The same for a list: compose({rod(2.0, 1.0), shifted(disc(1.0, 0.1), {0.5, 0.0})}).
 [[nodiscard]] CAROM_API MassProperties<2> compose(std::initializer_list<MassProperties<2>> parts);
 
-/// The same body elsewhere in its frame: the centre moved by `offset` [m].
+/// The same body at another place in its frame: the centre moved by `offset` [m].
 [[nodiscard]] CAROM_API MassProperties<2> shifted(const MassProperties<2>& properties, const Vec<2>& offset);
 /// The same body with its centre at the origin, as RigidBody demands. Shapes described in the old frame must
 /// be shifted by minus the old centre.

@@ -18,7 +18,7 @@ namespace generic {
 template <int D>
 class RigidBodyKind;
 
-/// A rigid body. Its frame has the centre of mass as origin. It touches nothing until it is given shapes.
+/// A rigid body. The origin of its frame is the centre of mass. Without shapes it has no contacts.
 template <int D>
 struct RigidBody;
 

@@ -24,12 +24,12 @@ struct Disc {
   Vec<2> centre = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
   MaterialId material{};           ///< for laws between materials
 
-  /// Throws ModelError for impossible values.
+  /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {
     check.positive(radius, "radius", "m");
     check.finite({centre.data(), 2}, "centre", "m");
   }
-  /// Appends what can touch a half-plane.
+  /// Appends the points that can touch a half-plane.
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{centre[0], centre[1], 0.0}, radius});
   }

@@ -22,9 +22,9 @@ struct Point {
   Vec<2> position = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
   MaterialId material{};             ///< for laws between materials
 
-  /// Throws ModelError for impossible values.
+  /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const { check.finite({position.data(), 2}, "position", "m"); }
-  /// Appends what can touch a half-plane.
+  /// Appends the points that can touch a half-plane.
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{position[0], position[1], 0.0}, 0.0});
   }

@@ -23,13 +23,13 @@ struct Polygon {
   std::vector<Vec<2>> vertices{};  ///< at least three, in the body's frame [m]
   MaterialId material{};           ///< for laws between materials
 
-  /// Throws ModelError for impossible values.
+  /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {
     if (vertices.size() < 3)
       check.refuse("number of vertices", std::to_string(vertices.size()), "at least 3");
     for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
   }
-  /// Appends what can touch a half-plane.
+  /// Appends the points that can touch a half-plane.
   void features(std::vector<RoundedPoint>& out) const {
     for (const Vec<2>& vertex : vertices) out.push_back({{vertex[0], vertex[1], 0.0}, 0.0});
   }

@@ -25,13 +25,13 @@ struct Segment {
   Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< the other end [m]
   MaterialId material{};                                                   ///< for laws between materials
 
-  /// Throws ModelError for impossible values.
+  /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {
     check.finite({from.data(), 2}, "from", "m");
     check.finite({to.data(), 2}, "to", "m");
     if (from == to) check.refuse("to", "the same point as from", "another point");
   }
-  /// Appends what can touch a half-plane.
+  /// Appends the points that can touch a half-plane.
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{from[0], from[1], 0.0}, 0.0});
     out.push_back({{to[0], to[1], 0.0}, 0.0});

@@ -16,7 +16,8 @@
 
 namespace carom {
 
-/// Bodies joined by couplings or joints. Ground, obstacles and fields join nothing.
+/// A connected component: bodies connected by force elements or joints. Ground, obstacles and fields do not
+/// connect bodies.
 struct Island {
   Range bodies;  ///< in the order of assembly
   Range q;       ///< coordinates
@@ -26,13 +27,13 @@ struct Island {
   Range runs;    ///< see Assembly::runs()
 };
 
-/// Consecutive bodies of an island. Large islands are cut into blocks, whose number depends on the island's
-/// size alone; loops over them may be shared out to threads.
+/// Consecutive bodies of an island. Large islands are divided into blocks, whose number depends on the size
+/// of the island only; several threads may share a loop over them.
 struct Block {
   Range bodies;          ///< in the order of assembly
   Range v;               ///< velocities
   Index run = 0;         ///< its run, see Assembly::runs()
-  Index closed_by = 0;   ///< block of its run after whose elements none of the run acts on it, or before it
+  Index closed_by = 0;   ///< last block of its run whose elements act on it or on blocks before it
   bool bridged = false;  ///< bridges act on it
 };
 
@@ -43,7 +44,7 @@ struct Surroundings {
   std::vector<Index> touched;  ///< on which those elements may act
 };
 
-/// Constant once made.
+/// A system made ready to run. Constant after construction.
 class CAROM_API Assembly {
 public:
   /// Orders, checks and counts. Throws ModelError for a system without bodies.
@@ -57,11 +58,11 @@ public:
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
   /// Masses of the bodies, in the order of assembly [kg]. Made at each call.
   [[nodiscard]] std::vector<double> masses() const;
-  /// Lengths by which changes of the velocity coordinates are weighed (BodyKind::length_scale). Made at each
+  /// Lengths that weight changes of the velocity coordinates (BodyKind::length_scale). Made at each
   /// call.
   [[nodiscard]] std::vector<double> length_scales() const;
 
-  /// Kinds of bodies, arranged: what running needs. The description stands in system().
+  /// Kinds of bodies in the order of assembly, with the data of a run. The description is in system().
   [[nodiscard]] const std::vector<std::unique_ptr<BodyKind>>& body_kinds() const { return body_kinds_; }
   /// Slots of a kind that belong to an island.
   [[nodiscard]] Range body_slots(Index island, Index kind) const {
@@ -69,15 +70,15 @@ public:
   }
   /// Blocks of all islands.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Bodies of a block, roughly: the cache next to a core can hold the numbers of several.
+  /// Approximate number of bodies of a block: the cache of a core can hold the data of several blocks.
   static constexpr Index block_size = 512;
-  /// Runs of all islands: consecutive blocks, which one thread goes through in their order, so that what is
-  /// done with a block can wait for its neighbours and still find its numbers at hand.
+  /// Runs of all islands: consecutive blocks, which one thread computes in their order, so that computations
+  /// for a block can wait for its neighbours and still find its data in the cache.
   [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }
   /// Most runs of one island.
   static constexpr Index most_runs = 8;
-  /// Finds what is around the inner blocks, which are of one island. False if bridges act on one of them,
-  /// whose loads then depend on blocks anywhere.
+  /// Finds the neighbours of the inner blocks, which are of one island. False if bridges act on one of them:
+  /// its loads may then depend on any block.
   [[nodiscard]] bool surround(Surroundings& blocks) const;
 
   /// Kinds of force elements, arranged.
@@ -86,11 +87,11 @@ public:
   [[nodiscard]] Range elements(Index island, Index kind) const {
     return element_slots_[island * force_kinds_.size() + kind];
   }
-  /// Of those, the ones that act on this block, and on no other but ones of its run before it.
+  /// Those of them that act on this block, and otherwise only on blocks of its run before it.
   [[nodiscard]] Range elements_up_to(Index block, Index kind) const {
     return block_elements_[block * force_kinds_.size() + kind];
   }
-  /// Of those, the ones that act on several runs.
+  /// Those of them that act on several runs.
   [[nodiscard]] Range bridges(Index island, Index kind) const {
     return bridges_[island * force_kinds_.size() + kind];
   }
@@ -103,7 +104,7 @@ public:
 
   /// Kinds of joints, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<JointKind>>& joint_kinds() const { return joints_->kinds; }
-  /// Joints of a kind that bind an island.
+  /// Joints of a kind in an island.
   [[nodiscard]] Range joints(Index island, Index kind) const {
     return joint_slots_[island * joints_->kinds.size() + kind];
   }
@@ -111,9 +112,10 @@ public:
   [[nodiscard]] bool has_joints(Index island) const;
   /// Identity of an arranged joint.
   [[nodiscard]] JointId joint_id(Index kind, Index slot) const;
-  /// Bodies that joints bind together, by one of them: the first. Of a body without joints itself.
+  /// Mechanism of a body (the bodies connected to it by joints), named by its first body; the body itself
+  /// without joints.
   [[nodiscard]] Index group(Index body) const { return groups_.empty() ? body : groups_[body]; }
-  /// True if a joint binds the body.
+  /// True if the body has a joint.
   [[nodiscard]] bool is_bound(Index body) const { return !groups_.empty() && bound_[body] != 0; }
 
   /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of an island, kind by kind.
@@ -175,13 +177,13 @@ private:
 CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state,
                                   Evaluation& out);
 
-/// What is done with a block, while its numbers are at hand; called with its place in the island too.
+/// A computation for a block, done while its data are in the cache; called with its place in the island.
 using BlockTask = FunctionRef<void(const Block&, Index)>;
 
-/// What is done with each block of an island besides.
+/// Additional computations for each block of an island.
 struct BlockTasks {
   BlockTask first = {};  ///< before its loads are evaluated
-  BlockTask last = {};   ///< as soon as all of them are
+  BlockTask last = {};   ///< after all of them are evaluated
 };
 
 /// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
@@ -190,9 +192,9 @@ CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const Stat
                               const Evaluation& evaluation, const Loads& loads,
                               const Workers& workers = Workers(), const BlockTasks& tasks = {});
 
-/// Loads on the inner blocks alone: zeroes the given arrays over the touched blocks and adds the loads of the
-/// loading ones. Only those on the inner blocks are complete then, and rounded as evaluate_loads() rounds
-/// them.
+/// Loads on the inner blocks only: zeroes the given arrays over the touched blocks and adds the loads of the
+/// loading ones. Only the loads on the inner blocks are then complete, with the same rounding as by
+/// evaluate_loads().
 CAROM_API void evaluate_loads_within(const Assembly& assembly, Index island, const Surroundings& blocks,
                                      const StateView& state, const Evaluation& evaluation,
                                      const Loads& loads);
@@ -203,9 +205,10 @@ CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index isl
                                              StoredEnergies& stored, const Workers& workers = Workers(),
                                              const BlockTasks& tasks = {});
 
-/// evaluate_loads(), then evaluate_loads_and_potentials() of what `second_tasks.first` makes of the state, a
-/// block at a time as soon as nothing of the first needs it any more: for large islands, whose numbers are
-/// read from memory once instead of twice. Sums are rounded otherwise than by the two functions.
+/// evaluate_loads(), then evaluate_loads_and_potentials() at the state that `second_tasks.first` computes,
+/// block by block as soon as the first evaluation no longer needs the block: for large islands, whose data
+/// are then read from memory once instead of twice. The rounding of sums differs from that of the two
+/// functions.
 CAROM_API void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
                                     const Evaluation& evaluation, const Loads& first,
                                     const BlockTasks& first_tasks, const Loads& second,
@@ -222,11 +225,11 @@ CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const
                                    const Loads& loads, const Workers& workers = Workers(),
                                    const BlockTasks& tasks = {});
 
-/// True if the mean loads or inner losses of an island's elements look at the state halfway.
+/// True if mean loads or inner losses of elements of an island depend on the state in the middle of the step.
 [[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index island);
 
 /// Advances the internal variables of one island to the end of a step (ForceKind::advance_internal). Returns
-/// the first element for which that did not succeed, an invalid identity if there is none.
+/// the first element for which that failed, an invalid identity if there is none.
 [[nodiscard]] CAROM_API ElementId advance_internals(const Assembly& assembly, Index island,
                                                     const StepContext& step, double* z);
 
@@ -248,7 +251,7 @@ CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const
 [[nodiscard]] CAROM_API StoredEnergies stored_energies(const Assembly& assembly, const StateView& state,
                                                        Evaluation& evaluation);
 
-/// Sizes a workspace for an assembly.
+/// Resizes a workspace for an assembly.
 [[nodiscard]] CAROM_API Evaluation make_evaluation(const Assembly& assembly);
 
 /// Demands a state of this layout with finite numbers. Throws ModelError naming the body and the value.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What a kind of body tells the rest of the library. Bodies of one kind are stored together; every call is
-/// for a range of them.
+/// Interface of a kind of bodies. Bodies of one kind are stored together; every call is for a range of
+/// them.
 
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
@@ -18,19 +18,19 @@ namespace carom {
 struct SweepArrays {
   const double* q0 = nullptr;        ///< coordinates at the start of the step
   const double* v0 = nullptr;        ///< velocities at the start
-  const float* carried = nullptr;    ///< rounding carried by the velocities
+  const float* carried = nullptr;    ///< compensation of the velocities: their rounding errors
   const double* load0 = nullptr;     ///< loads at the start
-  const double* load1 = nullptr;     ///< loads at the end, of the iterate before
-  const double* response = nullptr;  ///< change of velocity by contact, null where nothing touches
+  const double* load1 = nullptr;     ///< loads at the end, of the previous iterate
+  const double* response = nullptr;  ///< change of velocity by contact, null without contact
   double* q1 = nullptr;              ///< out: coordinates at the end
   double* v1 = nullptr;              ///< out: velocities at the end
-  float* cut = nullptr;              ///< out: what rounding cuts off v1
+  float* cut = nullptr;              ///< out: rounding error of v1
   /// Turn by 2 atan(h w/2) instead of h w, w the mean spin. A lever r then moves by h w x (r0 + r1)/2
   /// exactly, so that a force at the mean lever does the work of its own displacement.
   bool rational_turn = false;
 };
 
-/// Arrays of the loads that a sweep was made with and of those that it led to, as SweepArrays.
+/// Arrays of the loads before and after a sweep, like SweepArrays.
 struct LoadArrays {
   const double* made_with = nullptr;  ///< x
   const double* led_to = nullptr;     ///< g
@@ -38,7 +38,7 @@ struct LoadArrays {
   const double* v1 = nullptr;         ///< velocities the sweep led to
 };
 
-/// How much an iterate would differ from the next, angles weighed by the radius of gyration [m].
+/// Difference between an iterate and the next, angles times the radius of gyration [m].
 struct SweepChange {
   double change = 0.0;  ///< largest change of positions and of h times velocities; NaN if any is
   double size = 0.0;    ///< largest of the numbers themselves
@@ -47,7 +47,7 @@ struct SweepChange {
   void take(double difference, double number) {
     difference = difference < 0.0 ? -difference : difference;
     number = number < 0.0 ? -number : number;
-    // Written so that a NaN is taken, and kept since nothing compares greater.
+    // Written so that a NaN is stored, and kept because no number compares greater.
     if (difference > change || difference != difference) change = difference;
     if (number > size || number != number) size = number;
   }
@@ -61,8 +61,8 @@ public:
 
   /// A copy.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> clone() const = 0;
-  /// What running needs of the bodies named by `order`, in that order. Starting values, contact points and
-  /// materials are asked of the described kind only and need not be copied.
+  /// A kind with the data of a run for the bodies named by `order`, in that order. Starting values, contact
+  /// points and materials are read from the described kind only and need not be copied.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const = 0;
   /// Removes the body at a slot; later ones move up.
   virtual void remove(Index slot) = 0;
@@ -81,10 +81,10 @@ public:
   [[nodiscard]] virtual bool has_orientation() const = 0;
   /// Mass [kg].
   [[nodiscard]] virtual double mass(Index slot) const = 0;
-  /// Length by which a change of velocity coordinate `i` is weighed: 1 for translations, the radius of
+  /// Length that weights a change of velocity coordinate `i`: 1 for translations, the radius of
   /// gyration [m] for rotations.
   [[nodiscard]] virtual double length_scale(Index slot, Index i) const = 0;
-  /// True if the body touches obstacles at its centre (a particle unless told otherwise).
+  /// True if the body can touch obstacles with its centre (a particle with `contact`).
   [[nodiscard]] virtual bool has_contact_point(Index slot) const = 0;
   /// Material of that contact point.
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;
@@ -100,7 +100,7 @@ public:
   /// One sweep of the implicit trapezoidal rule with step h, bodies of a range at once:
   ///     v1 = v0 + M^-1 h (load0 + load1)/2 + response,   q1 = q0 advanced by h (v0 + v1)/2.
   virtual void sweep(Range slots, double step, const SweepArrays& arrays) const = 0;
-  /// What another sweep would change, made with g instead of x: velocities by `weight` M^-1 (g - x), and
+  /// Change that another sweep, with g instead of x, would make: velocities by `weight` M^-1 (g - x), and
   /// coordinates by h/2 times that, which is less than h times it.
   virtual void next_change(Range slots, double weight, double step, const LoadArrays& loads,
                            SweepChange& change) const = 0;
@@ -114,7 +114,7 @@ public:
   virtual void add_weight(Range slots, const double* g, double* load) const = 0;
   /// Potential energy -sum m g.x of a range in that field [J].
   [[nodiscard]] virtual double weight_potential(Range slots, const double* g, const double* q) const = 0;
-  /// Adds all that distinguishes this kind's bodies.
+  /// Adds all data that distinguish the bodies of this kind.
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

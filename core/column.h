@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// One property of many parts. Parts of a kind are often alike: while all values are equal, one is stored.
+/// One property of many parts. Parts of a kind are often alike: while all values are equal, one value is
+/// stored.
 
 #include <carom/core/ids.h>
 
@@ -19,7 +20,7 @@ class Column {
 public:
   /// Number of values.
   [[nodiscard]] Index size() const { return size_; }
-  /// True if one value stands for all.
+  /// True if all values are equal and one is stored.
   [[nodiscard]] bool uniform() const { return values_.empty(); }
   /// Value at a slot.
   [[nodiscard]] const T& operator[](Index slot) const { return uniform() ? common_[0] : values_[slot]; }

@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// A running sum and the part of it that rounding cut off.
+/// A running sum and its rounding error.
 class CompensatedSum {
 public:
   CompensatedSum() = default;
@@ -24,7 +24,7 @@ public:
   [[nodiscard]] double value() const { return sum_ + correction_; }
   /// The sum without its correction (for saving).
   [[nodiscard]] double raw() const { return sum_; }
-  /// What rounding cut off so far (for saving).
+  /// The rounding error so far (for saving).
   [[nodiscard]] double correction() const { return correction_; }
 
 private:

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Where a force element says how its loads change with positions and velocities. It speaks of forces at
-/// points and torques on bodies; levers that turn with their bodies are accounted for here, once.
+/// Derivatives of the loads of a force element by positions and velocities. An element gives those of forces
+/// at points and of torques on bodies; the rotation of the levers with the bodies is added here.
 
 #include <carom/core/element_view.h>
 #include <carom/core/end.h>
@@ -13,7 +13,7 @@
 
 namespace carom {
 
-/// Takes the derivatives of the total load of one element (all causes together). What is given adds up.
+/// Collects the derivatives of the total load of one element (all causes together). Repeated calls add.
 template <int D>
 class ElementDerivatives {
 public:
@@ -21,8 +21,8 @@ public:
       : view_(&view), out_(&out) {}
 
   /// The force `force` [N] at an end, which changes by `by_position` [N/m] times a displacement of that end
-  /// and `by_velocity` [N s/m] times a change of its velocity. To be said also of a constant force: off the
-  /// centre of mass, its lever turns with the body.
+  /// and `by_velocity` [N s/m] times a change of its velocity. Needed for a constant force too: its lever
+  /// turns with the body if the end is not the centre of mass.
   void force(const End<D>& end, const Vec<D>& force, const Mat<D>& by_position, const Mat<D>& by_velocity) {
     const Point point(*view_, view_->attach(end));
     Motions motions;
@@ -37,7 +37,7 @@ public:
                        const Mat<D>& by_rate) {
     opposite_forces(view_->attach(from), view_->attach(to), force, by_distance, by_rate);
   }
-  /// The same for ends whose places are known.
+  /// The same for ends whose places in the arrays are known.
   void opposite_forces(const Attachment<D>& from, const Attachment<D>& to, const Vec<D>& force,
                        const Mat<D>& by_distance, const Mat<D>& by_rate) {
     const Point start(*view_, from), end(*view_, to);
@@ -63,7 +63,7 @@ public:
     }
   }
 
-  /// Anything else: the load on velocity coordinate `row` changes by these along velocity coordinate `column`
+  /// Any other derivative: of the load on velocity coordinate `row` along velocity coordinate `column`
   /// (BodySlot::v of the assembly's layout and following).
   void entry(Index row, Index column, double by_position, double by_velocity) {
     out_->push_back({row, column, by_position, by_velocity});

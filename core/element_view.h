@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a user's force element sees of the state.
+/// Access to the state for a user's force element.
 
 #include <carom/core/assembly.h>
 #include <carom/core/end.h>
@@ -10,7 +10,7 @@
 
 namespace carom {
 
-/// What an element sees: time, positions and velocities of ends. Shapes: D numbers, SI units.
+/// Access of an element to time, positions and velocities of its ends: vectors of D numbers, SI units.
 template <int D>
 class ElementView {
 public:
@@ -55,7 +55,7 @@ public:
     if (place.rotation == none) refuse_orientation(body);
     return place;
   }
-  /// The context it looks at.
+  /// The context of the evaluation.
   [[nodiscard]] const EvaluationContext& context() const { return *context_; }
 
 private:
@@ -77,12 +77,12 @@ private:
   const double* internal_;
 };
 
-/// What an element sees of a step of the time stepping.
+/// Access of an element to a step of time stepping.
 template <int D>
 struct ElementStep {
   ElementView<D> start;   ///< at its start
   ElementView<D> end;     ///< at its end
-  ElementView<D> middle;  ///< halfway: mean velocities, positions advanced by half the step
+  ElementView<D> middle;  ///< in the middle: mean velocities, positions advanced by half the step
   double step = 0.0;      ///< h [s]
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Ends of couplings: points fixed to a body or to the ground.
+/// Ends of force elements and joints: points fixed to a body or to the ground.
 
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// An end of a coupling: a body (its centre of mass), or a body and a point in its frame [m]. On `ground`
+/// An end: a body (its centre of mass), or a body and a point in its frame [m]. On `ground`
 /// the point is in the fixed frame.
 template <int D>
 struct End {
@@ -26,8 +26,8 @@ struct End {
   Vec<D> point = Vec<D>::Zero();  ///< in the body's frame, from its centre of mass [m]
 };
 
-/// Demands an end that can be: a body of this system (or ground), finite, off the centre only on a body that
-/// has an orientation.
+/// Demands a valid end: a body of this system (or ground), a finite point, and away from the centre of mass
+/// only on a body that has an orientation.
 template <int D>
 void check_end(const PartCheck& check, const End<D>& end, std::string_view quantity);
 
@@ -39,7 +39,7 @@ struct Attachment {
   Index rotation = none;          ///< its rotation, `none` if the end is at its centre
   Vec<D> local = Vec<D>::Zero();  ///< point in the body's frame (fixed frame on the ground) [m]
 
-  /// On the ground, at the origin, or where an end is.
+  /// At the origin of the ground, or at a given end.
   Attachment() = default;
   Attachment(const End<D>& end, const Layout& layout) : local(end.point) {
     if (end.body == ground) return;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The energy ledger. It is fed by what acted (impulses and forces), never by differences of the total, so
-/// that its residual checks the library's bookkeeping.
+/// The energy ledger. Its flows are works of the impulses and forces that acted, never differences of the
+/// total, so its residual checks the bookkeeping of the library.
 
 #include <carom/core/compensated_sum.h>
 #include <carom/core/energy_term.h>
@@ -13,13 +13,13 @@
 
 namespace carom {
 
-/// Stored energies now, and what flowed since the start:
+/// Stored energies now, and flows of energy since the start:
 ///     stored = initial + sum of gains - sum of losses + residual.
 class CAROM_API EnergyLedger {
 public:
   /// Opens the ledger.
   void open(const StoredEnergies& stored);
-  /// Books a step: what flowed, and what is stored after it.
+  /// Books a step: the flows in the step, and the stored energies after it.
   void book(const EnergyFlows& flows, const StoredEnergies& stored);
 
   /// Stored energy of one form now [J].
@@ -34,16 +34,16 @@ public:
   [[nodiscard]] double total() const { return stored_.total(); }
   /// Total when the ledger was opened [J].
   [[nodiscard]] double initial() const { return initial_; }
-  /// What flowed by one way since the start [J].
+  /// One flow, summed since the start [J].
   [[nodiscard]] double flow(EnergyFlow term) const { return flows_[static_cast<std::size_t>(term)].value(); }
   /// Sum of the losses since the start [J].
   [[nodiscard]] double lost() const;
-  /// What the ledger cannot explain [J]: zero but for rounding if the bookkeeping is right.
+  /// Residual [J], by the equation above: zero up to rounding if no term is missing.
   [[nodiscard]] double residual() const;
-  /// The largest term that entered so far [J], by which the residual is judged.
+  /// The largest term that entered so far [J]; compare the residual with it.
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// Everything needed to go on bit for bit, in a fixed order.
+  /// All data needed to continue bit for bit, in a fixed order.
   static constexpr std::size_t saved_size = stored_energy_count + 2 + 2 * energy_flow_count;
   [[nodiscard]] std::array<double, saved_size> save() const;
   void load(const std::array<double, saved_size>& numbers);
@@ -55,7 +55,7 @@ private:
   std::array<CompensatedSum, energy_flow_count> flows_{};
 };
 
-/// Writes the ledger as a table of terms that are not zero.
+/// Writes the terms that are not zero as a table.
 CAROM_API std::ostream& operator<<(std::ostream& out, const EnergyLedger& ledger);
 
 }  // namespace carom

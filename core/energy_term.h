@@ -17,7 +17,7 @@ enum class StoredEnergy : std::uint8_t { kinetic, gravity, elastic, potential };
 /// Number of forms of stored energy.
 inline constexpr std::size_t stored_energy_count = 4;
 
-/// Ways by which energy enters or leaves the store. All but `external` and `intervention` are counted as
+/// Flows of energy into or out of the stored energies, by cause. All except `external` and `intervention` are
 /// losses: positive where energy is lost.
 enum class EnergyFlow : std::uint8_t {
   external,                  ///< work of prescribed loads, drivers and moving obstacles (a gain)
@@ -30,12 +30,12 @@ enum class EnergyFlow : std::uint8_t {
   sliding,                   ///< tangential work of lasting contact
   joint_friction,            ///< lost in dry friction of joints
   rolling,                   ///< lost in rolling resistance
-  accumulation,              ///< thrown away where an accumulation of impacts is closed
-  projection,                ///< taken out by moving bodies back onto constraints
-  mode_switch,               ///< taken out when the mode of integration is changed
-  coupling_discretisation,   ///< -(change of potential energy + work of couplings and of joints' reactions)
+  accumulation,              ///< lost where an accumulation of impacts (Zeno) is closed
+  projection,                ///< lost by projections onto constraints
+  mode_switch,               ///< lost when the mode of integration is changed
+  coupling_discretisation,   ///< -(change of potential energy + work of force elements and joint reactions)
 };
-/// Number of ways.
+/// Number of flows.
 inline constexpr std::size_t energy_flow_count = 14;
 
 /// Name of a term, as used in tables and files: "kinetic", "impact_normal", ...
@@ -71,7 +71,7 @@ struct StoredEnergies {
   }
 };
 
-/// Energies that flowed during a step, by way [J].
+/// Flows of energy during a step, by cause [J].
 struct EnergyFlows {
   std::array<double, energy_flow_count> values{};
 

@@ -17,22 +17,22 @@
 
 namespace carom {
 
-/// What a number of a trace measures.
+/// Quantity that a number of a trace measures.
 enum class Quantity : std::uint8_t { time, energy, momentum, angular_momentum, length };
 
 /// Unit of a quantity: "s", "J", "N s", "N m s", "m".
 [[nodiscard]] CAROM_API std::string_view unit(Quantity quantity);
 
-/// A run at one time. Beside the numbers of each quantity stands their scale: the largest number that entered
-/// them so far, at whose size they are rounded. (Two bodies that fly apart have no momentum together but for
-/// rounding, at the size of that of one body.)
+/// A run at one time. Each quantity has a scale: the largest number that entered it so far, which determines
+/// its rounding error. (The total momentum of two bodies that fly apart is zero up to rounding of the size of
+/// the momentum of one body.)
 struct TraceRow {
   double time = 0.0;          ///< [s]
   StoredEnergies stored{};    ///< [J]
   double total = 0.0;         ///< sum of the stored energies [J]
   double initial = 0.0;       ///< total when the ledger was opened [J]
-  EnergyFlows flows{};        ///< what flowed since the ledger was opened [J]
-  double residual = 0.0;      ///< what the ledger cannot explain [J]
+  EnergyFlows flows{};        ///< flows since the ledger was opened [J]
+  double residual = 0.0;      ///< residual of the ledger [J]
   double energy_scale = 0.0;  ///< largest term of the ledger so far [J]
 
   std::array<double, 3> momentum{};          ///< x, y, z (0 in the plane) [N s]
@@ -41,10 +41,10 @@ struct TraceRow {
   double angular_momentum_scale = 0.0;       ///< largest part that one body had [N m s]
 
   double penetration = 0.0;   ///< deepest of a contact since the row before, >= 0 [m]
-  double joint_error = 0.0;   ///< largest of a joint since the row before; 0 while there are no joints [m]
+  double joint_error = 0.0;   ///< largest of a joint since the row before; 0 without joints [m]
   double length_scale = 0.0;  ///< largest coordinate of a body [m]
 
-  /// Scale by which a quantity is judged; that of time is 0.
+  /// Scale of a quantity; that of time is 0.
   [[nodiscard]] CAROM_API double scale(Quantity quantity) const;
 };
 
@@ -64,7 +64,7 @@ inline constexpr std::size_t trace_term_count = 16 + stored_energy_count + energ
 /// The row of such values.
 [[nodiscard]] CAROM_API TraceRow row_of(const std::array<double, trace_term_count>& values);
 
-/// Something that happened at one time, e.g. an impact.
+/// An event at one time, e.g. an impact.
 struct TraceEvent {
   double time = 0.0;   ///< [s]
   std::string text{};  ///< e.g. "particle 'lower' on half-plane 'plane', slip+"
@@ -91,9 +91,9 @@ public:
   /// each row, and among them, by time, a line for each event, of which only time and event are not empty.
   /// Throws FileError if the file cannot be written.
   void save(const std::string& path) const;
-  /// Loads what save() wrote; columns may stand in any order. Throws FileError, naming file, line, column and
-  /// what is allowed, for a file that is cut off, lacks a column or has an unknown one, or holds what is no
-  /// finite number or times out of order.
+  /// Loads what save() wrote; columns may be in any order. Throws FileError, naming file, line, column and
+  /// what is allowed, for a file that is cut off, lacks a column or has an unknown one, or has a number that
+  /// is not finite or times out of order.
   [[nodiscard]] static EnergyTrace load(const std::string& path);
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Errors: a model that cannot be, a computation that does not succeed. A broken invariant of the library
+/// Errors: invalid models, computations that do not succeed, files. A violated invariant of the library
 /// itself is an assert.
 
 #include <carom/core/export.h>
@@ -21,28 +21,28 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// A model, a state or an option that cannot be. The message names the part, the value and what is allowed.
+/// An invalid model, state, option or call. The message names the part, the value and what is allowed.
 class CAROM_API ModelError : public Error {
 public:
   using Error::Error;
 };
 
-/// What is known of a computation that did not succeed.
+/// Data of a computation that did not succeed.
 struct SolverFailure {
   double time = 0.0;                                ///< time of the last good state [s]
-  double step = 0.0;                                ///< step that was tried [s]
+  double step = 0.0;                                ///< step that failed [s]
   double suggested_step = 0.0;                      ///< step expected to succeed [s], 0 if unknown
   double residual = 0.0;                            ///< the residual that was too large, 0 if there is none
   std::vector<std::string> parts{};                 ///< names of the parts involved, the worst first
   std::shared_ptr<const ContactProblem> problem{};  ///< contact problem that failed, may be null
 };
 
-/// A computation that did not succeed. The simulation stands at its last good state.
+/// A computation that did not succeed. The simulation is at its last good state.
 class CAROM_API SolverError : public Error {
 public:
   SolverError(const std::string& message, SolverFailure failure);
 
-  /// What is known of the failure.
+  /// Data of the failure.
   [[nodiscard]] const SolverFailure& failure() const { return failure_; }
   /// True if a contact problem is attached.
   [[nodiscard]] bool has_problem() const { return failure_.problem != nullptr; }

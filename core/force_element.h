@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The door for users' force elements: a struct with a few functions becomes a part of a system.
+/// The interface for users' force elements: a struct with a few functions becomes a part of a system.
 ///
 ///     struct Magnet {
 ///       static constexpr Role role = Role::force;
@@ -9,7 +9,7 @@
 ///       BodyId body;
 ///       double strength = 0.0;
 ///       std::vector<BodyId> bodies() const { return {body}; }                   // ground may be among them
-///       void loads(const ElementView<2>& at, ElementLoads<2>& out) const {      // say what each load is
+///       void loads(const ElementView<2>& at, ElementLoads<2>& out) const {      // loads by cause
 ///         out.conservative(body, -strength * at.position(body));
 ///       }
 ///       double potential(const ElementView<2>& at) const {                      // of the conservative part
@@ -20,10 +20,10 @@
 ///     };
 ///
 /// Optional, for the rule `energy_momentum`: `void mean_loads(const ElementStep<D>&, ElementLoads<D>&)
-/// const`, loads over a step whose conservative part does exactly the work by which the potential falls.
-/// Without it the loads halfway through the step are taken.
+/// const`, loads over a step; the work of their conservative part is exactly the decrease of the potential.
+/// Without it the loads in the middle of the step are used.
 ///
-/// Optional internal variables, numbers of its own that follow a differential equation:
+/// Optional internal variables, which follow a differential equation:
 ///
 ///       static constexpr int internal_size = 1;
 ///       void initial_internal(double* z) const;                              // optional, zero without
@@ -32,25 +32,25 @@
 ///       void advance_internal(const ElementStep<D>& step, double* z) const;  // optional: by closed form
 ///       double internal_loss(const ElementStep<D>& step) const;              // optional [J]
 ///
-/// Optional, for motion between events (ForceKind says more):
+/// Optional, for the event-driven mode (see ForceKind):
 ///
-///       static constexpr bool depends_on_time = false;  // loads never ask for the time; else true
+///       static constexpr bool depends_on_time = false;  // loads do not depend on time; else true
 ///       std::vector<double> breaks{};                   // when laws of time jump: finite, ascending [s]
-///       static constexpr int guard_size = 1;            // numbers whose change of sign is a kink or
-///                                                       // a jump of the loads
+///       static constexpr int guard_size = 1;            // values whose change of sign is a switching
+///                                                       // point: a kink or jump of the loads
 ///       void guards(const ElementView<D>& at, double* out) const;
 ///
-/// An element may look at and push only bodies that it names in bodies(). Its potential is booked as
-/// `potential` unless it says `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
-/// fingerprint() a checkpoint cannot tell it from one with other parameters.
+/// An element may read and load only bodies that it names in bodies(). Its potential is booked as
+/// `potential` unless it has `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
+/// fingerprint() a checkpoint cannot distinguish it from one with other parameters.
 ///
-/// An element may say how its loads change with positions and velocities (element_derivatives.h):
+/// Optional derivatives of the loads by positions and velocities (element_derivatives.h):
 ///
 ///       void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
 ///         out.force(body, -strength * at.position(body), -strength * Mat<2>::Identity(), Mat<2>::Zero());
 ///       }
 ///
-/// Without it they are found by differences, at the cost of many evaluations and half of the digits.
+/// Without them they are computed by differences, with many evaluations and half of the digits.
 
 #include <carom/core/assembly.h>
 #include <carom/core/element_derivatives.h>
@@ -70,7 +70,7 @@
 
 namespace carom {
 
-/// Where an element books its loads, by cause (see Loads).
+/// Receives the loads of an element, by cause (see Loads).
 template <int D>
 class ElementLoads {
 public:
@@ -81,7 +81,7 @@ public:
 
   /// A force at an end that is minus the gradient of potential() [N].
   void conservative(const End<D>& end, const Vec<D>& force) { add(loads_.conservative, end, force); }
-  /// A force that only takes energy out [N].
+  /// A dissipative force: its work is never positive [N].
   void dissipative(const End<D>& end, const Vec<D>& force) { add(loads_.dissipative, end, force); }
   /// A prescribed force [N].
   void external(const End<D>& end, const Vec<D>& force) { add(loads_.external, end, force); }
@@ -106,13 +106,13 @@ private:
   Loads loads_;
 };
 
-/// The kind that stores elements without a kind of their own and calls their functions.
+/// The kind that stores elements without their own kind and calls their functions.
 template <class P>
 class ForceElementKind final : public ForceKind {
 public:
   static constexpr int D = P::dimension;
 
-  /// What a System wants to know of any kind (part.h).
+  /// Members that a System needs of every kind (part.h).
   static constexpr int part_dimension() { return D; }
   static constexpr std::string_view part_label() {
     if constexpr (requires { P::label; }) {

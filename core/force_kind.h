@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What a kind of coupling or load tells the rest of the library. Elements of one kind are stored together;
-/// every call is for the elements of one island.
+/// Interface of a kind of force elements. Elements of one kind are stored together; every call is for the
+/// elements of one island.
 
 #include <carom/core/energy_term.h>
 #include <carom/core/evaluation.h>
@@ -20,17 +20,17 @@ namespace carom {
 
 class Assembly;
 
-/// Where elements are evaluated.
+/// State at which elements are evaluated.
 struct EvaluationContext {
   const Assembly& assembly;      ///< the model
   StateView state;               ///< the state
   const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
   Index island;                  ///< the island the elements belong to
-  Range bodies{};                ///< of a field, the bodies of the island it is to act on; all if empty
+  Range bodies{};                ///< for a field, the bodies of the island that it acts on; all if empty
 };
 
-/// A step of the time stepping, as elements see it: its two ends and the state halfway (mean velocities and
-/// internal variables, positions advanced by half the step).
+/// A step of time stepping for elements: its two ends and the middle (mean velocities and internal variables,
+/// positions advanced by half the step).
 struct StepContext {
   const EvaluationContext& start;
   const EvaluationContext& end;
@@ -78,9 +78,9 @@ public:
   [[nodiscard]] virtual bool books_external() const { return true; }
   /// True if elements may book dissipative loads.
   [[nodiscard]] virtual bool books_dissipative() const { return true; }
-  /// True if elements look at the rotations of bodies (Evaluation::rotation).
+  /// True if elements use the rotations of bodies (Evaluation::rotation).
   [[nodiscard]] virtual bool needs_rotations() const { return true; }
-  /// True if every evaluation adds the same loads to a body, wherever it is and however it moves.
+  /// True if the load on a body is constant: it depends neither on its position nor on its velocity.
   [[nodiscard]] virtual bool is_constant() const { return false; }
   /// Form of energy that potential() counts as.
   [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
@@ -95,38 +95,38 @@ public:
   /// elements DifferenceDerivatives is cheaper.
   virtual void derivatives(const EvaluationContext& at, Index element,
                            std::vector<LoadDerivative>& out) const;
-  /// evaluate() and potential() at once, for kinds that can save work by it.
+  /// evaluate() and potential() together, for kinds where that is cheaper.
   virtual double evaluate_with_potential(const EvaluationContext& at, Range elements,
                                          const Loads& loads) const {
     evaluate(at, elements, loads);
     return potential(at, elements);
   }
 
-  /// Adds the mean loads of a range of elements over a step, for the rule `energy_momentum`: a force along
-  /// which the elements' potentials change by exactly its work. Unless overridden the loads halfway, exact to
+  /// Adds the mean loads of a range of elements over a step, for the rule `energy_momentum`: their work is
+  /// exactly the decrease of the potentials. Unless overridden the loads in the middle of the step, exact to
   /// second order.
   virtual void evaluate_mean(const StepContext& at, Range elements, const Loads& loads) const {
     evaluate(at.middle, elements, loads);
   }
-  /// True if evaluate_mean() or internal_loss() looks at the state halfway.
+  /// True if evaluate_mean() or internal_loss() uses the middle of the step.
   [[nodiscard]] virtual bool uses_middle() const { return true; }
 
   /// Internal variables of each element (State::z); elements of a kind have equally many.
   [[nodiscard]] virtual Index internal_size() const { return 0; }
-  /// Tells where the internal variables of each element begin in State::z. Called once, on an arranged kind.
+  /// Sets where the internal variables of each element begin in State::z. Called once, on an arranged kind.
   virtual void place_internal(std::span<const Index> /*first*/) {}
   /// Writes the internal variables of an element at the start of a run.
   virtual void initial_internal(Index /*element*/, double* /*z*/) const {}
   /// Writes dz/dt of a range of elements into `rates`, an array over all of State::z.
   virtual void internal_rates(const EvaluationContext& /*at*/, Range /*elements*/, double* /*rates*/) const {}
   /// Writes the internal variables at the end of a step, `z` = `at.end.state.z`, by the trapezoidal rule
-  /// with the motion given; `z` holds a guess. Returns the first element for which that does not succeed,
-  /// elements.end if there is none.
+  /// for the given motion; `z` has a guess. Returns the first element for which that fails, elements.end if
+  /// there is none.
   [[nodiscard]] virtual Index advance_internal(const StepContext& /*at*/, Range elements,
                                                double* /*z*/) const {
     return elements.end;
   }
-  /// Power lost inside a range of elements, beside what their loads book [W].
+  /// Power lost inside a range of elements, in addition to that of their loads [W].
   [[nodiscard]] virtual double internal_loss_rate(const EvaluationContext& /*at*/, Range /*elements*/) const {
     return 0.0;
   }
@@ -135,17 +135,17 @@ public:
     return at.step * internal_loss_rate(at.middle, elements);
   }
 
-  /// What motion between events must know. Numbers of each element, equally many for all of a kind, whose
-  /// changes of sign are kinks or jumps of its loads.
+  /// Number of switching values of each element, the same for all of a kind: at their changes of sign the
+  /// loads have a kink or jump. For the event-driven mode.
   [[nodiscard]] virtual Index guard_size() const { return 0; }
-  /// Writes them for a range of elements, one element after the other.
+  /// Writes the switching values of a range of elements, one element after the other.
   virtual void guards(const EvaluationContext& /*at*/, Range /*elements*/, double* /*out*/) const {}
   /// Appends the times [s], ascending, at which the law of an element jumps or has a kink.
   virtual void breaks(Index /*element*/, std::vector<double>& /*out*/) const {}
   /// True if loads may depend on the time, other than by positions, velocities and internal variables.
   [[nodiscard]] virtual bool depends_on_time() const { return true; }
 
-  /// Adds all that distinguishes this kind's elements (functions cannot).
+  /// Adds all data that distinguish the elements of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

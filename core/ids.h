@@ -11,11 +11,11 @@ namespace carom {
 /// Sizes, offsets and serial numbers.
 using Index = std::uint32_t;
 
-/// "Nowhere": an index that no part has.
+/// Invalid index: no part has it.
 inline constexpr Index none = 0xffffffffU;
 
 /// Identity of a part: serial number within its system and the token of that system.
-/// A copy of a system keeps the token, so identities stay good in the copy.
+/// A copy of a system keeps the token, so identities are valid in the copy.
 template <class Tag>
 struct Id {
   Index serial = none;  ///< serial number, `none` for an identity that was never given
@@ -27,13 +27,13 @@ struct Id {
 };
 
 using BodyId = Id<struct BodyTag>;          ///< a body
-using ElementId = Id<struct ElementTag>;    ///< a coupling or load
+using ElementId = Id<struct ElementTag>;    ///< a force element
 using ShapeId = Id<struct ShapeTag>;        ///< a shape fixed to a body
 using JointId = Id<struct JointTag>;        ///< a joint
 using ObstacleId = Id<struct ObstacleTag>;  ///< an obstacle
 using MaterialId = Id<struct MaterialTag>;  ///< a material
 
-/// The fixed frame. An end of a coupling may be on it; it belongs to every system.
+/// The fixed frame. An end of a force element or joint may be on it; it belongs to every system.
 inline constexpr BodyId ground{0xfffffffeU, 0};
 
 /// A contiguous range of indices, [begin, end).

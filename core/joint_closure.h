@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Joints at the start of a run: positions and velocities that obey them, and what freedom they leave.
+/// Joints at the start of a run: projection of positions and velocities onto them, and degrees of freedom.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -11,34 +11,34 @@
 
 namespace carom {
 
-/// What was corrected to close the joints.
+/// Corrections that closed the joints.
 struct JointClosure {
-  double shift = 0.0;   ///< largest displacement of a body, angles weighed by its radius of gyration [m]
+  double shift = 0.0;   ///< largest displacement of a body, angles times its radius of gyration [m]
   double change = 0.0;  ///< largest change of a velocity, likewise [m/s]
 };
 
-/// Moves the bodies of a state so that all joints are closed, and changes their velocities so that they stay
-/// so, both by the smallest changes in the sense of the masses; bodies for which System::keeps_place() holds
-/// are left where they are. A state that obeys the joints up to rounding is left alone. Throws ModelError
-/// naming the joint that cannot be closed and by how much, with those that contradict it.
+/// Projects the positions of a state onto the joints, and then its velocities, both by the smallest changes
+/// in the mass norm; bodies with System::keeps_place() are not moved. A state that satisfies the joints up to
+/// rounding is not changed. Throws ModelError naming the joint that cannot be closed, its gap, and the joints
+/// that contradict it.
 CAROM_API JointClosure close_joints(const Assembly& assembly, State& state);
 
-/// A joint whose rows follow from those of others: its reactions, and theirs, are not unique.
+/// A joint whose rows depend linearly on those of others: its reactions, and theirs, are not unique.
 struct RedundantJoint {
-  JointId joint;              ///< what is redundant
-  std::vector<JointId> with;  ///< what it follows from
+  JointId joint;              ///< the redundant joint
+  std::vector<JointId> with;  ///< joints on whose rows it depends
 };
 
 /// Degrees of freedom of a model at a configuration.
 struct Mobility {
-  Index velocities = 0;                   ///< numbers that the velocities of all bodies are
+  Index velocities = 0;                   ///< velocity coordinates of all bodies
   Index rows = 0;                         ///< rows of all joints and drivers
-  Index independent_rows = 0;             ///< those that do not follow from others
+  Index independent_rows = 0;             ///< linearly independent rows
   Index degrees_of_freedom = 0;           ///< velocities - independent_rows
   std::vector<RedundantJoint> redundant;  ///< by the order of assembly
 };
 
-/// Counts the degrees of freedom at a state, contacts aside.
+/// Counts the degrees of freedom at a state, without contacts.
 [[nodiscard]] CAROM_API Mobility mobility(const Assembly& assembly, const State& state);
 
 }  // namespace carom

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What a kind of joint tells the rest of the library: bilateral rows g(q, t) = 0 with their first
-/// derivatives and what their second ones have beside accelerations. Joints of one kind are stored together.
+/// Interface of a kind of joints: bilateral rows g(q, t) = 0, their first derivatives, and the terms of the
+/// second ones without accelerations. Joints of one kind are stored together.
 
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
@@ -17,7 +17,7 @@
 
 namespace carom {
 
-/// Where joints are evaluated: a state, and the rotations of its bodies (Evaluation::rotation).
+/// State at which joints are evaluated, with the rotations of its bodies (Evaluation::rotation).
 struct JointView {
   StateView state;                   ///< positions, velocities, time
   const double* rotation = nullptr;  ///< by BodySlot::rotation, up to date
@@ -25,7 +25,7 @@ struct JointView {
 
 /// A bilateral row g at one configuration:  dg/dt = G v + rate,  d2g/dt2 = G a + drift.
 struct JointRow {
-  static constexpr int max_bodies = 3;   ///< bodies that a row joins
+  static constexpr int max_bodies = 3;   ///< most bodies of a row
   static constexpr int max_columns = 3;  ///< velocities of one of them
   /// The part of G for one body.
   struct Block {
@@ -37,8 +37,8 @@ struct JointRow {
   std::array<Block, static_cast<std::size_t>(max_bodies)> blocks{};  ///< of G
   int bodies = 0;                                                    ///< blocks in use
   double gap = 0.0;                                                  ///< g [m, rad]
-  double rate = 0.0;   ///< dg/dt where nothing moves: of a row that depends on time
-  double drift = 0.0;  ///< d2g/dt2 where nothing accelerates
+  double rate = 0.0;   ///< dg/dt at rest: of a row that depends on time
+  double drift = 0.0;  ///< d2g/dt2 without accelerations
 
   /// G times numbers. \param numbers an array over all velocities
   [[nodiscard]] double times(const double* numbers) const {
@@ -62,8 +62,8 @@ struct JointRow {
   }
 };
 
-/// How a row changes with positions and velocities. Numbers are by the velocities of the row's blocks, one
-/// behind the other, a position being moved along that velocity.
+/// Derivatives of a row by positions and velocities, in the order of the velocities of its blocks; a
+/// derivative by position is along that velocity.
 struct JointRowDerivative {
   static constexpr int most = JointRow::max_bodies * JointRow::max_columns;
   using Numbers = std::array<double, static_cast<std::size_t>(most)>;
@@ -73,11 +73,11 @@ struct JointRowDerivative {
   Numbers drift_by_velocity{};                                     ///< of `drift`
 };
 
-/// Where the rows of many joints are written, numbers of one sort together. What is null is not wanted.
+/// Arrays for the rows of many joints, one for each quantity. Null: not needed.
 struct JointNumbers {
   double* jacobian = nullptr;  ///< G: row by row, the blocks of a row one behind the other
   double* gap = nullptr;       ///< by row, never null
-  double* rate = nullptr;      ///< by row; wanted where rows depend on time
+  double* rate = nullptr;      ///< by row; needed if rows depend on time
   double* drift = nullptr;     ///< by row
 };
 
@@ -90,11 +90,11 @@ struct JointLimit {
 /// Dry friction along the coordinate of a joint.
 struct JointRub {
   double bound = 0.0;          ///< of the friction while it slides, constant part [N, N m]
-  double static_factor = 1.0;  ///< sticking takes this many times more
+  double static_factor = 1.0;  ///< ratio of the bound of sticking to that of sliding
   double coefficient = 0.0;  ///< of the force between the bodies of the joint, which adds to the bound [1, m]
 };
 
-/// What a joint does to its body `to`; to `from` it does the opposite, at the same place.
+/// Load of a joint on its body `to`; the opposite acts on `from`, at the same place.
 struct JointReaction {
   std::array<double, 3> force{};  ///< on `to`, at its end, in the fixed frame [N], or impulse [N s]
   double moment = 0.0;            ///< on `to`, about its end, counter-clockwise [N m], or its impulse [N m s]
@@ -103,7 +103,7 @@ struct JointReaction {
 /// All joints of one kind.
 class CAROM_API JointKind {
 public:
-  static constexpr Index most_rows = 6;  ///< of a joint: no more freedoms are between two bodies
+  static constexpr Index most_rows = 6;  ///< of a joint: degrees of freedom between two bodies
 
   virtual ~JointKind() = default;
 
@@ -121,13 +121,13 @@ public:
   [[nodiscard]] virtual Index size() const = 0;              ///< number of joints
   /// Rows of each joint, at most most_rows; they count as constraints.
   [[nodiscard]] virtual Index rows() const = 0;
-  /// Appends the bodies a joint binds (ground included).
+  /// Appends the bodies of a joint (ground included).
   virtual void ends(Index joint, std::vector<BodyId>& out) const = 0;
   /// The joint on whose coordinate this one acts (a driver), or an invalid identity.
   [[nodiscard]] virtual JointId on_joint(Index /*joint*/) const { return {}; }
 
-  /// Writes which velocities the rows of a joint have blocks for, all of them the same. Values are not looked
-  /// at.
+  /// Writes the velocities that the rows of a joint have blocks for, the same for all rows. Values are not
+  /// used.
   virtual void pattern(Index joint, JointRow* out) const = 0;
   /// Writes the rows of a joint.
   virtual void evaluate(const JointView& at, Index joint, JointRow* out) const = 0;
@@ -140,7 +140,7 @@ public:
   /// Appends the times at which a joint's law of time has a kink or a jump [s].
   virtual void breaks(Index /*joint*/, std::vector<double>& /*out*/) const {}
 
-  /// True if joints of this kind have a coordinate: what drivers, motors and stops act on.
+  /// True if joints of this kind have a coordinate, on which drivers, motors and stops act.
   [[nodiscard]] virtual bool has_coordinate() const { return false; }
   /// Writes the coordinate of a joint (gap: its value) as a row.
   virtual void coordinate(const JointView& /*at*/, Index /*joint*/, JointRow& /*out*/) const {}
@@ -149,7 +149,7 @@ public:
                                       JointRowDerivative& /*out*/) const {}
   /// Writes which velocities the coordinate's row has blocks for.
   virtual void coordinate_pattern(Index /*joint*/, JointRow& /*out*/) const {}
-  /// Unilateral rows (stops) of each joint, beside rows().
+  /// Unilateral rows (limits) of each joint, in addition to rows().
   [[nodiscard]] virtual Index limits() const { return 0; }
   /// True if a joint has the unilateral row at that place.
   [[nodiscard]] virtual bool has_limit(Index /*joint*/, Index /*which*/) const { return false; }
@@ -157,14 +157,14 @@ public:
   virtual void limit(const JointView& /*at*/, Index /*joint*/, Index /*which*/, JointLimit& /*out*/) const {}
   /// Name of a unilateral row in messages, e.g. "upper".
   [[nodiscard]] virtual std::string_view limit_label(Index /*which*/) const { return {}; }
-  /// True if joints of this kind rub along the coordinate of the joint that they act on.
+  /// True if joints of this kind have dry friction along the coordinate of the joint that they act on.
   [[nodiscard]] virtual bool rubs() const { return false; }
   /// The friction of a joint.
   [[nodiscard]] virtual JointRub rub(Index /*joint*/) const { return {}; }
-  /// What the multipliers of a joint's rows do to its body `to`; of one that rubs, what its friction does.
+  /// Load of the multipliers of the rows of a joint on its body `to`; for dry friction, that of the friction.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;
-  /// Adds all that distinguishes this kind's joints (functions cannot).
+  /// Adds all data that distinguish the joints of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

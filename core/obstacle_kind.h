@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a kind of obstacle tells the rest of the library.
+/// Interface of a kind of obstacles.
 
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
@@ -20,8 +20,8 @@ struct Gap {
   std::array<double, 3> normal{};  ///< unit gradient, from the obstacle into free space
 };
 
-/// Where a rigid obstacle is at a time and how it moves: by the point o that it turns about. Contact::drift
-/// is made of it as for a flat boundary.
+/// Position and motion of a rigid obstacle at a time, by its reference point o, about which it turns.
+/// Contact::drift is computed from it as for a flat boundary.
 struct ObstacleMotion {
   std::array<double, 3> point{};         ///< o [m]
   std::array<double, 3> velocity{};      ///< of o [m/s]
@@ -45,18 +45,18 @@ public:
   [[nodiscard]] virtual Index size() const = 0;                     ///< number of obstacles
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
 
-  /// True if the obstacle moves as prescribed. Where one at rest is, gap() says; of one that moves place()
-  /// is asked once per time and moved_gap() as often as it takes.
+  /// True if the obstacle has a prescribed motion. For one at rest gap() is called; for a moving one place()
+  /// once for each time, and moved_gap() for each point.
   [[nodiscard]] virtual bool moves(Index /*slot*/) const { return false; }
-  /// Where a moving obstacle is at a time [s] and how it moves. Not finite where its functions are not.
+  /// Position and motion of a moving obstacle at a time [s]. Not finite where its functions are not.
   [[nodiscard]] virtual ObstacleMotion place(Index /*slot*/, double /*time*/) const { return {}; }
   /// Appends the times [s], in their order, at which the velocity of a moving obstacle jumps or its motion
-  /// has a kink. place() at such a time is what holds after it.
+  /// has a kink. place() at such a time gives the motion after it.
   virtual void breaks(Index /*slot*/, std::vector<double>& /*out*/) const {}
 
   /// Distance of a point from an obstacle at rest. \param point 2 or 3 numbers [m]
   [[nodiscard]] virtual Gap gap(Index slot, const double* point) const = 0;
-  /// Distance of a point from a moving obstacle; the motion is what place() said.
+  /// Distance of a point from a moving obstacle, with the motion from place().
   [[nodiscard]] virtual Gap moved_gap(Index slot, const ObstacleMotion& /*motion*/,
                                       const double* point) const {
     return gap(slot, point);
@@ -77,7 +77,7 @@ public:
     }
     return false;
   }
-  /// Adds all that distinguishes this kind's obstacles (functions cannot).
+  /// Adds all data that distinguish the obstacles of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

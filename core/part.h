@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What makes a struct a part of a system: it names its role, and its kind where it has one of its own.
+/// Requirements on a struct that is a part of a system: it has a role, and may have its own kind.
 
 #include <carom/core/body_kind.h>
 #include <carom/core/force_kind.h>
@@ -16,11 +16,11 @@
 
 namespace carom {
 
-/// What a part is in the graph of a system.
+/// Role of a part in the graph of a system.
 enum class Role : std::uint8_t {
   body,      ///< a node
-  force,     ///< an edge that pushes, or a load
-  joint,     ///< an edge that binds
+  force,     ///< a force element: an edge, or a load on one body
+  joint,     ///< an edge with constraints
   shape,     ///< geometry fixed to a body
   obstacle,  ///< geometry fixed to the ground, or moved as prescribed
 };
@@ -34,7 +34,7 @@ struct RoleTraits<Role::body> {
   using Interface = BodyKind;
   using Identity = BodyId;
 };
-/// Of couplings and loads.
+/// Of force elements.
 template <>
 struct RoleTraits<Role::force> {
   using Interface = ForceKind;

@@ -17,7 +17,7 @@ namespace carom {
 class System;
 struct Surface;
 
-/// A number as a reader wants it: the shortest text that reads back to the same double.
+/// The shortest text of a number that reads back to the same double.
 [[nodiscard]] CAROM_API std::string to_text(double value);
 
 /// Checks one part. `part` is the text by which messages name it, e.g. "particle 'upper'".
@@ -43,9 +43,9 @@ public:
   void non_negative(double value, std::string_view quantity, std::string_view unit) const;
   /// Demands a number in [lower, upper].
   void between(double value, double lower, double upper, std::string_view quantity) const;
-  /// Demands times that are finite and ascend.
+  /// Demands times that are finite and ascending.
   void breaks(std::span<const double> times, std::string_view quantity) const;
-  /// Demands coefficients of a contact law that are possible.
+  /// Demands valid coefficients of a contact law.
   void surface(const Surface& surface) const;
   /// Demands a body of this system (or `ground` where `may_be_ground`).
   void body(BodyId id, std::string_view quantity, bool may_be_ground) const;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a kind of shape tells the rest of the library.
+/// Interface of a kind of shapes.
 
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// A point fixed to a body with a radius around it: what a half-plane can touch of a convex shape.
+/// A point fixed to a body with a radius: a place where a convex shape can touch a half-plane.
 struct RoundedPoint {
   std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
   double radius = 0.0;             ///< [m]
@@ -34,7 +34,7 @@ public:
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
   /// Appends the features that may touch a half-plane, in a fixed order (their places are feature numbers).
   virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;
-  /// Adds all that distinguishes this kind's shapes.
+  /// Adds all data that distinguish the shapes of this kind.
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

@@ -13,12 +13,12 @@
 
 namespace carom {
 
-/// A window on somebody's numbers (unaligned, so that any caller's vectorisation fits).
+/// A view of numbers stored elsewhere (unaligned, so that it fits any vectorisation of the caller).
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
-/// A window on somebody's constant numbers.
+/// A view of constant numbers stored elsewhere.
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
-/// Time and numbers over any memory; what evaluations read. Arrays are those of the whole model.
+/// Time and pointers to the numbers of a state, which evaluations read. Arrays are those of the whole model.
 struct StateView {
   double time = 0.0;          ///< [s]
   const double* q = nullptr;  ///< coordinates [m, rad]
@@ -26,7 +26,7 @@ struct StateView {
   const double* z = nullptr;  ///< internal variables of elements
 };
 
-/// Time, coordinates q, velocities v and internal variables z of a model. Copy it, keep it, compare it.
+/// Time, coordinates q, velocities v and internal variables z of a model: a value.
 class CAROM_API State {
 public:
   /// A state of no model.
@@ -52,8 +52,8 @@ public:
   [[nodiscard]] double spin(BodyId body) const { return v[spin_index(body)]; }
   [[nodiscard]] double& spin(BodyId body) { return v[spin_index(body)]; }
 
-  /// Coordinate of a joint [rad, m], `to` relative to `from`: the joint says which. Throws ModelError for a
-  /// joint that is not of this model or has none.
+  /// Coordinate of a joint [rad, m], `to` relative to `from`, as defined by the joint. Throws ModelError for
+  /// a joint that is not of this model or has none.
   [[nodiscard]] double coordinate(JointId joint) const;
   /// Its rate [rad/s, m/s]. Throws as coordinate().
   [[nodiscard]] double rate(JointId joint) const;
@@ -65,7 +65,7 @@ public:
 
   /// The map from identities to places. Null for a state of no model.
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
-  /// The numbers, to evaluate.
+  /// View of the numbers, for evaluations.
   [[nodiscard]] StateView view() const { return {time, q.data(), v.data(), z.data()}; }
 
 private:

@@ -13,12 +13,12 @@ struct Surface {
   double friction = std::numeric_limits<double>::quiet_NaN();  ///< coefficient of sliding friction mu_k, >= 0
   double normal_restitution = std::numeric_limits<double>::quiet_NaN();  ///< e_n in [0, 1]
   double tangential_restitution = 0.0;                                   ///< e_t in [0, 1]
-  /// Coefficient of sticking mu_s >= mu_k; NaN: the same as `friction`.
+  /// Coefficient of static friction mu_s >= mu_k; NaN: the same as `friction`.
   double static_friction = std::numeric_limits<double>::quiet_NaN();
-  /// Speed over which mu_s - mu_k falls by a factor of e, >= 0 [m/s]; 0: at once. Needs static_friction.
+  /// Speed over which mu - mu_k falls by a factor of e, >= 0 [m/s]; 0: at once. Needs static_friction.
   double stribeck_speed = 0.0;
 
-  /// True if sticking takes more than sliding.
+  /// True if static friction is larger than sliding friction.
   [[nodiscard]] bool has_static_friction() const { return static_friction > friction; }
   /// Coefficient of a contact that sticks: mu_s.
   [[nodiscard]] double sticking_friction() const {
@@ -34,7 +34,7 @@ struct Surface {
     return speed > 0.0 ? friction : static_friction;
   }
   /// Coefficient of a contact that slides at a speed >= 0 [m/s], at 0 the limit of slow sliding; below 0 the
-  /// curve goes on as it is.
+  /// curve is continued.
   [[nodiscard]] double sliding_friction(double speed) const {
     return stribeck_speed > 0.0 ? friction_at(speed) : friction;
   }

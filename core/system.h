@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// The model: a graph of bodies (nodes), couplings, loads and joints (edges), shapes and obstacles.
+/// The model: a graph of bodies (nodes), force elements and joints (edges), shapes and obstacles.
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
@@ -20,16 +20,16 @@
 
 namespace carom {
 
-/// Says what exists; holds no state. Parts are checked as they are added. Copies are independent and keep
+/// Describes a model; it has no state. Parts are checked when they are added. Copies are independent and keep
 /// the identities of their parts.
 class CAROM_API System {
 public:
   System();
 
-  /// Adds a part: a body, coupling, load, joint, shape or obstacle, the library's or a user's own.
+  /// Adds a part: a body, force element, joint, shape or obstacle, of the library or of the user.
   /// \param name optional, unique among the parts of its role
   /// \return its identity
-  /// Throws ModelError (naming the part, the value and what is allowed) if the part cannot be.
+  /// Throws ModelError (naming the part, the value and what is allowed) if the part is invalid.
   template <Part P>
   IdOf<P> add(const P& part, std::string name = {}) {
     using Kind = typename KindOf<P>::type;
@@ -42,7 +42,7 @@ public:
     return {serial, token_};
   }
 
-  /// Adds an obstacle with one surface against everything that has no more special law (see between()).
+  /// Adds an obstacle with its contact law, which holds where no law of materials is set (see between()).
   template <Part P>
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
@@ -54,27 +54,27 @@ public:
     return id;
   }
 
-  /// Removes a part. A body must have lost its couplings, joints and shapes first, a joint what acts
-  /// on its coordinate, otherwise ModelError names one.
+  /// Removes a part. The force elements, joints and shapes of a body must be removed before it, and the parts
+  /// on the coordinate of a joint before the joint; otherwise a ModelError names one of them.
   void remove(BodyId id);
   void remove(ElementId id);
   void remove(JointId id);
   void remove(ShapeId id);
   void remove(ObstacleId id);
 
-  /// Says whether a body stays where it is described while joints are closed at the start of a run, and keeps
-  /// its velocity; others then give way. Throws ModelError for a body that is not of this system.
+  /// Excludes a body from the projection onto the joints at the start of a run: it keeps its described
+  /// position and velocity, and others are moved. Throws ModelError for a body that is not of this system.
   void keep_place(BodyId body, bool keep = true);
-  /// True if it does.
+  /// True if it is excluded.
   [[nodiscard]] bool keeps_place(BodyId body) const { return kept_.contains(body.serial); }
 
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);
-  /// Sets the contact law between two materials. Throws ModelError for impossible coefficients.
+  /// Sets the contact law between two materials. Throws ModelError for invalid coefficients.
   void between(MaterialId a, MaterialId b, const Surface& surface);
-  /// Law of contact between something of material `a` and an obstacle: what between() says of their
-  /// materials, else the surface the obstacle was added with, else nothing. `a` may be no material. Throws
-  /// ModelError for a material or an obstacle that is not of this system.
+  /// Contact law between a part of material `a` and an obstacle: that of their materials, set by between(),
+  /// else the surface that the obstacle was added with, else none. `a` may be no material. Throws ModelError
+  /// for a material or an obstacle that is not of this system.
   [[nodiscard]] std::optional<Surface> law(MaterialId a, ObstacleId obstacle) const;
 
   /// The part of that name. Throws ModelError if there is none.
@@ -84,7 +84,7 @@ public:
   [[nodiscard]] ShapeId shape(std::string_view name) const;
   [[nodiscard]] ObstacleId obstacle(std::string_view name) const;
 
-  /// Text by which messages call a part: "particle 'lower'" or "particle #3"; "ground".
+  /// Name of a part in messages: "particle 'lower'" or "particle #3"; "ground".
   [[nodiscard]] std::string name(BodyId id) const;
   [[nodiscard]] std::string name(ElementId id) const;
   [[nodiscard]] std::string name(JointId id) const;
@@ -109,19 +109,19 @@ public:
   /// True if the body has an orientation.
   [[nodiscard]] bool has_orientation(BodyId id) const;
 
-  /// Parts, in the order in which they came.
+  /// Parts, in the order in which they were added.
   [[nodiscard]] std::vector<BodyId> bodies() const { return identities<BodyId>(bodies_); }
   [[nodiscard]] std::vector<ElementId> elements() const { return identities<ElementId>(forces_); }
   [[nodiscard]] std::vector<JointId> joints() const { return identities<JointId>(joints_); }
   [[nodiscard]] std::vector<ShapeId> shapes() const { return identities<ShapeId>(shapes_); }
   [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(obstacles_); }
 
-  /// 2 or 3; 0 while the system has no part that tells.
+  /// 2 or 3; 0 while no part determines it.
   [[nodiscard]] int dimension() const { return dimension_; }
   /// Token in the identities of this system and its copies.
   [[nodiscard]] Index token() const { return token_; }
-  /// Fingerprint of what a run depends on beside its state: everything but names, initial positions and
-  /// velocities, functions given by users, and what a user's element does not report.
+  /// Fingerprint of all data that a run depends on besides its state: everything except names, initial
+  /// positions and velocities, functions given by users, and data that a user's element does not report.
   [[nodiscard]] std::uint64_t fingerprint() const;
 
   /// Parts by kind, for assembly.

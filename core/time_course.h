@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// A prescribed quantity at a time, with the rates that its user gave or did not give.
+/// A prescribed quantity at a time, with its rates, given by the user or computed.
 
 #include <carom/core/time_difference.h>
 
@@ -16,7 +16,7 @@ struct Course {
   Value value, rate, second;
 };
 
-/// What functions of time say; rates that are not given follow from those that are, by TimeDifference.
+/// Evaluates functions of time; rates that are not given are computed from the others by TimeDifference.
 /// \param breaks times that no difference may reach across [s]
 template <class Value>
 Course<Value> course(const std::function<Value(double)>& value, const std::function<Value(double)>& rate,

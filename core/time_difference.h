@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Derivatives of functions of time by differences, where nobody gives them.
+/// Derivatives of functions of time by finite differences, where they are not given.
 
 #include <carom/core/export.h>
 
@@ -19,8 +19,8 @@ namespace carom {
 ///                 away from breaks          beside one           rounding of f, within seconds of time 0
 ///     first       (h w)^6/140 w |f|         (h w)^6 w |f|        2e-12 |f|/s,   beside a break 20 times that
 ///     second      (h w)^6/560 w^2 |f|       3 (h w)^5 w^2 |f|    2e-9 |f|/s^2,  beside a break 80 times that
-/// so that frequencies beyond some 300 rad/s deserve derivatives in closed form. Rounding grows with the time
-/// as that of f does.
+/// so that frequencies above about 300 rad/s need derivatives in closed form. The rounding error increases
+/// with the time like that of f.
 class CAROM_API TimeDifference {
 public:
   /// \param time where [s]

@@ -14,10 +14,10 @@
 
 namespace carom {
 
-/// How far a trace may be from the stored one. A term may differ by its absolute tolerance plus `relative`
-/// times the scale of its quantity in the stored trace at that time (TraceRow::scale()). Not times the term
-/// itself: a small term, such as the friction loss beside a large kinetic energy, is the difference of large
-/// ones and cannot be nearer than they are rounded.
+/// Allowed difference between a trace and the stored one. A term may differ by its absolute tolerance plus
+/// `relative` times the scale of its quantity in the stored trace at that time (TraceRow::scale()). The
+/// tolerance is relative to the scale and not to the term: a small term, such as the friction loss beside a
+/// large kinetic energy, is computed from large numbers and has their rounding errors.
 struct TraceTolerances {
   double relative = 0.0;          ///< of the scale of the quantity, >= 0
   double energy = 0.0;            ///< absolute, >= 0 [J]
@@ -39,7 +39,8 @@ struct TermDifference {
 
   /// |value - stored|.
   [[nodiscard]] CAROM_API double amount() const;
-  /// Amount in parts of what is allowed: 0 where the two are the same, infinite where nothing is allowed.
+  /// Amount divided by the allowed difference: 0 where the two are equal, infinite where no difference is
+  /// allowed.
   [[nodiscard]] CAROM_API double ratio() const;
 };
 
@@ -64,8 +65,8 @@ struct TraceComparison {
 };
 
 /// Compares term by term, row by row. Throws ModelError for tolerances that are negative or not finite, for
-/// traces without rows, and for traces that were not taken at the same times (within `same_time`): nothing is
-/// interpolated.
+/// traces without rows, and for traces that were not taken at the same times (within `same_time`): values are
+/// not interpolated.
 [[nodiscard]] CAROM_API TraceComparison compare(const EnergyTrace& trace, const EnergyTrace& stored,
                                                 const TraceTolerances& tolerances);
 

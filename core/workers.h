@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Threads for loops over parts of an island. What a loop computes must not depend on who does which part, so
-/// the same bits come out for any number of threads.
+/// Threads for loops over parts of an island. The result of a loop must not depend on which thread computes
+/// which part, so it is the same bit for bit for any number of threads.
 
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>

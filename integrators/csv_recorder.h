@@ -22,7 +22,7 @@ class Simulation;
 /// step; the other observers are called all the same.
 class CAROM_API CsvRecorder {
 public:
-  /// What to record.
+  /// Options of the record.
   struct Options {
     std::vector<BodyId> bodies{};  ///< all bodies if empty
     int every_steps = 1;           ///< a row after every so many steps, >= 1

@@ -16,7 +16,7 @@ namespace carom {
 class Simulation;
 
 /// Records a simulation into an EnergyTrace: a row for the state at which it is attached, then rows at chosen
-/// times, and every impact of every step as an event. Recording changes nothing of the run, but that steps
+/// times, and every impact of every step as an event. Recording does not change the run, except that steps
 /// end exactly at the times of an interval (Simulation::every(), so it counts as a periodic event in
 /// checkpoints). Rows must not go back in time: after set_state() or load() to an earlier time, the next row
 /// is refused with a ModelError; use a new recorder.
@@ -34,7 +34,7 @@ public:
   /// finite option or if both are given.
   EnergyRecorder(Simulation& simulation, const Options& options);
 
-  /// What was recorded so far.
+  /// The trace recorded so far.
   [[nodiscard]] const EnergyTrace& trace() const;
   /// Ends the recording of this simulation, and that its steps end at the times of the interval. Throws
   /// ModelError if the simulation is not the one that is recorded, or no longer is.

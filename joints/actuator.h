@@ -18,7 +18,7 @@ namespace carom {
 /// The law of an actuator: f(t, x, dx/dt).
 using ActuatorLaw = std::function<double(double time, double coordinate, double rate)>;
 
-/// The law of an actuator by its coordinate and its rate: as given, else by central differences.
+/// Derivatives of the law of an actuator by its coordinate and rate: as given, else by central differences.
 struct ActuatorSlopes {
   /// \param by_coordinate derivative by x, may be empty; then the step is 6e-6 times `size`
   /// \param by_rate derivative by dx/dt, may be empty; then the step is 6e-6 times max(1, |dx/dt|)
@@ -61,10 +61,10 @@ struct LinearActuator {
   ActuatorLaw force_by_rate{};
   std::vector<double> breaks{};  ///< when `force` jumps or has a kink in time, ascending [s]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends or a law that cannot be. The law is tried at time 0 with the length and rate
-  /// that the bodies are described with, unless the length is 0.
+  /// Throws ModelError for invalid ends or an invalid law. The law is tried at time 0 with the length and
+  /// rate that the bodies are described with, unless the length is 0.
   void check(const PartCheck& check) const {
     check_line_ends(check, from, to);
     if (!force) check.refuse("force", "not given", "a function of time, length and rate");
@@ -91,7 +91,7 @@ struct LinearActuator {
     const LineOfAction<D> line(at, from, to);
     if (line.length == 0.0) return;
     const double push = force(at.time(), line.length, line.rate);
-    // The step is relative to l, so that the law is asked for lengths > 0 only.
+    // The step is relative to l, so that the law is evaluated at lengths > 0 only.
     const ActuatorSlopes slopes(force, force_by_length, force_by_rate, at.time(), line.length, line.rate,
                                 line.length);
     line.add_pull(out, from, to, -push, -slopes.by_x, -slopes.by_speed);
@@ -110,7 +110,8 @@ namespace planar {
 using LinearActuator = generic::LinearActuator<2>;  ///< generic::LinearActuator in the plane
 
 /// Rotary actuator between two rigid bodies, or one and the ground: the torque m(t, a, da/dt) on `to`, the
-/// opposite on `from`, with a the angle of `to` relative to `from`, turns counted. Its work is external work.
+/// opposite on `from`, a: the angle of `to` relative to `from`, full turns counted. Its work is external
+/// work.
 struct RotaryActuator {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
@@ -126,10 +127,10 @@ struct RotaryActuator {
   ActuatorLaw torque_by_rate{};
   std::vector<double> breaks{};  ///< when `torque` jumps or has a kink in time, ascending [s]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
-  /// Throws ModelError for bodies or a law that cannot be. The law is tried at time 0 with the angle and rate
-  /// that the bodies are described with.
+  /// Throws ModelError for invalid bodies or an invalid law. The law is tried at time 0 with the angle and
+  /// rate that the bodies are described with.
   void check(const PartCheck& check) const {
     check_angular_ends(check, from, to);
     if (!torque) check.refuse("torque", "not given", "a function of time, angle and rate");
@@ -157,7 +158,7 @@ struct RotaryActuator {
                                 std::max(1.0, std::abs(now.angle)));
     out.opposite_torques(from, to, slopes.by_x, slopes.by_speed);
   }
-  /// Adds nothing that the bodies' identities do not tell (a function cannot be hashed).
+  /// Adds nothing to the identities of the bodies (a function cannot be hashed).
   void fingerprint(Fingerprint&) const {}
 };
 

@@ -25,9 +25,9 @@ struct AppliedForce {
   std::function<Vec<D>(double time)> force{};  ///< [N] (required)
   std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
-  /// The body it acts on.
+  /// The body that it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
-  /// Throws ModelError for an end or a function that cannot be.
+  /// Throws ModelError for an invalid end or function.
   void check(const PartCheck& check) const {
     check_end(check, on, "on");
     if (!force) check.refuse("force", "not given", "a function of time");
@@ -36,7 +36,7 @@ struct AppliedForce {
   }
   /// Books the load.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const { out.external(on, force(at.time())); }
-  /// Derivatives: the lever of a point off the centre turns.
+  /// Derivatives: the lever of a point away from the centre of mass turns with the body.
   void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
     out.force(on, force(at.time()), Mat<D>::Zero(), Mat<D>::Zero());
   }
@@ -60,9 +60,9 @@ struct AppliedTorque {
   std::function<double(double time)> torque{};  ///< counter-clockwise [N m] (required)
   std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
-  /// The body it acts on.
+  /// The body that it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on}; }
-  /// Throws ModelError for a body or a function that cannot be.
+  /// Throws ModelError for an invalid body or function.
   void check(const PartCheck& check) const {
     check.oriented_body(on, "on");
     if (!torque) check.refuse("torque", "not given", "a function of time");
@@ -72,9 +72,9 @@ struct AppliedTorque {
   void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
     out.external_torque(on, torque(at.time()));
   }
-  /// Derivatives: none, the torque depends on time alone.
+  /// Derivatives: none, the torque depends on time only.
   void derivatives(const ElementView<2>&, ElementDerivatives<2>&) const {}
-  /// Adds nothing that the body's identity does not tell (a function cannot be hashed).
+  /// Adds nothing to the identity of the body (a function cannot be hashed).
   void fingerprint(Fingerprint&) const {}
 };
 

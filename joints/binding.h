@@ -1,14 +1,14 @@
 #pragma once
 
 /// \file
-/// The small parts that planar joints are made of: scalar conditions between the ends of two bodies.
+/// The constraint parts of planar joints: scalar conditions between the ends of two bodies.
 ///
 ///     point     e.d = 0          along an axis e of the fixed frame,  d = p_to - p_from
 ///     line      a.d - f(t) = 0   along an axis a fixed to `from`
 ///     angle     sum c_k angle_k - f(t) = 0
 ///     distance  |d| - f(t) = 0
 ///
-/// A line may have angles in it (rolling).
+/// A line may contain angles (rolling).
 
 #include <carom/core/column.h>
 #include <carom/core/end.h>
@@ -24,7 +24,7 @@
 
 namespace carom::planar {
 
-/// One condition between two ends, as described.
+/// One constraint part: a scalar condition between two ends, as described.
 struct Binding {
   /// How the distance d between the ends enters.
   enum class Form : std::uint8_t { angles, fixed_axis, axis_of_from, distance };
@@ -37,11 +37,12 @@ struct Binding {
   double turn_to = 0.0;          ///< of `to`
   BodyId carrier = ground;       ///< a third body whose angle may enter
   double turn_carrier = 0.0;     ///< coefficient of its angle
-  double offset = 0.0;           ///< what is subtracted [m, rad]
+  double offset = 0.0;           ///< is subtracted [m, rad]
 };
 
-/// The bindings of many joints of one kind, property by property: what joints have in common is stored once.
-/// All bindings of a joint are between the same ends; conditions on angles alone do not look at the points.
+/// The bindings of many joints of one kind, property by property: a value that all joints share is stored
+/// once. All bindings of a joint are between the same ends; conditions on angles alone do not depend on the
+/// points.
 class CAROM_API BindingTable {
 public:
   /// Appends a joint. The number of bindings is the same for all.
@@ -68,7 +69,7 @@ public:
   void evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const;
   /// Writes the derivatives of one row of a joint.
   void derivatives(const JointView& at, Index joint, Index which, JointRowDerivative& out) const;
-  /// What multipliers of the first `rows` rows do to `to`.
+  /// Load of the multipliers of the first `rows` rows on `to`.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint, Index rows,
                                        const double* multipliers) const;
 
@@ -126,7 +127,7 @@ private:
   Column<Place> carrier_place_;  // nowhere unless it has a part in a row
 };
 
-/// Where a body stands as described.
+/// Position and angle of a body as described.
 struct CAROM_API DescribedPlace {
   Vec<2> position = Vec<2>::Zero();  ///< of its centre of mass [m]
   double angle = 0.0;                ///< [rad]
@@ -134,10 +135,10 @@ struct CAROM_API DescribedPlace {
   /// A point of the body, in the fixed frame [m].
   [[nodiscard]] Vec<2> point(const Vec<2>& local) const;
 };
-/// Where a body of a system, or the ground, stands as described.
+/// Position and angle of a body of a system, or of the ground, as described.
 [[nodiscard]] CAROM_API DescribedPlace described_place(const System& system, BodyId body);
 
-/// Demands two ends on different bodies that can be.
+/// Demands two valid ends on different bodies.
 CAROM_API void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& to);
 /// Demands that many bindings, all between the same ends.
 CAROM_API void check_bindings(const PartCheck& check, std::span<const Binding> bindings, Index count);

@@ -19,9 +19,10 @@ namespace carom::planar {
 ///
 ///     d = (R^T (x_to - x_from), angle_to - angle_from) - rest,     V = d^T K d / 2,
 ///
-/// with R the rotation of `from`. The force -R (K d)_xy acts on `to` at its point, the torque -(K d)_angle
-/// beside it. `from` gets the opposites, the force at the same place of space, the point of `to`: this is the
-/// gradient of V (R turns with `from`), and moments balance. The dashpot is C times the rate of d likewise.
+/// with R the rotation of `from`. The force -R (K d)_xy acts on `to` at its point, and so does the torque
+/// -(K d)_angle. The opposites act on `from`, the force at the same point of space (the point of `to`): this
+/// is the gradient of V (R turns with `from`), and moments balance. The dashpot is C times the rate of d
+/// likewise.
 struct Bushing {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
@@ -34,11 +35,11 @@ struct Bushing {
   Mat<3> stiffness = Mat<3>::Zero();  ///< K over (x, y, angle), symmetric, no eigenvalue < 0
                                       ///< [N/m, N/rad; N m/m, N m/rad]
   Mat<3> damping = Mat<3>::Zero();    ///< C, likewise, times s
-  Vec<3> rest = Vec<3>::Zero();       ///< d is zero here [m, m, rad]
+  Vec<3> rest = Vec<3>::Zero();       ///< is subtracted from d: the unloaded state [m, m, rad]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends or matrices that cannot be.
+  /// Throws ModelError for invalid ends or matrices.
   void check(const PartCheck& check) const {
     check_end(check, from, "from");
     check_end(check, to, "to");
@@ -54,8 +55,8 @@ struct Bushing {
     const Placement now(*this, at);
     book(now, symmetric(stiffness) * now.deflection, symmetric(damping) * now.rate, out);
   }
-  /// Books spring and dashpot over a step: with the mean of the frame's axes, and the growth of d for its
-  /// rate, the loads do exactly the work by which the potential falls.
+  /// Books spring and dashpot over a step: with the mean of the axes of the frame, and the increase of d for
+  /// its rate, the work of the loads is exactly the decrease of the potential.
   void mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
     const Placement before(*this, step.start);
     const Placement after(*this, step.end);
@@ -210,7 +211,7 @@ private:
     Index bodies[2] = {none, none};    // first velocity coordinate
   };
 
-  // Halves differ by rounding at most (check); loads and potential must see one and the same matrix.
+  // The two halves differ by rounding at most (check); loads and potential must use the same matrix.
   static Mat<3> symmetric(const Mat<3>& matrix) { return 0.5 * (matrix + matrix.transpose()); }
 
   static void check_matrix(const PartCheck& check, const Mat<3>& matrix, const std::string& name) {

@@ -12,7 +12,7 @@ namespace carom {
 namespace generic {
 
 /// Viscous and quadratic drag at an end, with v its velocity in the fixed frame: F = -(c1 + c2 |v|) v. It
-/// takes (c1 + c2 |v|) |v|^2 >= 0.
+/// dissipates the power (c1 + c2 |v|) |v|^2 >= 0.
 template <int D>
 struct Drag {
   static constexpr Role role = Role::force;
@@ -24,9 +24,9 @@ struct Drag {
   double linear = 0.0;     ///< c1 >= 0 [N s/m]
   double quadratic = 0.0;  ///< c2 >= 0 [N s^2/m^2]
 
-  /// The body it acts on.
+  /// The body that it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
-  /// Throws ModelError for an end or numbers that cannot be.
+  /// Throws ModelError for an invalid end or invalid numbers.
   void check(const PartCheck& check) const {
     check_end(check, on, "on");
     check.non_negative(linear, "linear", "N s/m");

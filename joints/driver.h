@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What acts on the coordinate of a joint: drivers prescribe it, motors push along it, stops
-/// limit it.
+/// Parts that act on the coordinate of a joint: drivers prescribe it, motors apply a load along it,
+/// stops limit it.
 
 #include <carom/core/force_kind.h>
 #include <carom/core/joint_kind.h>
@@ -22,7 +22,7 @@ class MotorKind;
 class StopKind;
 
 /// Prescribes the coordinate of a joint as a function of time. Its work is external work. Rates that are not
-/// given are found by differences (core/time_difference.h); they must then be smooth between breaks.
+/// given are computed by differences (core/time_difference.h); functions must then be smooth between breaks.
 struct Driver {
   static constexpr Role role = Role::joint;
   using Kind = DriverKind;
@@ -49,13 +49,13 @@ public:
   void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override;
   [[nodiscard]] bool depends_on_time() const override { return true; }
   void breaks(Index joint, std::vector<double>& out) const override;
-  /// The force of a driver is told by its moment: it acts along the coordinate.
+  /// The force of a driver is given as the moment of its reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
                                        const double* multipliers) const override;
   void fingerprint(Fingerprint& print) const override;
 };
 
-/// Pushes along the coordinate of a joint by a law of time, coordinate and rate: the torque on `to` of a
+/// A load along the coordinate of a joint as a function of time, coordinate and rate: the torque on `to` of a
 /// revolute joint, the force on `to` along the axis of a prismatic one. Its work is external work.
 struct Motor {
   static constexpr Role role = Role::force;
@@ -83,8 +83,8 @@ public:
 };
 
 /// Limits of the coordinate of a joint, lower <= x <= upper: unilateral, with a coefficient of restitution,
-/// in both modes. An impulse or force of a stop is that along the coordinate, positive where it opens the
-/// gap.
+/// in both modes. The impulse or force of a stop acts along the coordinate, and is positive where it opens
+/// the gap.
 struct Stop {
   static constexpr Role role = Role::joint;
   using Kind = StopKind;

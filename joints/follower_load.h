@@ -21,9 +21,9 @@ struct FollowerLoad {
   std::function<Vec<2>(double time)> force{};  ///< in the body's frame [N] (required)
   std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
-  /// The body it acts on.
+  /// The body that it acts on.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
-  /// Throws ModelError for an end or a function that cannot be.
+  /// Throws ModelError for an invalid end or function.
   void check(const PartCheck& check) const {
     check.oriented_body(on.body, "on");
     check_end(check, on, "on");
@@ -33,7 +33,7 @@ struct FollowerLoad {
   }
   /// Books the load.
   void loads(const ElementView<2>& at, ElementLoads<2>& out) const { out.external(on, turned(at)); }
-  /// Derivatives: the force turns with its body. Its moment does not change, since its lever turns as well.
+  /// Derivatives: the force turns with its body. Its moment is constant, because its lever turns too.
   void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
     const Vec<2> now = turned(at);
     const Index v = at.oriented(on.body).v;

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// Kinds of planar joints that are sums of bindings. A joint describes itself by
+/// Kinds of planar joints that are sums of constraint parts (bindings). A joint is described by
 ///
-///     std::vector<Binding> bindings(const PartCheck& check) const;    // checks, then says what it binds,
+///     std::vector<Binding> bindings(const PartCheck& check) const;    // checks, then lists its parts,
 ///                                                                     // always the same two ends
 ///     Binding coordinate(const PartCheck& check) const;               // optional: its gap is the coordinate
 ///
@@ -29,7 +29,7 @@ public:
   };
   static constexpr Index row_count = P::row_count;
 
-  /// What a System wants to know of any kind (part.h).
+  /// Members that a System needs of every kind (part.h).
   static constexpr int part_dimension() { return 2; }
   static constexpr std::string_view part_label() { return P::label; }
 
@@ -93,7 +93,7 @@ private:
 
 namespace carom {
 
-/// A joint without a kind of its own is a sum of bindings.
+/// A joint without its own kind is a sum of bindings.
 template <class P>
   requires(P::role == Role::joint && !requires { typename P::Kind; })
 struct KindOf<P> {

@@ -12,20 +12,20 @@ namespace carom {
 
 class JointFrictionKind;
 
-/// Dry friction along the coordinate of a joint, set-valued: it holds the coordinate where it is as long as
-/// that takes no more than the bound, and rubs with the bound against a rate that is not zero. With the force
-/// R between the bodies of the joint (JointReaction::force) the bound is  bound + coefficient |R|. Where
-/// friction is bound by |R| it acts in impacts too, and R must be unique: redundant joints are refused at the
-/// start of a run. What it takes out of the energy is EnergyFlow::joint_friction.
+/// Dry friction (Coulomb) along the coordinate of a joint, a set-valued law: at rest the friction force is
+/// any value up to the bound that keeps the coordinate at rest; at a nonzero rate it is the bound, opposite
+/// to the rate. The bound is  bound + coefficient |R|,  R the force between the bodies of the joint
+/// (JointReaction::force). With a coefficient > 0 friction acts in impacts too, and R must be unique:
+/// redundant joints are refused at the start of a run. The loss is EnergyFlow::joint_friction.
 struct JointFriction {
   static constexpr Role role = Role::joint;
   using Kind = JointFrictionKind;
 
   JointId joint{};     ///< along whose coordinate (required)
-  double bound = 0.0;  ///< constant part while it slips, >= 0 [N m, N]
+  double bound = 0.0;  ///< constant part while sliding, >= 0 [N m, N]
   double coefficient =
-      0.0;  ///< part by the force in the joint, >= 0: of a pin its radius times mu [m], else mu
-  double static_factor = 1.0;  ///< sticking takes this many times more, >= 1
+      0.0;  ///< factor of the force in the joint, >= 0: for a pin its radius times mu [m], else mu
+  double static_factor = 1.0;  ///< ratio of the bound of sticking to that of sliding, >= 1
 };
 
 /// All friction in joints of a system.
@@ -43,7 +43,7 @@ public:
   void derivatives(const JointView&, Index, JointRowDerivative*) const override {}
   [[nodiscard]] bool rubs() const override { return true; }
   [[nodiscard]] JointRub rub(Index joint) const override;
-  /// Friction is told by its moment: it acts along the coordinate.
+  /// Friction is given as the moment of the reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView&, Index, const double* multipliers) const override;
   void fingerprint(Fingerprint& print) const override;
 };

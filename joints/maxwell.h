@@ -14,11 +14,11 @@ namespace carom {
 namespace generic {
 
 /// Spring and dashpot in series between two ends, along the line between them. With the length l and the
-/// lengthening s of the dashpot (its internal variable [m]) it pulls the ends together with
+/// extension s of the dashpot (its internal variable [m]) it pulls the ends together with
 ///     T = k (l - L - s),   ds/dt = T / c.
 /// At constant length T decays as exp(-k t / c). Where the ends coincide there is no direction and no force.
-/// Over a step s follows from the trapezoidal rule in closed form, so that a short relaxation time c / k sets
-/// no limit to the step.
+/// In a step s follows from the trapezoidal rule in closed form, so a short relaxation time c / k does not
+/// limit the step.
 template <int D>
 struct MaxwellElement {
   static constexpr Role role = Role::force;
@@ -35,9 +35,9 @@ struct MaxwellElement {
   double free_length = 0.0;  ///< L >= 0 [m]
   double lengthening = 0.0;  ///< s at the start [m]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends or numbers that cannot be.
+  /// Throws ModelError for invalid ends or numbers.
   void check(const PartCheck& check) const {
     check_line_ends(check, from, to);
     check.positive(stiffness, "stiffness", "N/m");
@@ -45,7 +45,7 @@ struct MaxwellElement {
     check.non_negative(free_length, "free_length", "m");
     check.finite(lengthening, "lengthening", "m");
   }
-  /// Books the force, all of it as conservative: what is lost is lost inside.
+  /// Books the whole force as conservative: the loss is inside the element.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const {
     const LineOfAction<D> line(at, from, to);
     if (line.length == 0.0) return;
@@ -79,7 +79,7 @@ struct MaxwellElement {
     const double pull = tension(length(at), *at.internal());
     return pull * pull / damping;
   }
-  /// h T^2 / c of the mean tension [J], which is what the spring's energy lacks of the work done on it.
+  /// h T^2 / c of the mean tension [J]: the work done on the element minus the change of its spring's energy.
   [[nodiscard]] double internal_loss(const ElementStep<D>& step) const {
     const double pull = mean_tension(step, MeanLine<D>(step, from, to));
     return step.step * pull * pull / damping;

@@ -39,11 +39,11 @@ struct NonlinearSpring {
   /// dT/dl [N/m]; if not given, by a central difference of `force` with the step 6e-6 l.
   std::function<double(double length)> force_by_length{};
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends, functions or numbers that cannot be. The functions are tried at the length
-  /// that the bodies are described with, unless it is 0. Whether they fit is not looked at:
-  /// check_potential().
+  /// Throws ModelError for invalid ends, functions or numbers. The functions are tried at the length
+  /// that the bodies are described with, unless it is 0. Whether force and potential fit is not checked here:
+  /// see check_potential().
   void check(const PartCheck& check) const {
     check_line_ends(check, from, to);
     check.non_negative(damping, "damping", "N s/m");
@@ -90,9 +90,9 @@ struct NonlinearSpring {
   }
 
   /// Demands that the potential fits the force between two lengths: over each of 64 equal intervals its
-  /// growth must be the integral of the force (five Gauss points), within `tolerance` times the interval's
-  /// width times the largest force met. Smooth functions pass at 1e-9; a kink of the force inside an interval
-  /// costs about 1e-3 of the change of the force over it. Throws ModelError.
+  /// increase must be the integral of the force (five Gauss points), within `tolerance` times the width of
+  /// the interval times the largest force found. Smooth functions pass at 1e-9; a kink of the force in an
+  /// interval adds an error of about 1e-3 of the change of the force over it. Throws ModelError.
   void check_potential(double shortest, double longest, double tolerance = 1e-9) const {
     constexpr int intervals = 64;
     const auto refuse = [](const std::string& what) { throw ModelError(std::string(label) + ": " + what); };
@@ -145,7 +145,7 @@ struct NonlinearSpring {
   }
 
 private:
-  // dT/dl. The step is relative to l, so that the law is asked for lengths > 0 only.
+  // dT/dl. The step is relative to l, so that the law is evaluated at lengths > 0 only.
   [[nodiscard]] double slope(double length) const {
     return force_by_length ? force_by_length(length) : difference_quotient(force, length, length);
   }

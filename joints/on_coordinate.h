@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What kinds of parts that act on the coordinate of a joint have in common.
+/// Common base of the kinds of parts that act on the coordinate of a joint.
 
 #include <carom/core/layout.h>
 #include <carom/core/part.h>
@@ -15,10 +15,10 @@
 
 namespace carom {
 
-/// Demands a joint of the system that a part enters, with a coordinate. Throws ModelError.
+/// Demands a joint with a coordinate, of the system that the part is added to. Throws ModelError.
 CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
 
-/// Bodies that a joint of the system binds.
+/// Bodies that a joint of the system connects.
 [[nodiscard]] CAROM_API std::vector<BodyId> bodies_of(const System& system, JointId joint);
 
 /// The coordinate of a joint of an assembly.
@@ -29,7 +29,7 @@ CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
 template <class P, class Self, class Base>
 class OnCoordinate : public Base {
 public:
-  static constexpr int part_dimension() { return 0; }  ///< of planes and of space
+  static constexpr int part_dimension() { return 0; }  ///< fits both dimensions
 
   /// A copy of all parts.
   [[nodiscard]] std::unique_ptr<Base> clone() const override {

@@ -15,16 +15,17 @@ namespace carom {
 
 namespace generic {
 
-/// A spring-dashpot between two ends that is slack on one side of its free length L and there does nothing.
-/// With x >= 0 the excess beyond L (stretch of a cable, l - L; compression of a bumper, L - l):
+/// A spring-dashpot between two ends that is slack, without force, on one side of its free length L.
+/// With x >= 0 the excess beyond L (extension of a cable, l - L; compression of a bumper, L - l):
 ///
 ///     spring  s = k x                      conservative, with the potential k x^2 / 2
 ///     dashpot p = c dx/dt in [-s, s]       dissipative, p dx/dt >= 0 always
 ///
-/// and s + p in [0, 2 s] draws x back. The dashpot is clipped, the spring never is. Below, so that the total
-/// cannot change sign: while x falls faster than k x/c the element goes with the ends without force, and what
-/// its spring gives its dashpot takes. Above, so that the force has no jump where the element goes taut: a
-/// jump has no solution in some implicit steps. Where the ends coincide there is no direction and no force.
+/// and the total s + p in [0, 2 s] decreases x. The dashpot force is limited, the spring force is not. The
+/// lower limit keeps the sign of the total: while x falls faster than k x/c there is no force, and the
+/// dashpot dissipates the energy of the spring. The upper limit avoids a jump of the force where the element
+/// goes taut, with which some implicit steps have no solution. Where the ends coincide there is no direction
+/// and no force.
 template <int D, bool Pulls>
 struct OneSidedSpring {
   static constexpr Role role = Role::force;
@@ -40,9 +41,9 @@ struct OneSidedSpring {
   double damping = 0.0;      ///< c >= 0 [N s/m]
   double free_length = 0.0;  ///< L >= 0, for a bumper > 0 [m]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }
-  /// Throws ModelError for ends or numbers that cannot be.
+  /// Throws ModelError for invalid ends or numbers.
   void check(const PartCheck& check) const {
     check_line_ends(check, from, to);
     check.positive(stiffness, "stiffness", "N/m");
@@ -76,19 +77,19 @@ struct OneSidedSpring {
     const Vec<D> dissipative = dashpot * line.direction;
     book_pull(out, from, to, conservative, dissipative);
   }
-  /// Derivatives. At an edge between slack, free and clipped, those of one side.
+  /// Derivatives. At a boundary between slack, free and limited, those of one side.
   void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
     const LineOfAction<D> line(at, from, to);
     const double spring = stiffness * excess(line.length);
     const double dashpot = wanted(line);
     if (spring == 0.0 || dashpot <= -spring) return;
-    if (dashpot > spring) {  // clipped: the spring counts twice
+    if (dashpot > spring) {  // limited: the spring counts twice
       line.add_pull(out, from, to, side * 2.0 * spring, 2.0 * stiffness, 0.0);
     } else {
       line.add_pull(out, from, to, side * (spring + dashpot), stiffness, damping);
     }
   }
-  /// Where it goes taut or slack: l - L [m].
+  /// Switching value, zero where it goes taut or slack: l - L [m].
   void guards(const ElementView<D>& at, double* out) const {
     out[0] = (at.position(to) - at.position(from)).norm() - free_length;
   }
@@ -109,7 +110,7 @@ struct OneSidedSpring {
 private:
   static constexpr double side = Pulls ? 1.0 : -1.0;
 
-  // c dx/dt, before it is clipped.
+  // c dx/dt, before it is limited.
   [[nodiscard]] double wanted(const LineOfAction<D>& line) const { return damping * side * line.rate; }
   [[nodiscard]] double excess(double length) const { return std::max(0.0, side * (length - free_length)); }
 };

@@ -11,9 +11,9 @@
 
 namespace carom::planar {
 
-/// A slide: `to` moves along a line fixed to `from` and does not turn against it. Its coordinate is how far
-/// the end of `to` stands along the axis from the end of `from`, less what it is as described, unless
-/// `zero_distance` says what counts as zero.
+/// A slide: `to` moves along a line fixed to `from` without relative rotation. Its coordinate is the position
+/// of the end of `to` along the axis, from the end of `from`, minus its value in the described positions; or
+/// minus `zero_distance` if that is given.
 struct CAROM_API Prismatic {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "prismatic joint";
@@ -24,11 +24,11 @@ struct CAROM_API Prismatic {
   Vec<2> axis =
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,
                                                                    ///< any length > 0 (required)
-  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` [rad]; as
-                                                            ///< described unless given
+  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` [rad];
+                                                            ///< unless given, as described
   double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
 
-  /// What it binds. Throws ModelError for ends, an axis or an angle that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for an invalid end, axis or angle.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
   /// The distance along the axis.
   [[nodiscard]] Binding coordinate(const PartCheck& check) const;
@@ -48,16 +48,16 @@ struct CAROM_API PointOnLine {
                                                                     ///< any length > 0 (required)
   double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
 
-  /// What it binds. Throws ModelError for ends or an axis that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for an invalid end or axis.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
   /// The distance along the axis.
   [[nodiscard]] Binding coordinate(const PartCheck& check) const;
 };
 
 /// Rolling without slip: a disc of `to` with its centre at the end of `to` rolls on a line fixed to `from`
-/// through the end of `from`, on the side that the normal points to. Bilateral: it neither lifts nor slips.
-/// Its coordinate is how far the centre stands along the line, the normal turned clockwise, less what it is
-/// as described. Reactions: the force at the line, told at the centre with its moment.
+/// through the end of `from`, on the side of the normal. Bilateral: it neither lifts off nor slips. Its
+/// coordinate is the position of the centre along the line (the normal turned clockwise) minus its value in
+/// the described positions. Reaction: the force at the line, given at the centre with its moment.
 struct CAROM_API Rolling {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "rolling joint";
@@ -70,7 +70,7 @@ struct CAROM_API Rolling {
                                                                    ///< any length > 0 (required)
   double radius = std::numeric_limits<double>::quiet_NaN();        ///< of the disc [m] (required)
 
-  /// What it binds. Throws ModelError for ends, a normal or a radius that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for an invalid end, normal or radius.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
   /// The distance along the line.
   [[nodiscard]] Binding coordinate(const PartCheck& check) const;

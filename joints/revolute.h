@@ -14,11 +14,11 @@ namespace carom::planar {
 /// The conditions that two ends coincide, along the axes of the fixed frame: their multipliers are the force
 /// on `to` [N].
 [[nodiscard]] CAROM_API std::vector<Binding> point_bindings(const End<2>& from, const End<2>& to);
-/// The angle of `to` relative to `from` less `offset`.
+/// The angle of `to` relative to `from` minus `offset`.
 [[nodiscard]] CAROM_API Binding angle_binding(BodyId from, BodyId to, double offset);
 
-/// A pin: the two ends coincide. Its coordinate is the angle of `to` relative to `from`, turns counted, zero
-/// as described unless `zero_angle` says which angle counts as zero.
+/// A pin: the two ends coincide. Its coordinate is the angle of `to` relative to `from`, full turns counted;
+/// it is zero in the described positions unless `zero_angle` sets another zero.
 struct CAROM_API Revolute {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "revolute joint";
@@ -27,15 +27,15 @@ struct CAROM_API Revolute {
   End<2> from{};  ///< a body or ground (required)
   End<2> to{};    ///< a body or ground (required)
   double zero_angle =
-      std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` at coordinate 0 [rad]
+      std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` at coordinate 0 [rad]
 
-  /// What it binds. Throws ModelError for ends that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for invalid ends.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
   /// Its angle; 0 for particles, which have none.
   [[nodiscard]] Binding coordinate(const PartCheck& check) const;
 };
 
-/// A weld: the two ends coincide and the bodies keep the angle between them, as described unless `angle` is
+/// A weld: the two ends coincide and the angle between the bodies is fixed, as described unless `angle` is
 /// given.
 struct CAROM_API Weld {
   static constexpr Role role = Role::joint;
@@ -44,9 +44,9 @@ struct CAROM_API Weld {
 
   End<2> from{};                                            ///< a rigid body or ground (required)
   End<2> to{};                                              ///< a rigid body or ground (required)
-  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` less that of `from` [rad]
+  double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` [rad]
 
-  /// What it binds. Throws ModelError for ends that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for invalid ends.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Joints that keep a distance or a ratio: rigid rod without mass, pair of gears.
+/// Joints with a fixed distance or ratio: massless rigid rod, pair of gears.
 
 #include <carom/joints/joint.h>
 
@@ -11,7 +11,7 @@
 
 namespace carom::planar {
 
-/// A rigid rod without mass between two ends, free to turn at both. It has no coordinate. The force on
+/// A massless rigid rod between two ends that can turn freely at both. It has no coordinate. The force on
 /// `to` is along the rod.
 struct CAROM_API Rod {
   static constexpr Role role = Role::joint;
@@ -22,13 +22,13 @@ struct CAROM_API Rod {
   End<2> to{};                                               ///< a body or ground (required)
   double length = std::numeric_limits<double>::quiet_NaN();  ///< [m]; as described unless given
 
-  /// What it binds. Throws ModelError for ends or a length that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for an invalid end or length.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
 };
 
-/// A pair of gears: with the angles a against that of the carrier, a_to + ratio a_from stays what it is as
-/// described. Gears that mesh outside turn against each other, ratio = r_from/r_to > 0; a negative ratio is
-/// that of a gear within a ring, or of a belt.
+/// A pair of gears: a_to + ratio a_from, angles relative to the carrier, keeps its value in the described
+/// positions. Gears with external teeth turn in opposite directions, ratio = r_from/r_to > 0; a negative
+/// ratio is for a ring gear or a belt.
 struct CAROM_API Gear {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "gear pair";
@@ -37,9 +37,9 @@ struct CAROM_API Gear {
   BodyId from{};                                            ///< a rigid body (required)
   BodyId to{};                                              ///< a rigid body (required)
   double ratio = std::numeric_limits<double>::quiet_NaN();  ///< r_from/r_to, not 0 (required)
-  BodyId carrier = ground;                                  ///< what both turn on: a rigid body or ground
+  BodyId carrier = ground;                                  ///< carries both axles: a rigid body or ground
 
-  /// What it binds. Throws ModelError for bodies or a ratio that cannot be.
+  /// Its constraint parts (bindings). Throws ModelError for an invalid body or ratio.
   [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
 };
 

@@ -20,8 +20,8 @@ template <int D>
 class SpringDamperKind;
 
 /// Spring and dashpot between two ends, along the line between them: with d from `from` to `to`, l = |d|,
-/// the force on `to` is -(k (l - L) + c dl/dt) d/l. At l = 0 the direction is undefined: for L = 0 the
-/// spring's force is zero there by continuity, for L > 0 it is set to zero, as is the dashpot's.
+/// the force on `to` is -(k (l - L) + c dl/dt) d/l. At l = 0 the direction is undefined: for L = 0 the force
+/// of the spring is zero there by continuity, for L > 0 it is set to zero, like that of the dashpot.
 template <int D>
 struct SpringDamper {
   static constexpr Role role = Role::force;

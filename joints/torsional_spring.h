@@ -12,8 +12,8 @@
 namespace carom::planar {
 
 /// Torsional spring-dashpot between two rigid bodies, or one and the ground: with the angle a of `to`
-/// relative to `from`, the torque on `to` is -(k (a - A) + c da/dt), that on `from` the opposite. Angles
-/// count turns: a body that has turned once is pulled back the whole way.
+/// relative to `from`, the torque on `to` is -(k (a - A) + c da/dt), and the opposite acts on `from`. Full
+/// turns count: after one turn the spring is wound up by 2 pi.
 struct TorsionalSpring {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
@@ -27,9 +27,9 @@ struct TorsionalSpring {
   double damping = 0.0;     ///< c >= 0 [N m s/rad]
   double free_angle = 0.0;  ///< A, counter-clockwise [rad]
 
-  /// The bodies it joins.
+  /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
-  /// Throws ModelError for bodies or numbers that cannot be.
+  /// Throws ModelError for invalid bodies or numbers.
   void check(const PartCheck& check) const {
     check_angular_ends(check, from, to);
     check.non_negative(stiffness, "stiffness", "N m/rad");

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// An assembly with a state and the loads there, by cause; and what loads must obey.
+/// An assembly with a state and its loads, by cause; and a check of conservative loads.
 
 #include <carom/core/assembly.h>
 #include <carom/testing/verdict.h>
@@ -25,7 +25,7 @@ public:
   /// fourth order: with their step, 1e-3 m or rad, truncation is about 4e-12 of the fifth derivative and
   /// rounding 2e-13 of the potential.
   [[nodiscard]] std::vector<double> minus_gradient();
-  /// What of a load (planar) would move the whole: force x, force y [N], moment about the origin [N m].
+  /// Resultant of a load (planar): force x, force y [N], moment about the origin [N m].
   [[nodiscard]] std::array<double, 3> resultant(const std::vector<double>& load) const;
   /// Power of a load [W].
   [[nodiscard]] double power(const std::vector<double>& load) const;
@@ -37,8 +37,8 @@ public:
 };
 
 /// At the described state, the conservative loads are minus the gradient of the potential energy, each within
-/// `tolerance` [N, N m]: a wrong sign, a forgotten lever or a factor show at once. The verdict shows the
-/// loads that are not. Throws ModelError as Assembly, and for a tolerance that is negative or not finite.
+/// `tolerance` [N, N m]: this finds a wrong sign, a forgotten lever or a wrong factor. The verdict shows the
+/// loads that differ. Throws ModelError as Assembly, and for a tolerance that is negative or not finite.
 [[nodiscard]] Verdict check_conservative_loads(const System& system, double tolerance);
 
 }  // namespace carom::energy_test

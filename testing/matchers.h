@@ -5,8 +5,8 @@
 ///
 ///     EXPECT_THAT(recorder.trace(), ledger_closes_within(1e-12));
 ///
-/// Where one does not hold it prints the terms concerned, when, and the nearest event, not just "false".
-/// Input that cannot be, such as a negative tolerance, is refused with the ModelError of the check behind it.
+/// On failure a matcher prints the terms concerned, the time, and the nearest event.
+/// Invalid input, such as a negative tolerance, is refused with the ModelError of the check that it calls.
 
 #include <carom/core/text_table.h>
 #include <carom/testing/loaded_model.h>
@@ -30,7 +30,7 @@ class VerdictMatcher {
 public:
   VerdictMatcher(std::string demand, Check check) : demand_(std::move(demand)), check_(std::move(check)) {}
 
-  /// What GoogleTest asks of a matcher.
+  /// Members that GoogleTest needs of a matcher.
   template <class T>
   bool MatchAndExplain(const T& value, ::testing::MatchResultListener* listener) const {
     const Verdict verdict = check_(value);
@@ -52,7 +52,7 @@ template <class Check>
   return ::testing::MakePolymorphicMatcher(VerdictMatcher<Check>(std::move(demand), std::move(check)));
 }
 
-/// The ledger of a trace, or a ledger as it stands, closes within `relative` times its largest term:
+/// The ledger of a trace, or a given ledger, closes within `relative` times its largest term:
 /// check_ledger_closes().
 [[nodiscard]] inline auto ledger_closes_within(double relative) {
   return matcher("the ledger closes within " + cell(relative, 3) + " of its largest term",
@@ -65,13 +65,13 @@ template <class Check>
                  [=](const EnergyTrace& trace) { return check_energy_never_rises(trace, tolerance); });
 }
 
-/// The momentum along a direction is kept: check_momentum_in().
+/// The momentum along a direction is conserved: check_momentum_in().
 [[nodiscard]] inline auto momentum_is_conserved_in(const Coordinates& direction, double relative) {
   return matcher("momentum is conserved within " + cell(relative, 3) + " of its scale",
                  [=](const EnergyTrace& trace) { return check_momentum_in(trace, direction, relative); });
 }
 
-/// The angular momentum about a point is kept: check_angular_momentum_about().
+/// The angular momentum about a point is conserved: check_angular_momentum_about().
 [[nodiscard]] inline auto angular_momentum_is_conserved_about(const Coordinates& point, double relative) {
   return matcher(
       "angular momentum is conserved within " + cell(relative, 3) + " of its scale",

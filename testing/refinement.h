@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// How fast do runs with ever smaller steps approach a reference?
+/// Order of convergence of runs with decreasing steps to a reference.
 
 #include <carom/core/energy_trace.h>
 #include <carom/testing/verdict.h>
@@ -32,13 +32,13 @@ struct RefinedTrace {
 [[nodiscard]] double largest_difference(const EnergyTrace& trace, const EnergyTrace& reference,
                                         const std::vector<std::string>& terms);
 
-/// What two modes, or two steps, are compared by unless told otherwise: what the state stores. How losses are
-/// divided among lines may depend on the mode.
+/// Default terms for the comparison of two modes or two steps: those of the state. How losses are divided
+/// among terms may depend on the mode.
 [[nodiscard]] std::vector<std::string> compared_terms();
 
 /// The differences of `traces` from `reference` shrink with at least the given order of the step, fitted by
 /// least squares. Fails, too, where the order cannot be seen because all but one difference is within
-/// rounding (1e3 eps of the scale). An impact is noticed up to one step late, so that single differences
+/// rounding (1e3 eps of the scale). An impact is detected up to one step late, so that single differences
 /// across impacts scatter: compare at times away from them, with several steps. Throws ModelError for fewer
 /// than two traces, steps that are not finite, > 0 and decreasing, and as largest_difference().
 [[nodiscard]] Verdict check_order_at_least(const std::vector<RefinedTrace>& traces, double order,

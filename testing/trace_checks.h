@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What may be demanded of a trace. Each check says of a failure where it begins, the nearest event, and how
-/// the terms stood there and in the row before.
+/// Checks of a trace. A failed check reports where the failure begins, the nearest event, and the terms there
+/// and in the row before.
 
 #include <carom/core/energy_ledger.h>
 #include <carom/core/energy_trace.h>
@@ -29,7 +29,7 @@ struct Coordinates {
 /// more. Rounding of a run is at most 1e3 eps = 2.2e-13.
 [[nodiscard]] Verdict check_ledger_closes(const EnergyTrace& trace, double relative);
 
-/// The same of a ledger as it stands; the verdict shows the ledger.
+/// The same for a given ledger; the verdict shows the ledger.
 [[nodiscard]] Verdict check_ledger_closes(const EnergyLedger& ledger, double relative);
 
 /// T + V - W_external - intervention in no row lies by more than `tolerance` [J] above its least value in the
@@ -47,7 +47,7 @@ struct Coordinates {
 [[nodiscard]] Verdict check_angular_momentum_about(const EnergyTrace& trace, const Coordinates& point,
                                                    double relative);
 
-/// Neither penetration of contacts nor error of joints exceeds `metres` [m]. Time stepping notices an impact
+/// Neither penetration of contacts nor error of joints exceeds `metres` [m]. Time stepping detects an impact
 /// up to one step late: a contact is as deep as (3 - e_n)/2 h v there.
 [[nodiscard]] Verdict check_constraints_within(const EnergyTrace& trace, double metres);
 
