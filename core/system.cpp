@@ -116,7 +116,7 @@ void System::remove(BodyId id) {
       entry.kind->ends(slot, ends);
       if (std::find(ends.begin(), ends.end(), id) == ends.end()) continue;
       throw ModelError(name(id) + ": cannot be removed, " + name(ElementId{entry.serials[slot], token_}) +
-                       " acts on it; allowed: a body without couplings");
+                       " acts on it; allowed: a body without force elements");
     }
   }
   for (const auto& entry : joints_.entries()) {

@@ -1,15 +1,15 @@
-// A ball with spin bounces in a box of inclined planes, rubs, rolls and comes to rest, in both modes.
+// A ball with spin bounces in a box of inclined planes, slides, rolls and comes to rest, in both modes.
 //
 //   m a = m g, I alpha = 0              between contacts; a disc, m = 0.5 kg, r = 0.05 m, I = m r^2/2
 //   gap_i = n_i.(x - p_i) - r >= 0      floor (falls by 0.2 rad), left and right wall (lean out by 0.15 rad)
 //   impact law                          xi = (e gamma^- + gamma^+)/(1 + e), Signorini in the normal and
 //                                       Coulomb in the tangential direction, e_n = 0.5, e_t = 0, mu = 0.1
-//   lasting contact                     a_n = 0, lambda_n >= 0, |lambda_t| <= mu lambda_n, and against
-//                                       sliding where there is some
+//   lasting contact                     a_n = 0, lambda_n >= 0, |lambda_t| <= mu lambda_n; while sliding
+//                                       lambda_t = -mu lambda_n sign(gamma_t)
 //   event-driven                        events located in time, smooth phases to a relative 1e-9
 //   time stepping                       h = 1e-3 s
 //
-// Impacts pile up several times: against the floor, between floor and wall, and both in the corner.
+// Impacts accumulate (Zeno) several times: on the floor, between floor and wall, and on both in the corner.
 //
 // Usage: 03_ball_in_a_box <folder>: writes event_driven.csv, events.csv and time_stepping.csv there; prints
 // events by kind and energies.

@@ -1,16 +1,16 @@
-// A block on an inclined plane that shakes along itself, harder and harder: it sticks, slips downhill, and in
-// the end slips both ways.
+// A block on an inclined plane that oscillates in its own direction with growing amplitude: it sticks, then
+// slips downhill, and in the end slips in both directions.
 //
 //   m a = m g + (lambda_n1 + lambda_n2) n + (lambda_t1 + lambda_t2) t, I alpha = moments of the same forces
 //   plane                     slope 0.1 rad, displacement s(t) t along its tangent t, s = c t sin(omega t),
 //                             c = 0.018 m/s, omega = 4 pi/s
-//   contact at two corners    gap >= 0, e_n = 0; gamma_t is the velocity along the plane against the plane's
+//   contact at two corners    gap >= 0, e_n = 0; gamma_t is the tangential velocity relative to the plane
 //   sticking                  gamma_t = 0 while |lambda_t| <= mu_s lambda_n, mu_s = 0.4
 //   slipping                  lambda_t = -mu_k lambda_n sign(gamma_t), mu_k = 0.3
 //   event-driven              changes of mode located in time, smooth phases to a relative 1e-9
 //   time stepping             h = 1e-3 s, the same law in every step
 //
-// While it sticks at both corners the forces of the corners are not unique, their sums are.
+// While it sticks at both corners, the forces of the single corners are not unique, but their sums are.
 //
 // Usage: 04_block_on_a_moving_plane <folder>: writes event_driven.csv, events.csv and time_stepping.csv there
 // and prints when the block slips and sticks.

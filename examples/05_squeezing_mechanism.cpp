@@ -4,7 +4,9 @@
 //   M a = f + G^T lambda,  g(q) = 0      21 coordinates, 20 rows of pins; dynamics in absolute coordinates
 //   start                                at rest, closed up to rounding
 //   event-driven                         accelerations and multipliers from one sparse system, relative 1e-12
-//   time stepping                        h = 1e-5 s, reactions halfway, velocities on the pins at the end
+//   time stepping                        h = 1e-5 s, reactions in the middle of the step, velocities satisfy
+//   the
+//                                        pins at its end
 //
 // Reference at 0.03 s: the test set for initial value problems ("Andrews' squeezing mechanism").
 //
@@ -65,7 +67,7 @@ void write_outline(std::ostream& out, double time, const carom::State& state,
   }
 }
 
-/// Runs to the end and tells the largest error of the angles.
+/// Runs to the end and returns the largest error of the angles.
 double run(const std::string& title, const carom::Mode& mode, const std::filesystem::path& folder) {
   carom::System system;
   const std::vector<scenes::SqueezerBody> bodies = scenes::add_squeezer(system);

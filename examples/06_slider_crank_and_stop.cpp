@@ -1,13 +1,14 @@
-// A slider-crank, driven by a torque, whose slider hits a stop: the blow goes through all pins to the ground.
+// A slider-crank, driven by a torque, whose slider hits a limit (stop): the impact acts through all pins.
 //
 //   M a = f + G^T lambda,  g(q) = 0    crank, connecting rod, slider; three pins and a guide
 //   motor                              torque -0.05 N m - 0.001 N m s times the speed of the crank
 //   stop                               x <= 0.42 m for the slider, restitution 0.6
-//   impact                             by the constrained inverse mass: the stop's impulse turns the crank
-//   back
+//   impact                             by the constrained inverse mass: the impulse of the stop turns the
+//   crank
+//                                      back
 //
 // Usage: 06_slider_crank_and_stop <folder>: writes event_driven.csv, events.csv and time_stepping.csv there
-// and prints the impacts with what the main bearing takes.
+// and prints the impacts with the impulses of the main bearing.
 
 #include <carom/carom.h>
 

@@ -1,11 +1,12 @@
-// A rod and a double pendulum swing against a vertical wall: the blow at the tip goes through the pins.
+// A rod and a double pendulum swing against a vertical wall: the impact at the tip acts through the pins.
 //
 //   M a = f + G^T lambda,  g(q) = 0     uniform rods of 1 m and 1 kg, pinned at the origin, released level
 //   wall                                x >= -0.25 m, e_n = 0.5, friction 0.2
 //   impact                              (e_n, e_t, mu) law for the tips, with the constrained inverse mass
 //
-// The double pendulum hits with its tip and with its elbow; where blows follow each other ever faster they
-// are an accumulation, which is closed, and a tip may rest on the wall for a while.
+// The double pendulum hits with its tip and with the pin between its rods. Where impacts follow each other
+// ever faster they accumulate (Zeno) and the contact is closed; the tip may then rest on the wall for a
+// while.
 //
 // Usage: 07_pendulums_and_wall <folder>: writes rod.csv and double_pendulum.csv with the places of joints and
 // tips there, events beside them, and prints the impacts.

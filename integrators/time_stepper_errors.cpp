@@ -156,7 +156,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     if (!implicit) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
-    message += "; by their derivatives at its start the couplings contract (rate " +
+    message += "; by their derivatives at its start the force elements contract (rate " +
                to_text(rating.island_rate) + " together), so a force jumps or stiffens";
     if (jointed(island)) {
       failure.suggested_step = 0.5 * step;

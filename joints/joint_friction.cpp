@@ -17,7 +17,7 @@ void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
     check.refuse("static_factor", to_text(part.static_factor), "a finite number >= 1");
   }
   if (const Index other = slot_on(part.joint); other != none) {
-    check.refuse("joint", check.system().name(part.joint) + ", in which " + parts_[other].name + " rubs",
+    check.refuse("joint", check.system().name(part.joint) + ", which has " + parts_[other].name + " already",
                  "a joint without friction");
   }
   store(part, check);

@@ -10,7 +10,7 @@
 
 namespace scenes {
 
-/// What can be varied. The floor falls to the right, the walls lean outwards.
+/// Parameters. The floor falls to the right, the walls lean outwards.
 struct Box {
   double floor_slope = 0.2;  ///< by which the floor falls to the right [rad]
   double wall_lean = 0.15;   ///< of both walls, from upright [rad]

@@ -8,7 +8,7 @@
 
 namespace scenes {
 
-/// What can be varied. The paper prints neither the starting angle nor which way the plane slopes: the plane
+/// Parameters. The paper prints neither the starting angle nor which way the plane slopes: the plane
 /// goes through the origin and rises with +x for positive slopes, the bodies start upright for angle 0.
 struct Incline {
   double slope = 0.1;    ///< [rad]

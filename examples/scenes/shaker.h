@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// A block on an inclined plane that shakes along itself, harder and harder. Shared by the example, the tests
-/// and the benchmarks.
+/// A block on an inclined plane that oscillates in its own direction with growing amplitude. Shared by the
+/// example, the tests and the benchmarks.
 
 #include <carom/carom.h>
 
@@ -11,7 +11,7 @@
 
 namespace scenes {
 
-/// What can be varied. The displacement of the plane along its tangent is s(t) = growth t sin(omega t).
+/// Parameters. The displacement of the plane along its tangent is s(t) = growth t sin(omega t).
 struct Shaker {
   double slope = -0.1;           ///< of the plane; negative: falls to the right [rad]
   double frequency = 2.0;        ///< omega / 2 pi [1/s]

@@ -7,7 +7,7 @@
 
 namespace scenes {
 
-/// What can be varied. The paper prints no initial velocity, but a spin of 567 rad/s after the first impact,
+/// Parameters. The paper prints no initial velocity, but a spin of 567 rad/s after the first impact,
 /// which fixes the incoming horizontal speed for each e_t. Vertical speed and height are assumptions, chosen
 /// so that the ball bounces low, high, low within the paper's twelve flashes.
 struct Tables {

@@ -242,7 +242,7 @@ TEST(System, ABodyInUseIsNotRemoved) {
   const ElementId anchor = system.add(SpringDamper{.from = ground, .to = b});
   const ShapeId rim = system.add(Disc{.body = plate, .radius = 1.0});
   EXPECT_MODEL_ERROR(system.remove(a), "particle 'a'", "spring-damper 'link' acts on it",
-                     "without couplings");
+                     "without force elements");
   EXPECT_MODEL_ERROR(system.remove(plate), "rigid body 'plate'", "disc #0 is fixed to it", "without shapes");
   EXPECT_MODEL_ERROR(system.remove(ground), "ground", "cannot be removed", "allowed");
   EXPECT_MODEL_ERROR(system.remove(BodyId{}), "removal of body that was never given", "allowed");
