@@ -39,6 +39,8 @@
 ///       static constexpr int guard_size = 1;            // values whose change of sign is a switching
 ///                                                       // point: a kink or jump of the loads
 ///       void guards(const ElementView<D>& at, double* out) const;
+///       void guard_motion(const ElementMotion<D>& at, GuardMotion* out) const;  // optional: the same with
+///                                                       // derivatives (guard_motion.h); then none is missed
 ///
 /// An element may read and load only bodies that it names in bodies(). Its potential is booked as
 /// `potential` unless it has `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
@@ -57,6 +59,7 @@
 #include <carom/core/element_view.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
+#include <carom/core/guard_motion.h>
 #include <carom/core/internal_step.h>
 #include <carom/core/part_check.h>
 
@@ -264,6 +267,17 @@ public:
       }
     }
   }
+  [[nodiscard]] bool has_guard_motion() const override { return gives_guard_motion; }
+  void guard_motion(const EvaluationContext& at, const double* acceleration, Range elements,
+                    GuardMotion* out) const override {
+    if constexpr (gives_guard_motion) {
+      for (Index i = elements.begin; i < elements.end; ++i, out += guard_count) {
+        const double* internal = nullptr;
+        if constexpr (N > 0) internal = at.state.z + internal_[i];
+        parts_[i].guard_motion(ElementMotion<D>(at, acceleration, internal), out);
+      }
+    }
+  }
   void breaks(Index element, std::vector<double>& out) const override {
     if constexpr (has_breaks) {
       out.insert(out.end(), parts_[element].breaks.begin(), parts_[element].breaks.end());
@@ -309,6 +323,11 @@ private:
       guard_count == 0 ||
           requires(const P& part, const ElementView<D>& view, double* out) { part.guards(view, out); },
       "an element with guard_size has guards()");
+  static constexpr bool gives_guard_motion = guard_count > 0 &&
+                                             requires(const P& part, const ElementMotion<D>& at,
+                                                      GuardMotion* out) {
+    part.guard_motion(at, out);
+  };
   static constexpr bool has_breaks = requires(const P& part) { std::span<const double>(part.breaks); };
   static constexpr bool has_mean_loads =
       requires(const P& part, const ElementStep<D>& step, ElementLoads<D>& out) {

@@ -19,6 +19,7 @@
 namespace carom {
 
 class Assembly;
+struct GuardMotion;
 
 /// State at which elements are evaluated.
 struct EvaluationContext {
@@ -140,6 +141,12 @@ public:
   [[nodiscard]] virtual Index guard_size() const { return 0; }
   /// Writes the switching values of a range of elements, one element after the other.
   virtual void guards(const EvaluationContext& /*at*/, Range /*elements*/, double* /*out*/) const {}
+  /// True if guard_motion() is overridden: no change of sign within a step is missed then, however long the
+  /// step. Otherwise guards are known by values alone, and EventDriven::longest_step bounds the steps.
+  [[nodiscard]] virtual bool has_guard_motion() const { return false; }
+  /// Writes guards() with their derivatives along the motion. \param acceleration of all velocity coordinates
+  virtual void guard_motion(const EvaluationContext& /*at*/, const double* /*acceleration*/,
+                            Range /*elements*/, GuardMotion* /*out*/) const {}
   /// Appends the times [s], ascending, at which the law of an element jumps or has a kink.
   virtual void breaks(Index /*element*/, std::vector<double>& /*out*/) const {}
   /// True if loads may depend on the time, other than by positions, velocities and internal variables.

@@ -4,6 +4,7 @@
 /// Springs with a dashpot in parallel that act in one direction only: a cable pulls, a bumper pushes.
 
 #include <carom/core/force_element.h>
+#include <carom/joints/length_guard.h>
 #include <carom/joints/line_of_action.h>
 #include <carom/joints/mean_line.h>
 
@@ -89,9 +90,14 @@ struct OneSidedSpring {
       line.add_pull(out, from, to, side * (spring + dashpot), stiffness, damping);
     }
   }
-  /// Switching value, zero where it goes taut or slack: l - L [m].
+  /// Switching value, zero where it goes taut or slack: (l^2 - L^2)/(2 L), near L as l - L [m]; 1 m where L =
+  /// 0.
   void guards(const ElementView<D>& at, double* out) const {
-    out[0] = (at.position(to) - at.position(from)).norm() - free_length;
+    out[0] = length_guard<D>(at, from, to, free_length);
+  }
+  /// The same along the motion.
+  void guard_motion(const ElementMotion<D>& at, GuardMotion* out) const {
+    out[0] = length_guard_motion<D>(at, from, to, free_length);
   }
   /// k x^2 / 2 [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {
