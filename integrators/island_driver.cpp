@@ -67,6 +67,7 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
   lifting_.clear();
   events_.start(time_);
   steps_.start(time_);
+  guards_.forget(motion_.guards().count());
 
   motion_.closed().list().clear();
   motion_.evaluate(time_, y_.data(), false);
@@ -180,7 +181,8 @@ JointReaction IslandDriver::reaction(const JointKind& kind, Index slot, JointId 
 double IslandDriver::longest_step() const {
   // Free flight would allow steps of any length; gaps would then be small differences of large numbers.
   constexpr double longest_flight = 1.0;
-  return motion_.depends_on_time() ? options_.longest_step : longest_flight;
+  const bool seen_everywhere = !motion_.depends_on_time() && motion_.guards().all_have_motion();
+  return seen_everywhere ? longest_flight : options_.longest_step;
 }
 
 void IslandDriver::take_step() {
@@ -196,6 +198,7 @@ void IslandDriver::take_step() {
     landed_at_ = time_;
     landed_ = y_;
   };
+  bool anew = false;
   do {
     try {
       flow_->advance(std::min(longest_step(), until_break));
@@ -205,7 +208,7 @@ void IslandDriver::take_step() {
       return;
     }
     if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
-    sample_step();
+    work_->looks.forget();
     landed_at_ = never;
     next_ = find_event();
     if (stands_still(next_) && find_jam()) {
@@ -215,7 +218,11 @@ void IslandDriver::take_step() {
     // Forces that were infinite within the step: nearer to there they are seen to grow.
     constexpr double nearer = 0.25;
     if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
-  } while (next_.guard == Guard::jam);
+    anew = next_.guard == Guard::jam || leaps_over_guards(next_);
+    if (anew && next_.guard != Guard::jam) {
+      flow_->start(time_, y_, std::min(next_.time - time_, 0.5 * (flow_->end() - time_)));
+    }
+  } while (anew);
   const bool at_break =
       until_break < never && flow_->end() >= due->time - 2.0 * epsilon * std::abs(due->time);
   if (next_.guard == Guard::nothing && at_break) next_ = {due->time, Guard::law, 0};
@@ -227,6 +234,7 @@ void IslandDriver::accept_step(DriverNews& news) {
   y_.assign(flow_->state().begin(), flow_->state().end());
   pending_ = false;
   std::swap(start_, end_);
+  guards_.update(start_.seen.guards, guard_noise());
   if (motion_.closed().list().empty() && motion_.joints().empty()) return;
   motion_.evaluate(time_, y_.data(), true);
   if (settle(news)) flow_->correct(y_);
@@ -279,7 +287,8 @@ void IslandDriver::go_to_event(DriverNews& news) {
     }
   }
   if (next_.guard == Guard::kink) {
-    tell(EventKind::kink, {}, news).element = motion_.kink_element(next_.which);
+    tell(EventKind::kink, {}, news).element = motion_.guards().element(next_.which);
+    guards_.pass({time_, next_.which, next_.sign});
   }
   if (next_.guard == Guard::law) {
     for (const Discontinuity& at : discontinuities_at(motion_.breaks(), time_)) {

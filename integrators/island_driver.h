@@ -14,8 +14,10 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/flow_pool.h>
+#include <carom/integrators/guard_search.h>
 #include <carom/integrators/island_motion.h>
 #include <carom/integrators/mode_decision.h>
+#include <carom/integrators/step_looks.h>
 #include <carom/integrators/step_polynomial.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/work_limits.h>
@@ -48,6 +50,7 @@ struct CAROM_API DriverWorkspace {
   std::vector<Candidate> candidates;  // of one body
   std::vector<ForceMargin> margins;
   std::vector<double> y, free;
+  StepLooks looks;  // into the step at hand
 };
 
 /// What left the energy of islands, and what is to be told, since it was last emptied.
@@ -88,19 +91,17 @@ private:
   struct Found {
     double time;
     Guard guard = Guard::nothing;
-    std::size_t which = 0;  // pair, body that touches, closed contact, or kink
-    double sign = 1.0;      // of a kink's number before
+    std::size_t which = 0;  // pair, body that touches, closed contact, or guard of an element
+    double sign = 1.0;      // of the guard before
   };
   // What is watched over a step: values at its start and at its end, and between them where asked.
   struct Watch {
-    std::vector<StepPolynomial::End> gaps;   // by pair
-    std::vector<double> bends;               // by pair: bound of the sixth derivative by turning [m/s^6]
-    std::vector<StepPolynomial::End> slips;  // by closed contact
-    std::vector<double> margins;             // by body that touches
-    std::vector<double> noises;              // rounding of the margins
-    std::vector<double> kinks;
+    std::vector<StepPolynomial::End> gaps;  // by pair
+    std::vector<double> bends;              // by pair: bound of the sixth derivative by turning [m/s^6]
+    StepLook seen;                          // all else
+    std::vector<double> noises;             // rounding of the margins
   };
-  static constexpr std::size_t samples = 5;
+  class Looker;
 
   // A sticking contact whose friction is exhausted, and the friction then.
   struct Break {
@@ -114,22 +115,26 @@ private:
   void borrow_flow();
   void leave_flow();
   void take_step();
-  void sample_step();
   [[nodiscard]] double longest_step() const;
   bool watch(double time, const double* y, Watch& out);
   [[nodiscard]] Found find_event();
   [[nodiscard]] Found foretell();
-  // A gap at a time, with what bounds its sixth derivative.
-  struct GapLook {
-    double time;
-    StepPolynomial::End gap;  // derivatives with respect to time
-  };
+  void see(StepLook& out);
+  void sample(double time);
+  void foretell_gaps(Found& found);
+  void foretell_forces(StepLooker& looker, Found& found);
   [[nodiscard]] double level(std::size_t pair) const;
   [[nodiscard]] double slip_level(std::size_t closed) const;
   [[nodiscard]] double force_level(std::size_t body) const;
-  [[nodiscard]] GapLook look_at_gap(std::size_t pair, double time);
-  [[nodiscard]] double first_closing(std::size_t pair, const GapLook& from, const GapLook& to, int depth);
+  [[nodiscard]] double guard_noise() const;
+  // What a landing leaves of the quantity of an event.
+  struct Rest {
+    double value, rate, noise;
+    bool has_rate;
+  };
+  [[nodiscard]] Rest rest_of(const Found& rough);
   [[nodiscard]] Found locate(const Found& rough);
+  [[nodiscard]] bool leaps_over_guards(const Found& found);
   [[nodiscard]] bool stands_still(const Found& found) const;
   void go_to_event(DriverNews& news);
   void accept_step(DriverNews& news);
@@ -164,6 +169,7 @@ private:
   void demand_time(double target) const;
   void count_step();
   void count_event();
+  [[nodiscard]] std::vector<std::string> parts_of_event();
   void tell_joints(DriverNews& news);
   void list_impulses(DriverNews& news);
   void remember_impact(const ContactKey& contact);
@@ -199,21 +205,18 @@ private:
   bool jumped_ = false;  // the rate of a driver just did
   Found next_{};         // event in the pending step
   Watch start_, end_;
-  struct Sample {
-    std::vector<double> margins, kinks;
-  };
-  std::array<Sample, samples> between_;  // at equal distances over the step
-  double step_ = 0.0;                    // to try first in the next phase
-  double landed_at_ = 0.0;               // where the event was found,
-  std::vector<double> landed_;           // and y there
-  std::vector<char> closed_at_;          // by pair
-  std::vector<char> passed_over_;        // by pair: false alarms within the step,
-  std::vector<char> forces_passed_;      // and by body that touches
-  double velocity_scale_ = 0.0;          // of the island at the start of the phase [m/s]
-  double force_scale_ = 0.0;             // [N]
-  double gap_noise_ = 0.0;               // rounding of gaps [m]
+  GuardSearch guards_;
+  std::vector<GuardMotion> guards_now_;
+  double step_ = 0.0;                // to try first in the next phase
+  double landed_at_ = 0.0;           // where the event was found,
+  std::vector<double> landed_;       // and y there
+  std::vector<char> closed_at_;      // by pair
+  std::vector<char> passed_over_;    // by pair: false alarms within the step,
+  std::vector<char> forces_passed_;  // and by body that touches
+  double velocity_scale_ = 0.0;      // of the island at the start of the phase [m/s]
+  double force_scale_ = 0.0;         // [N]
+  double gap_noise_ = 0.0;           // rounding of gaps [m]
   std::vector<Break> breaking_;
-  std::vector<double> kinks_;
   std::vector<ContactPair> lifting_;
   double gave_way_at_ = 0.0;           // time of both [s]
   ContactPair stopped_;                // has just stopped slipping

@@ -86,6 +86,7 @@ void IslandDriver::begin_phase(DriverNews& news) {
   resting_ = at_rest();
   if (resting_) return;
   if (!watch(time_, y_.data(), start_)) fail("the loads are not finite", {});
+  guards_.update(start_.seen.guards, guard_noise());
   // A method of many steps is not helped by the length that the last step had.
   const bool one_step =
       options_.method == FlowMethod::explicit_runge_kutta || options_.method == FlowMethod::one_step;
@@ -229,18 +230,27 @@ EventRecord& IslandDriver::tell(EventKind kind, const Contact& contact, DriverNe
   return event;
 }
 
+/// Names what the event at hand is of; empty where it is of no part, or of nothing that touches.
+std::vector<std::string> IslandDriver::parts_of_event() {
+  const System& system = assembly_->system();
+  if (next_.guard == Guard::kink) return {system.name(motion_.guards().element(next_.which))};
+  const auto& closed = motion_.closed().list();
+  Contact contact;
+  if (next_.guard == Guard::gap) {
+    motion_.contact(next_.which, contact);
+  } else if (next_.guard == Guard::slip) {
+    contact = closed[next_.which].at;
+  } else if (!closed.empty()) {
+    contact = closed.front().at;
+  } else {
+    return {};
+  }
+  return {finder_->name(contact.key)};
+}
+
 void IslandDriver::count_event() {
   if (events_.exceeds(options_.event_limit, time_)) {
-    const std::size_t pair =
-        next_.guard == Guard::gap ? next_.which
-        : motion_.closed().list().empty()
-            ? 0
-            : static_cast<std::size_t>(std::find(motion_.pairs().begin(), motion_.pairs().end(),
-                                                 motion_.closed().list().front().pair) -
-                                       motion_.pairs().begin());
-    locate_contacts();
-    fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)",
-         {finder_->name(work_->contacts[pair].key)});
+    fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)", parts_of_event());
   }
 }
 

@@ -1,6 +1,7 @@
 // Problem: the first event within a step: a gap that closes, a force that comes to its end, sliding that
 // stops, a kink; first by polynomials, then by steps that end on it.
 
+#include <carom/integrators/fall_search.h>
 #include <carom/integrators/island_driver.h>
 
 #include <algorithm>
@@ -21,30 +22,21 @@ constexpr double force_rounding = 1e-11;
 // below zero.
 constexpr double magnified_rounding = 16.0;
 
-// Numbers of kinks this small against their size over the step are zero.
-constexpr double kink_rounding = 1e-13;
-
 }  // namespace
 
-/// What has no derivatives at hand is known by more values.
-void IslandDriver::sample_step() {
-  if (start_.margins.empty() && start_.kinks.empty()) return;
-  const double begin = flow_->begin(), length = flow_->end() - begin;
-  between_.front().margins = start_.margins;
-  between_.front().kinks = start_.kinks;
-  between_.back().margins = end_.margins;
-  between_.back().kinks = end_.kinks;
-  work_->y.resize(motion_.size());
-  for (std::size_t i = 1; i + 1 < samples; ++i) {
-    const double time = begin + length * static_cast<double>(i) / static_cast<double>(samples - 1);
-    flow_->sample(time, work_->y);
-    motion_.evaluate(time, work_->y.data(), true);
-    motion_.kinks(between_[i].kinks);
-    motion_.closed().margins(work_->margins);
-    between_[i].margins.clear();
-    for (const ForceMargin& margin : work_->margins) between_[i].margins.push_back(margin.margin);
+/// Looks into the flow's last step.
+class IslandDriver::Looker final : public StepLooker {
+public:
+  explicit Looker(IslandDriver& driver) : driver_(&driver) {}
+
+  void look(double time, StepLook& out) override {
+    driver_->sample(time);
+    driver_->see(out);
   }
-}
+
+private:
+  IslandDriver* driver_;
+};
 
 bool IslandDriver::watch(double time, const double* y, Watch& out) {
   const bool solved = motion_.evaluate(time, y, true);
@@ -64,15 +56,9 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
     out.gaps[i] = {contact.gap, contact.velocity(0, state.v), contact.acceleration(0, acceleration)};
     finite = finite && std::isfinite(out.gaps[i].second);
   }
-  out.slips.clear();
-  for (const ClosedContact& closed : motion_.closed().list()) {
-    const double sign = closed.slip_sign();
-    out.slips.push_back(
-        {sign * closed.at.velocity(1, state.v), sign * closed.at.acceleration(1, acceleration), 0.0});
-    finite = finite && std::isfinite(out.slips.back().first);
-  }
-  motion_.closed().margins(work_->margins);
-  out.margins.clear();
+  out.seen.time = time;
+  see(out.seen);
+  for (const StepPolynomial::End& slip : out.seen.slips) finite = finite && std::isfinite(slip.first);
   out.noises.clear();
   // Where there are no loads all forces are rounding: of the mass times the tolerance of accelerations.
   const double no_force = 0.1 * motion_.absolute_tolerances().back();
@@ -82,16 +68,36 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
       const ClosedContact& closed = motion_.closed().list()[i];
       size += std::abs(closed.normal) + std::abs(closed.tangential);
     }
-    out.margins.push_back(margin.margin);
     out.noises.push_back(force_rounding * std::max(size, force_scale_) + no_force);
   }
-  motion_.kinks(out.kinks);
   return finite;
+}
+
+/// Reads off the workspace, which holds an evaluation, what is watched beside gaps.
+void IslandDriver::see(StepLook& out) {
+  const MotionWorkspace& work = work_->motion;
+  out.slips.clear();
+  for (const ClosedContact& closed : motion_.closed().list()) {
+    const double sign = closed.slip_sign();
+    out.slips.push_back({sign * closed.at.velocity(1, work.trial.v.data()),
+                         sign * closed.at.acceleration(1, work.acceleration.data()), 0.0});
+  }
+  motion_.closed().margins(work_->margins);
+  out.margins.clear();
+  for (const ForceMargin& margin : work_->margins) out.margins.push_back(margin.margin);
+  motion_.read_guards(out.guards);
+}
+
+/// Brings the workspace to a time within the flow's last step.
+void IslandDriver::sample(double time) {
+  work_->y.resize(motion_.size());
+  flow_->sample(time, work_->y);
+  motion_.evaluate(time, work_->y.data(), true);
 }
 
 IslandDriver::Found IslandDriver::find_event() {
   passed_over_.assign(end_.gaps.size(), 0);
-  forces_passed_.assign(end_.margins.size(), 0);
+  forces_passed_.assign(end_.seen.margins.size(), 0);
   for (;;) {
     const Found rough = foretell();
     if (rough.guard == Guard::nothing) return rough;
@@ -122,67 +128,83 @@ bool IslandDriver::stands_still(const Found& found) const {
 
 /// The first event by the polynomials.
 IslandDriver::Found IslandDriver::foretell() {
-  const double begin = flow_->begin(), length = flow_->end() - begin;
-  double first = never;
   Found found{flow_->end(), Guard::nothing, 0};
-  const auto take = [&](double tau, Guard guard, std::size_t which) {
-    if (!(tau < first)) return;
-    first = tau;
-    found = {begin + tau * length, guard, which};
-  };
-  const auto scaled = [length](StepPolynomial::End end) {
-    end.first *= length;
-    end.second *= length * length;
-    return end;
-  };
-  for (std::size_t i = 0; i < end_.gaps.size(); ++i) {
-    if (closed_at_[i] != 0 || passed_over_[i] != 0) continue;
-    const double time = first_closing(i, {begin, start_.gaps[i]}, {flow_->end(), end_.gaps[i]}, 0);
-    take((time - begin) / length, Guard::gap, i);
-  }
-  const auto& closed = motion_.closed().list();
-  for (std::size_t i = 0; i < closed.size(); ++i) {
-    if (closed[i].sticks() || closed[i].slippery) continue;
-    const double noise = speed_noise();
-    const auto slip =
-        StepPolynomial::cubic(scaled(start_.slips[i]), scaled(end_.slips[i])).raised(noise - slip_level(i));
-    take(slip.first_fall(), Guard::slip, i);
-  }
-  for (std::size_t i = 0; i < end_.margins.size(); ++i) {
-    if (forces_passed_[i] != 0) continue;
-    std::array<double, samples> values{};
-    for (std::size_t k = 0; k < samples; ++k) values[k] = between_[k].margins[i];
-    const double noise = std::max(start_.noises[i], end_.noises[i]);
-    take(StepPolynomial::through(values).raised(noise - force_level(i)).first_fall(), Guard::force, i);
-  }
-  for (std::size_t i = 0; i < end_.kinks.size(); ++i) {
-    std::array<double, samples> values{};
-    double size = 0.0;
-    for (std::size_t k = 0; k < samples; ++k) {
-      values[k] = between_[k].kinks[i];
-      size = std::max(size, std::abs(values[k]));
-    }
-    const double noise = kink_rounding * size;
-    // One that has just been passed is at zero: the side it goes to counts.
-    const double sign = std::copysign(1.0, std::abs(values[0]) > noise ? values[0] : values[1]);
-    for (double& value : values) value *= sign;
-    const double before = first;
-    take(StepPolynomial::through(values).raised(noise).first_fall(), Guard::kink, i);
-    if (first < before) found.sign = sign;
-  }
+  if (!motion_.pairs().empty()) foretell_gaps(found);
+  if (end_.seen.margins.empty() && end_.seen.guards.empty()) return found;
+  Looker looker(*this);
+  foretell_forces(looker, found);
+  if (end_.seen.guards.empty()) return found;
+  const double until = found.guard == Guard::nothing ? never : found.time;
+  const GuardSearch::Passage passage =
+      guards_.first(motion_.guards(), start_.seen, end_.seen, work_->looks, looker, guard_noise(), until);
+  if (passage.time < until) found = {passage.time, Guard::kink, passage.guard, passage.sign};
   return found;
 }
 
-IslandDriver::GapLook IslandDriver::look_at_gap(std::size_t pair, double time) {
-  work_->y.resize(motion_.size());
-  flow_->sample(time, work_->y);
-  motion_.evaluate(time, work_->y.data(), true);
-  const MotionWorkspace& work = work_->motion;
-  Contact contact;
-  motion_.contact(pair, contact);
-  return {time,
-          {contact.gap, contact.velocity(0, work.trial.v.data()),
-           contact.acceleration(0, work.acceleration.data())}};
+/// When a gap closes first. For a body that flies freely the error that turning makes is bounded beforehand.
+void IslandDriver::foretell_gaps(Found& found) {
+  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
+  constexpr int least_of_moving = 2;
+  for (std::size_t i = 0; i < end_.gaps.size(); ++i) {
+    if (closed_at_[i] != 0 || passed_over_[i] != 0) continue;
+    // Obstacles move unseen by the flow.
+    const bool moving = finder_->moves(motion_.pairs()[i]);
+    FallRule rule;
+    rule.raise = gap_noise_ - level(i);
+    rule.fine = fine;
+    rule.measured = moving || !motion_.flies_freely();
+    rule.least_depth = moving ? least_of_moving : 0;
+    const double bend = std::max(start_.bends[i], end_.bends[i]);
+    QuantityOf gap([&](double time) -> QuantityLook {
+      sample(time);
+      const MotionWorkspace& work = work_->motion;
+      Contact contact;
+      motion_.contact(i, contact);
+      return {time,
+              {contact.gap, contact.velocity(0, work.trial.v.data()),
+               contact.acceleration(0, work.acceleration.data())},
+              bend};
+    });
+    const double until = found.guard == Guard::nothing ? never : found.time;
+    const double time =
+        FallSearch(gap, rule, until)
+            .first({flow_->begin(), start_.gaps[i], bend}, {flow_->end(), end_.gaps[i], bend});
+    if (time < until) found = {time, Guard::gap, i};
+  }
+}
+
+/// When sliding stops, or a force comes to its end.
+void IslandDriver::foretell_forces(StepLooker& looker, Found& found) {
+  constexpr int deepest = 6;  // forces without bound have no end of their own
+  const auto search = [&](Guard guard, std::size_t which, const FallRule& rule, const auto& read) {
+    QuantityOf quantity([&](double time) { return read(work_->looks.at(time, looker)); });
+    const double until = found.guard == Guard::nothing ? never : found.time;
+    const double time = FallSearch(quantity, rule, until).first(read(start_.seen), read(end_.seen));
+    if (time < until) found = {time, guard, which};
+  };
+  const auto& closed = motion_.closed().list();
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    if (closed[i].sticks() || closed[i].slippery) continue;
+    FallRule rule;
+    rule.derivatives = 1;
+    rule.fine = speed_noise();
+    rule.raise = speed_noise() - slip_level(i);
+    rule.deepest = deepest;
+    search(Guard::slip, i, rule, [i](const StepLook& look) -> QuantityLook {
+      return {look.time, look.slips[i], 0.0};
+    });
+  }
+  for (std::size_t i = 0; i < end_.seen.margins.size(); ++i) {
+    if (forces_passed_[i] != 0) continue;
+    FallRule rule;
+    rule.derivatives = 0;
+    rule.fine = std::max(start_.noises[i], end_.noises[i]);
+    rule.raise = rule.fine - force_level(i);
+    rule.deepest = deepest;
+    search(Guard::force, i, rule, [i](const StepLook& look) -> QuantityLook {
+      return {look.time, {look.margins[i], 0.0, 0.0}, 0.0};
+    });
+  }
 }
 
 /// Where a gap that falls is an event: what separates from a little below zero (of two corners that hit at
@@ -191,48 +213,41 @@ double IslandDriver::level(std::size_t pair) const { return std::min(0.0, start_
 
 /// Likewise of sliding: what has just turned round may still creep the other way after a projection.
 double IslandDriver::slip_level(std::size_t closed) const {
-  return std::min(0.0, start_.slips[closed].value);
+  return std::min(0.0, start_.seen.slips[closed].value);
 }
 
 /// And of forces, if by little.
 double IslandDriver::force_level(std::size_t body) const {
-  return std::clamp(start_.margins[body], -magnified_rounding * start_.noises[body], 0.0);
+  return std::clamp(start_.seen.margins[body], -magnified_rounding * start_.noises[body], 0.0);
 }
 
-/// When a gap closes first. Between two looks it is taken for a polynomial of degree 5; where that might hide
-/// a root, a third look is taken in the middle. For a body that flies freely what turning does to the
-/// polynomial is bounded beforehand, else the third look tells how far it is off.
-double IslandDriver::first_closing(std::size_t pair, const GapLook& from, const GapLook& to, int depth) {
-  constexpr double fine = 1e-10;             // a gap this far off the polynomial still counts as found [m]
-  constexpr double interpolation = 46080.0;  // 6! 2^6: error of the quintic over its sixth derivative
-  constexpr int deepest = 14, least_of_moving = 2;
-  const double length = to.time - from.time;
-  const auto scaled = [length](StepPolynomial::End end) {
-    end.first *= length;
-    end.second *= length * length;
-    return end;
-  };
-  const auto gap = StepPolynomial::quintic(scaled(from.gap), scaled(to.gap));
-  // Obstacles move unseen by the flow.
-  const bool moving = finder_->moves(motion_.pairs()[pair]);
-  const bool measured = moving || !motion_.flies_freely();
-  double error = std::pow(length, 6) * std::max(start_.bends[pair], end_.bends[pair]) / interpolation;
-  const bool deep = !moving || depth >= least_of_moving;
-  // Far away against all that it does.
-  if (deep && gap.least() > std::max(error, gap.most() - gap.least())) return never;
-  GapLook middle{};
-  if (measured) {
-    middle = look_at_gap(pair, from.time + 0.5 * length);
-    error += 4.0 * std::abs(gap.value(0.5) - middle.gap.value);
+/// Guards nearer to zero than this have not passed it: what a step may be wrong by, and rounding.
+double IslandDriver::guard_noise() const { return std::max(gap_noise_, options_.absolute_tolerance); }
+
+/// What the quantity of an event is in the state of the workspace, and when it counts as zero.
+IslandDriver::Rest IslandDriver::rest_of(const Found& rough) {
+  const MotionWorkspace& work = work_->motion;
+  const double* const velocity = work.trial.v.data();
+  if (rough.guard == Guard::gap) {
+    Contact contact;
+    motion_.contact(rough.which, contact);
+    return {contact.gap - level(rough.which), contact.velocity(0, velocity), gap_noise_ / 16.0, true};
   }
-  if (deep && gap.least() > error) return never;
-  if ((deep && error <= fine) || depth == deepest) {
-    const double tau = gap.raised(gap_noise_ - level(pair)).first_fall();
-    return tau < never ? from.time + tau * length : never;
+  if (rough.guard == Guard::slip) {
+    const ClosedContact& closed = motion_.closed().list()[rough.which];
+    return {closed.slip_sign() * closed.at.velocity(1, velocity) - slip_level(rough.which),
+            closed.slip_sign() * closed.at.acceleration(1, work.acceleration.data()), speed_noise() / 16.0,
+            true};
   }
-  if (!measured) middle = look_at_gap(pair, from.time + 0.5 * length);
-  const double first = first_closing(pair, from, middle, depth + 1);
-  return first < never ? first : first_closing(pair, middle, to, depth + 1);
+  if (rough.guard == Guard::kink) {
+    motion_.read_guards(guards_now_);
+    const GuardMotion& guard = guards_now_[rough.which];
+    return {rough.sign * guard.value, rough.sign * guard.first, gap_noise_ / 4.0,
+            motion_.guards().has_motion(rough.which)};
+  }
+  motion_.closed().margins(work_->margins);
+  return {work_->margins[rough.which].margin - force_level(rough.which), 0.0,
+          std::max(start_.noises[rough.which], end_.noises[rough.which]), false};
 }
 
 /// The event itself, by steps that end on it.
@@ -240,72 +255,85 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
   constexpr int most_landings = 60;
   work_->y.resize(motion_.size());
   double low = flow_->begin(), high = flow_->end(), time = std::clamp(rough.time, low, high);
+  const bool of_force = rough.guard == Guard::force, of_guard = rough.guard == Guard::kink;
+  if (of_guard && guards_.passes_at_once({low, rough.which, rough.sign}, start_.seen.guards[rough.which],
+                                         gap_noise_ / 4.0)) {
+    time = high = low;
+  }
   const double foretold = time;
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // something below zero was seen
-  if (rough.guard == Guard::force) {
-    f_low = start_.margins[rough.which] - force_level(rough.which);
-    f_high = end_.margins[rough.which] - force_level(rough.which);
+  if (of_force) {
+    f_low = start_.seen.margins[rough.which] - force_level(rough.which);
+    f_high = end_.seen.margins[rough.which] - force_level(rough.which);
     below = f_high < 0.0;
-  } else if (rough.guard == Guard::kink) {
-    f_low = rough.sign * start_.kinks[rough.which];
-    f_high = rough.sign * end_.kinks[rough.which];
+  } else if (of_guard) {
+    f_low = rough.sign * start_.seen.guards[rough.which].value;
+    f_high = rough.sign * end_.seen.guards[rough.which].value;
     below = f_high < 0.0;
   }
-  const bool by_values = rough.guard == Guard::force || rough.guard == Guard::kink;
   for (int i = 0; i < most_landings; ++i) {
     flow_->land(time, work_->y);
-    double value = 0.0, rate = 0.0, noise = 0.0;
     motion_.evaluate(time, work_->y.data(), true);
-    const StateView state = work_->motion.trial.view();
-    if (rough.guard == Guard::gap) {
-      Contact contact;
-      motion_.contact(rough.which, contact);
-      value = contact.gap - level(rough.which);
-      rate = contact.velocity(0, state.v);
-      noise = gap_noise_ / 16.0;
-    } else if (rough.guard == Guard::slip) {
-      const ClosedContact& closed = motion_.closed().list()[rough.which];
-      value = closed.slip_sign() * closed.at.velocity(1, state.v) - slip_level(rough.which);
-      rate = closed.slip_sign() * closed.at.acceleration(1, work_->motion.acceleration.data());
-      noise = speed_noise() / 16.0;
-    } else if (rough.guard == Guard::kink) {
-      motion_.kinks(kinks_);
-      value = rough.sign * kinks_[rough.which];
-      noise = 0.25 * kink_rounding * std::max(std::abs(f_low), std::abs(f_high));
-    } else {
-      motion_.closed().margins(work_->margins);
-      value = work_->margins[rough.which].margin - force_level(rough.which);
-      noise = std::max(start_.noises[rough.which], end_.noises[rough.which]);
-    }
+    const Rest rest = rest_of(rough);
     // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
-    const bool opens = rough.guard == Guard::gap && rate >= 0.0 && start_.gaps[rough.which].first >= 0.0;
-    if (std::abs(value) <= noise && !opens) {
+    const bool opens = rough.guard == Guard::gap && rest.rate >= 0.0 && start_.gaps[rough.which].first >= 0.0;
+    if ((std::abs(rest.value) <= rest.noise && !opens) || low == high) {
       landed_at_ = time;
       landed_.assign(work_->y.begin(), work_->y.end());
       return {time, rough.guard, rough.which, rough.sign};
     }
-    if (!by_values && value > 0.0 && rate >= 0.0) return {time, Guard::restart, 0};
-    if (value > 0.0 || opens) {
+    if (rest.has_rate && rest.value > 0.0 && rest.rate >= 0.0) return {time, Guard::restart, 0};
+    if (rest.value > 0.0 || opens) {
       low = time;
-      f_low = value;
+      f_low = rest.value;
     } else {
       high = time;
-      f_high = value;
+      f_high = rest.value;
       below = true;
     }
     if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) break;
-    double next = by_values ? low + (high - low) * f_low / (f_low - f_high) : time - value / rate;
+    double next =
+        rest.has_rate ? time - rest.value / rest.rate : low + (high - low) * f_low / (f_low - f_high);
     if (!(next > low && next < high) || opens || i % 8 == 7) next = 0.5 * (low + high);
     time = next;
   }
   // From large to large of the other sign: no zero of the forces but a pole.
   const double large = without_bound * force_scale_;
-  if (rough.guard == Guard::force && f_low > large && f_high < -large) {
-    return {low, Guard::jam, rough.which};
-  }
+  if (of_force && f_low > large && f_high < -large) return {low, Guard::jam, rough.which};
   // Nothing there: go on from where it was foretold, for behind it others may have been.
   return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{foretold, Guard::restart, 0};
+}
+
+/// True of a step whose stages passed over what an element does: it is entered and left between two of them,
+/// so that the error of the step seems small. A step that ends at the event then leads elsewhere.
+bool IslandDriver::leaps_over_guards(const Found& found) {
+  constexpr double noticeable = 100.0;  // tolerances: interpolation is less exact than steps are
+  constexpr double shortest = 1e-9;     // of the scale of time: what is left is rounding
+  const double length = found.time - flow_->begin();
+  if (end_.seen.guards.empty() || found.guard == Guard::nothing || found.guard == Guard::jam) return false;
+  if (length <= shortest * std::max(1.0, std::abs(found.time))) return false;
+  if (options_.method == FlowMethod::one_step) {
+    // Its samples are such steps themselves: only the error of the shorter step tells.
+    if (found.time == flow_->end()) return false;
+    flow_->start(time_, y_, length);
+    flow_->advance(length);
+    return flow_->end() < found.time - 2.0 * epsilon * std::max(1.0, std::abs(found.time));
+  }
+  if (landed_at_ != found.time) {
+    landed_.resize(motion_.size());
+    flow_->land(found.time, landed_);
+    landed_at_ = found.time;
+  }
+  work_->y.resize(motion_.size());
+  flow_->sample(found.time, work_->y);
+  const std::span<const double> absolute = motion_.absolute_tolerances();
+  for (std::size_t i = 0; i < landed_.size(); ++i) {
+    const double size = std::max(std::abs(landed_[i]), std::abs(work_->y[i]));
+    const double allowed = noticeable * (options_.relative_tolerance * size + absolute[i]);
+    if (!(std::abs(landed_[i] - work_->y[i]) <= allowed)) return true;
+  }
+  return false;
 }
 
 }  // namespace carom

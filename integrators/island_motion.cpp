@@ -30,7 +30,8 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       size_(q_size_ + v_size_ + z_size_ + work_count_),
       tolerances_(size_, options.absolute_tolerance),
       pairs_(finder.pairs(island)),
-      joints_(assembly, island) {
+      joints_(assembly, island),
+      guards_(assembly, island) {
   std::vector<double> times;
   if (!joints_.empty()) {
     closed_.bind(assembly, joints_);
@@ -67,7 +68,6 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       elements.breaks(element, times);
       for (const double time : times)
         breaks_.push_back({.time = time, .element = assembly.element_id(kind, element)});
-      kink_elements_.insert(kink_elements_.end(), elements.guard_size(), assembly.element_id(kind, element));
     }
   }
   if (!pairs_.empty() && finder.has_moving_obstacles()) {
@@ -233,18 +233,10 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   return lost;
 }
 
-void IslandMotion::kinks(std::vector<double>& out) const {
-  out.resize(kink_elements_.size());
-  if (out.empty()) return;
+void IslandMotion::read_guards(std::vector<GuardMotion>& out) {
+  if (guards_.count() == 0) return;
   const EvaluationContext at{*assembly_, work_->trial.view(), work_->evaluation, island_};
-  std::size_t place = 0;
-  for (Index kind = 0; kind < assembly_->force_kinds().size(); ++kind) {
-    const Range elements = assembly_->elements(island_, kind);
-    const Index each = assembly_->force_kinds()[kind]->guard_size();
-    if (elements.empty() || each == 0) continue;
-    assembly_->force_kinds()[kind]->guards(at, elements, out.data() + place);
-    place += static_cast<std::size_t>(each) * elements.size();
-  }
+  guards_.read(at, work_->acceleration.data(), out);
 }
 
 double IslandMotion::kinetic_energy(Index body) const {

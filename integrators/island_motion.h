@@ -17,6 +17,7 @@
 #include <carom/core/island_joints.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
+#include <carom/integrators/island_guards.h>
 #include <carom/integrators/work_limits.h>
 
 #include <array>
@@ -125,12 +126,10 @@ public:
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.
   void contact(std::size_t pair, Contact& out) const;
-  /// Numbers of the elements whose changes of sign are kinks of the loads, in the workspace's state.
-  void kinks(std::vector<double>& out) const;
-  /// The element of a kink.
-  [[nodiscard]] ElementId kink_element(std::size_t kink) const { return kink_elements_[kink]; }
-  /// How many there are.
-  [[nodiscard]] std::size_t kink_count() const { return kink_elements_.size(); }
+  /// Guards of the island's elements.
+  [[nodiscard]] const IslandGuards& guards() const { return guards_; }
+  /// Writes them in the workspace's state, with derivatives; accelerations are those of the last evaluate().
+  void read_guards(std::vector<GuardMotion>& out);
   /// Where laws of the island's elements and drivers and of obstacles jump, in ascending order of times.
   [[nodiscard]] const std::vector<Discontinuity>& breaks() const { return breaks_; }
   /// True if nothing but uniform fields acts: places are polynomials of time but for turning.
@@ -177,7 +176,7 @@ private:
   std::vector<LoadDerivative> derivatives_;
   std::vector<ContactChange> contact_changes_;
   std::vector<Index> row_multipliers_;  // unknowns of the Jacobian, by row of joints_; none: without force
-  std::vector<ElementId> kink_elements_;
+  IslandGuards guards_;
   std::vector<Discontinuity> breaks_;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false, only_fields_ = true;
 };

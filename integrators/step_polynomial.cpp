@@ -70,6 +70,35 @@ StepPolynomial StepPolynomial::raised(double constant) const {
   return p;
 }
 
+/// The same, written with one degree more.
+StepPolynomial StepPolynomial::elevated() const {
+  StepPolynomial p;
+  p.degree_ = degree_ + 1;
+  const double degree = p.degree_;
+  p.b_[0] = b_[0];
+  for (int i = 1; i <= degree_; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double share = i / degree;
+    p.b_[at] = share * b_[at - 1] + (1.0 - share) * b_[at];
+  }
+  p.b_[static_cast<std::size_t>(p.degree_)] = b_[static_cast<std::size_t>(degree_)];
+  return p;
+}
+
+StepPolynomial StepPolynomial::lowered(double error) const {
+  if (degree_ % 2 == 0) {
+    StepPolynomial p = *this;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(degree_); ++i) p.b_[i] -= error;
+    return p;
+  }
+  // (tau (1 - tau))^m, m half of the degree 2 m, is a single number of Bernstein's form, over binomial(2 m,
+  // m).
+  const bool of_cubic = degree_ == 3;
+  StepPolynomial p = elevated();
+  p.b_[of_cubic ? 2 : 3] -= error * (of_cubic ? 16.0 / 6.0 : 64.0 / 20.0);
+  return p;
+}
+
 double StepPolynomial::first_fall() const {
   if (!(b_[0] >= 0.0)) return 0.0;
   return fall_within(b_, 0.0, 1.0, 0);

@@ -33,14 +33,20 @@ public:
   [[nodiscard]] double value(double tau) const;
   /// The polynomial plus a constant.
   [[nodiscard]] StepPolynomial raised(double constant) const;
+  /// A lower bound of a quantity that this interpolates with an error of at most `error`, which vanishes
+  /// where the polynomial was given: of cubic() and quintic() like (tau (1 - tau))^2 and ^3, greatest in the
+  /// middle; of through() it vanishes at both ends. With error < 0 an upper bound. Not for a polynomial that
+  /// is one.
+  [[nodiscard]] StepPolynomial lowered(double error) const;
   /// The first tau at which it falls below zero, infinity if it does not; 0 if it starts there.
   [[nodiscard]] double first_fall() const;
 
 private:
-  static constexpr int most_degree = 5;
+  static constexpr int most_degree = 6;
   using Coefficients = std::array<double, most_degree + 1>;
   [[nodiscard]] double fall_within(const Coefficients& b, double from, double to, int depth) const;
   [[nodiscard]] double lone_root(const Coefficients& b) const;
+  [[nodiscard]] StepPolynomial elevated() const;
   [[nodiscard]] double at(const Coefficients& b, double tau) const;
 
   Coefficients b_{};
