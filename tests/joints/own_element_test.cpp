@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 using namespace carom;
@@ -54,6 +55,25 @@ struct SmoothMagnet : Magnet {
     out.opposite_forces(from, to, -pull * d, by_distance, Mat<2>::Zero());
   }
 };
+// ... to here, and from here...
+struct Fan {  // blows upward where a particle is nearer than `reach` to the ground, y = 0
+  static constexpr Role role = Role::force;
+  static constexpr int dimension = 2;
+  static constexpr int guard_size = 1;
+  static constexpr bool depends_on_time = false;
+  BodyId body;
+  double force = 0.0, reach = 0.0;  // [N], [m]
+
+  std::vector<BodyId> bodies() const { return {body}; }
+  double height(const ElementView<2>& at) const { return at.position(body)[1]; }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+    if (height(at) < reach) out.external(body, {0.0, force});
+  }
+  void guards(const ElementView<2>& at, double* out) const { out[0] = height(at) - reach; }
+  void guard_motion(const ElementMotion<2>& at, GuardMotion* out) const {
+    out[0] = {.value = height(at) - reach, .first = at.velocity(body)[1], .second = at.acceleration(body)[1]};
+  }
+};
 // ... to here.
 
 namespace {
@@ -77,11 +97,28 @@ TEST(SmoothMagnet, DerivativesMeetDifferences) {
   }
 }
 
+// A particle falls through the fan's reach: y = 1 - g t^2/2 until it is there.
+TEST(Fan, StartsToBlowWhereItsGuardChangesSign) {
+  constexpr double gravity = 9.81, reach = 0.4;
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  const BodyId dot = system.add(Particle{.mass = 1.0, .position = {0.0, 1.0}});
+  const ElementId fan = system.add(Fan{.body = dot, .force = 100.0, .reach = reach});
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(1.0);
+  ASSERT_GE(simulation.events().size(), 2U);  // in, and thrown out again
+  for (const EventRecord& event : simulation.events()) EXPECT_EQ(event.element, fan);
+  // Phases are parabolas: the time is known to rounding of its square.
+  const double in = std::sqrt(2.0 * (1.0 - reach) / gravity);
+  EXPECT_NEAR(simulation.events()[0].time, in, 1e-12);
+  EXPECT_NEAR(simulation.events()[1].time, in + 2.0 * gravity * in / (100.0 - gravity), 1e-12);
+}
+
 TEST(ElementsPage, ShowsWhatIsTestedHere) {
   const std::string source = text_of("tests/joints/own_element_test.cpp");
   const auto blocks = carom_test::code_blocks("docs/elements.md", "cpp");
   for (const std::string& block : blocks) EXPECT_NE(source.find(block), std::string::npos) << block;
-  EXPECT_EQ(blocks.size(), 3u);
+  EXPECT_EQ(blocks.size(), 4u);
 }
 
 TEST(ElementsPage, NamesEveryElement) {

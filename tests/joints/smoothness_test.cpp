@@ -95,8 +95,8 @@ TEST(Smoothness, OneSidedSpringsTellWhereTheyGoTaut) {
   system.add(Cable{.from = ground, .to = a, .stiffness = 1.0, .free_length = 4.5});
   system.add(Cable{.from = {b, {0.0, -1.0}}, .to = a, .stiffness = 1.0, .free_length = 7.0});
   system.add(Bumper{.from = ground, .to = b, .stiffness = 1.0, .free_length = 1.25});
-  // Lengths 5, 5 and 1, exact in binary.
-  EXPECT_EQ(guards_of(system), (std::vector<double>{0.5, -2.0, -0.25}));
+  // (l^2 - L^2)/(2 L) of the lengths 5, 5 and 1: exact in binary but for the quotients.
+  EXPECT_EQ(guards_of(system), (std::vector<double>{4.75 / 9.0, -24.0 / 14.0, -0.5625 / 2.5}));
 }
 
 TEST(Smoothness, TheGuardOfACableChangesSignWhereItsLoadStarts) {
