@@ -99,7 +99,7 @@ void SparseFactors::with_rows(F&& f) const {
 
 /// Row of blocks by row of blocks. \tparam Rows of all blocks; 0 where they differ
 template <Index Rows>
-void SparseFactors::factor_blocks() {
+void SparseFactors::factor_blocks(double least_pivot) {
   const Pattern& at = *pattern_;
   constexpr Index room = Rows == 0 ? most_rows : Rows;
   const Index most = Rows == 0 ? at.most : Rows;
@@ -168,14 +168,64 @@ void SparseFactors::factor_blocks() {
       const double whole = diagonal[r * n + r];
       relative_pivot_[at.given_row[i] + r] = whole > 0.0 ? pivot / whole : 0.0;
       // With an infinite pivot nothing comes from the row and nothing goes to it.
-      pivots[r] = pivot > dependent_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
+      pivots[r] = pivot > least_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
     }
   }
 }
 
+void SparseFactors::factor_down_to(double least_pivot) {
+  with_rows([&](auto rows) { factor_blocks<decltype(rows)::value>(least_pivot); });
+}
+
 void SparseFactors::factor() {
+  weak_.clear();
   if (values().empty()) return;
-  with_rows([&](auto rows) { factor_blocks<decltype(rows)::value>(); });
+  factor_down_to(dependent_pivot);
+  if (reveals_rank_ && is_doubtful()) factor_weak_rows();
+}
+
+/// True if a small pivot may have magnified the rounding of a pivot that decides.
+bool SparseFactors::is_doubtful() const {
+  // Of rows that clearly follow from others. Rounding divided by it reaches the weakest pivot that decides.
+  constexpr double clear = 1e-12, deciding = 1e-6;
+  bool any_weak = false, any_deciding = false;
+  for (const double pivot : relative_pivot_) {
+    any_weak = any_weak || (pivot > clear && pivot < weak_pivot);
+    any_deciding = any_deciding || pivot < deciding;
+  }
+  return any_weak && any_deciding;
+}
+
+/// Eliminates strong rows first, then weak ones, the largest pivot first. Too many weak rows are left as they
+/// were.
+void SparseFactors::factor_weak_rows() {
+  factor_down_to(weak_pivot);
+  weak_.assign(relative_pivot_, weak_pivot);
+  const std::span<const std::size_t> rows = weak_.rows();
+  if (rows.size() > WeakRows::most) {
+    weak_.clear();
+    factor_down_to(dependent_pivot);
+    return;
+  }
+  // The combination of a row that vanishes at strong ones: its numbers there, solved for.
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    double* const combination = weak_.combination(k);
+    read_row(rows[k], combination);
+    weak_.whole(k) = combination[rows[k]];
+    solve_strong(combination);
+    for (std::size_t i = 0; i < size(); ++i) combination[i] = -combination[i];
+    combination[rows[k]] = 1.0;
+  }
+  row_.resize(size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    read_row(rows[k], row_.data());
+    for (std::size_t m = 0; m <= k; ++m) {
+      weak_.at(k, m) = weak_.at(m, k) =
+          std::inner_product(row_.begin(), row_.end(), weak_.combination(m), 0.0);
+    }
+  }
+  weak_.factor(dependent_pivot);
+  for (std::size_t k = 0; k < rows.size(); ++k) relative_pivot_[rows[k]] = weak_.relative_pivot(k);
 }
 
 template <Index Rows>
@@ -231,15 +281,23 @@ void SparseFactors::substitute(double* given) {
   }
 }
 
-void SparseFactors::solve(double* x) {
-  if (pattern_) with_rows([&](auto rows) { substitute<decltype(rows)::value>(x); });
+/// Solves by the rows that are not left out of the sparse factors.
+void SparseFactors::solve_strong(double* x) {
+  with_rows([&](auto rows) { substitute<decltype(rows)::value>(x); });
 }
 
-void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
+void SparseFactors::solve(double* x) {
+  if (!pattern_) return;
+  if (!weak_.empty()) weak_.take(x);
+  solve_strong(x);
+  if (!weak_.empty()) weak_.add_to(x);
+}
+
+/// A row of the matrix, as it was given.
+void SparseFactors::read_row(std::size_t row, double* out) const {
   const Pattern& at = *pattern_;
   const auto given = [&](Index block) { return at.given_row[block]; };
-  out.assign(size(), 0.0);
-  // The row of the matrix, as it was given.
+  std::fill_n(out, size(), 0.0);
   const double* value = values_.data();
   for (Index i = 0; i < at.blocks(); ++i) {
     for (Index p = at.entry_begin[i]; p < at.entry_begin[i + 1]; ++p) {
@@ -253,6 +311,11 @@ void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
       }
     }
   }
+}
+
+void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
+  out.resize(size());
+  read_row(row, out.data());
   solve(out.data());
   for (double& number : out) number = -number;
   out[row] = 1.0;

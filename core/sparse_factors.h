@@ -7,6 +7,7 @@
 #include <carom/core/elimination.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
+#include <carom/core/weak_rows.h>
 
 #include <cstddef>
 #include <memory>
@@ -20,6 +21,9 @@ namespace carom {
 /// pivot falls with the square of the distance from a singular position [rad]: within some 3e-5 of one the
 /// row is let go. Nearer rounding would be magnified too much, farther away the row is missed.
 inline constexpr double dependent_pivot = 1e-9;
+
+/// Where a row is doubtful, those with a pivot below this part of their diagonal are eliminated last.
+inline constexpr double weak_pivot = 1e-3;
 
 /// Factors of a symmetric positive semidefinite matrix A. A row that follows from those eliminated before it
 /// is left out: for a right side in the range of A the answer is a solution, with zero there. Copies share
@@ -41,6 +45,10 @@ public:
   std::vector<Place> analyse(std::span<const Index> sizes, std::span<const std::pair<Index, Index>> entries);
   /// The numbers of the matrix. Memory for numbers is taken when they are first asked for.
   [[nodiscard]] std::vector<double>& values();
+  /// Lets factor() decide with care which rows follow from others where some almost do (WeakRows): near a
+  /// singular position of a mechanism with redundant rows the order of elimination may magnify rounding until
+  /// a redundant row passes for independent. Costs a second factorisation there, and nothing elsewhere.
+  void reveal_rank(bool reveals) { reveals_rank_ = reveals; }
   /// Factorises the numbers.
   void factor();
   /// x becomes a solution of A x = x.
@@ -78,7 +86,12 @@ private:
     void number_fill();
   };
   template <Index Rows>
-  void factor_blocks();
+  void factor_blocks(double least_pivot);
+  void factor_down_to(double least_pivot);
+  [[nodiscard]] bool is_doubtful() const;
+  void factor_weak_rows();
+  void read_row(std::size_t row, double* out) const;
+  void solve_strong(double* x);
   template <Index Rows>
   void substitute(double* given);
   template <class F>
@@ -90,6 +103,9 @@ private:
   std::vector<double> pivot_;           // by row in the factor; infinite of a row that is left out
   std::vector<double> relative_pivot_;  // by row of the matrix
   std::vector<double> work_;            // zero between calls
+  bool reveals_rank_ = false;
+  WeakRows weak_;            // empty unless rows are doubtful
+  std::vector<double> row_;  // of the matrix
 };
 
 }  // namespace carom

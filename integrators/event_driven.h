@@ -36,6 +36,10 @@ struct EventDriven {
   double capture_speed = 1e-4;
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;
+  /// After each step velocities are projected onto joints and closed contacts. A projection that changes them
+  /// by more than this part of the island's kinetic energy, beyond what the absolute tolerance explains, ends
+  /// the run with a SolverError that names the joints, > 0: the position is singular, or too near one.
+  double largest_projection = 1e-6;
   /// A run with more events per second of simulated time, over the last 1,000 events of an island, ends with
   /// a SolverError, > 0 [1/s].
   double event_limit = 1e6;

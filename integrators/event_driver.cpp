@@ -22,6 +22,7 @@ void check_options(const EventDriven& options) {
   positive("longest_step", options.longest_step, " s");
   positive("gap_tolerance", options.gap_tolerance, " m");
   positive("capture_speed", options.capture_speed, " m/s");
+  positive("largest_projection", options.largest_projection, "");
   positive("event_limit", options.event_limit, " 1/s");
   positive("step_limit", options.step_limit, " 1/s");
   if (options.evaluation_limit < 1) {

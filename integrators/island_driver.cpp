@@ -120,7 +120,7 @@ void IslandDriver::show_within_step(double target, DriverNews& news) {
   if (!motion_.joints().empty()) {
     bool changed = false;
     motion_.evaluate(target, seen_.data(), true);
-    projected = motion_.project(seen_, changed, news.shift);
+    projected = project(seen_, changed, news);
   }
   show(projected, target, news);
 }
@@ -238,20 +238,6 @@ void IslandDriver::accept_step(DriverNews& news) {
   if (motion_.closed().list().empty() && motion_.joints().empty()) return;
   motion_.evaluate(time_, y_.data(), true);
   if (settle(news)) flow_->correct(y_);
-}
-
-bool IslandDriver::settle(DriverNews& news) {
-  bool changed = false;
-  news.flows[EnergyFlow::projection] += motion_.project(y_, changed, news.shift);
-  return changed;
-}
-
-/// What has stopped slipping stands, and with it what can only move with it.
-void IslandDriver::settle_stopped(DriverNews& news) {
-  ContactMode& mode = motion_.closed().list()[next_.which].mode;
-  const ContactMode before = std::exchange(mode, ContactMode::stick);
-  settle(news);
-  mode = before;
 }
 
 void IslandDriver::go_to_event(DriverNews& news) {

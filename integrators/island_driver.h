@@ -138,6 +138,7 @@ private:
   [[nodiscard]] bool stands_still(const Found& found) const;
   void go_to_event(DriverNews& news);
   void accept_step(DriverNews& news);
+  double project(std::span<double> y, bool& changed, DriverNews& news);
   bool settle(DriverNews& news);
   void settle_stopped(DriverNews& news);
   [[nodiscard]] bool at_rest();

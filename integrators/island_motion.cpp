@@ -7,6 +7,38 @@
 
 namespace carom {
 
+namespace {
+
+/// False near a singular position where positions and velocities obey the joints to rounding. There rounding
+/// of the rows, divided by the distance a from the position, would move bodies, and divided by a^2 their
+/// velocities: by more than tolerances allow, so that steps of a multistep method would shrink to nothing.
+bool leaves_joints(const IslandJoints& joints, MotionWorkspace& work) {
+  constexpr double near_pivot = 1e-4;  // within some 0.01 rad
+  constexpr double rounding = 1e-14;   // of gaps and rates, against the numbers that they are made of
+  const auto near = [&](std::size_t row) {
+    const double pivot = joints.factors().pivot(row);
+    return pivot > dependent_pivot && pivot < near_pivot;
+  };
+  bool any_near = false;
+  for (std::size_t row = 0; row < joints.size() && !any_near; ++row) any_near = near(row);
+  if (!any_near) return true;
+  const Range v = joints.velocities();
+  double extent = 0.0, speed = 0.0;
+  for (const double x : work.trial.q) extent = std::max(extent, std::abs(x));
+  for (Index i = v.begin; i < v.end; ++i) {
+    speed = std::max(speed, std::abs(work.trial.v[i]) * std::max(work.lengths[i], 1.0));
+  }
+  work.multipliers.resize(joints.size());
+  joints.residuals(JointLevel::velocity, work.trial.v.data(), work.multipliers.data());
+  for (std::size_t row = 0; row < joints.size(); ++row) {
+    if (std::abs(joints.gap(row)) > rounding * extent) return true;
+    if (std::abs(work.multipliers[row]) > rounding * speed) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 MotionWorkspace::MotionWorkspace(const Assembly& assembly)
     : trial(assembly.layout()), evaluation(make_evaluation(assembly)), lengths(assembly.length_scales()) {
   const std::size_t size = trial.v.size();
@@ -34,6 +66,7 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       guards_(assembly, island) {
   std::vector<double> times;
   if (!joints_.empty()) {
+    joints_.factors().reveal_rank(true);
     closed_.bind(assembly, joints_);
     pressure_ = JointPressure(assembly, island, joints_);
     if (!pressure_.empty()) closed_.ask_least();  // bounds of friction follow from forces
@@ -195,6 +228,7 @@ void IslandMotion::rates(double time, const double* y, double* rates) {
 
 double IslandMotion::project(std::span<double> y, bool& changed, double& shift) {
   changed = false;
+  projection_energy_ = 0.0;
   if (closed_.list().empty() && joints_.empty()) return 0.0;
   MotionWorkspace& work = *work_;
   const Assembly& assembly = *assembly_;
@@ -204,7 +238,7 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   };
   clear(work.of_position);
   clear(work.of_velocity);
-  if (!joints_.empty()) {
+  if (!joints_.empty() && leaves_joints(joints_, work)) {
     joints_.hold(JointLevel::displacement, work.of_position.data());
     std::copy(work.trial.v.begin() + all.v.begin, work.trial.v.begin() + all.v.end,
               work.of_velocity.begin() + all.v.begin);
@@ -228,6 +262,7 @@ double IslandMotion::project(std::span<double> y, bool& changed, double& shift) 
   });
   for (Index i = all.v.begin; i < all.v.end; ++i) {
     lost -= (work.trial.v[i] + 0.5 * work.of_velocity[i]) * work.momentum[i];
+    projection_energy_ += 0.5 * work.of_velocity[i] * work.momentum[i];
     y[q_size_ + (i - all.v.begin)] += work.of_velocity[i];
   }
   return lost;
@@ -237,6 +272,14 @@ void IslandMotion::read_guards(std::vector<GuardMotion>& out) {
   if (guards_.count() == 0) return;
   const EvaluationContext at{*assembly_, work_->trial.view(), work_->evaluation, island_};
   guards_.read(at, work_->acceleration.data(), out);
+}
+
+double IslandMotion::total_kinetic_energy() const {
+  double sum = 0.0;
+  assembly_->for_bodies(island_, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    sum += kind.kinetic_energy(slots, work_->trial.v.data() + v);
+  });
+  return sum;
 }
 
 double IslandMotion::kinetic_energy(Index body) const {

@@ -88,6 +88,14 @@ public:
   /// reactions, and is out of date afterwards if y was changed. Returns the energy taken out [J]; adds the
   /// largest displacement [m] to `shift`.
   double project(std::span<double> y, bool& changed, double& shift);
+  /// Kinetic energy of the change of velocities in the last project() [J]: positive, and what it took where
+  /// nothing is prescribed.
+  [[nodiscard]] double projection_energy() const { return projection_energy_; }
+  /// Kinetic energy of the island in the workspace's state [J].
+  [[nodiscard]] double total_kinetic_energy() const;
+  /// Names of the joints that change the velocities of the workspace's state most in a projection, else of
+  /// the closed contacts; the workspace holds an evaluation.
+  [[nodiscard]] std::vector<std::string> projected_by();
   /// Where a law of time of joints jumps in its rate: the impulse that makes joints follow, contacts aside.
   /// The workspace holds an evaluation of y, and is out of date afterwards if y was changed: where a velocity
   /// is off by more than `noise`. Adds the work of the impulse [J]; its multipliers are left in the
@@ -178,6 +186,7 @@ private:
   std::vector<Index> row_multipliers_;  // unknowns of the Jacobian, by row of joints_; none: without force
   IslandGuards guards_;
   std::vector<Discontinuity> breaks_;
+  double projection_energy_ = 0.0;
   bool books_dissipative_ = false, books_external_ = false, depends_on_time_ = false, only_fields_ = true;
 };
 

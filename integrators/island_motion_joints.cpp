@@ -138,6 +138,29 @@ bool IslandMotion::follow_jump(std::span<double> y, double noise, double& work) 
   return true;
 }
 
+std::vector<std::string> IslandMotion::projected_by() {
+  // Of the largest impulse: less is what others cause.
+  constexpr double considerable = 0.1;
+  MotionWorkspace& work = *work_;
+  const Range v = assembly_->islands()[island_].v;
+  std::copy(work.trial.v.begin() + v.begin, work.trial.v.begin() + v.end, work.of_velocity.begin() + v.begin);
+  work.multipliers.assign(joints_.size(), 0.0);
+  joints_.hold(JointLevel::velocity, work.of_velocity.data(), work.multipliers.data());
+  double largest = 0.0;
+  for (const double impulse : work.multipliers) largest = std::max(largest, std::abs(impulse));
+  std::vector<std::string> names;
+  for (std::size_t joint = 0; joint < joints_.joints(); ++joint) {
+    bool takes_part = false;
+    for (Index row = joints_.first_row(joint); row < joints_.first_row(joint + 1); ++row) {
+      takes_part = takes_part || (largest > 0.0 && std::abs(work.multipliers[row]) >= considerable * largest);
+    }
+    if (takes_part) names.push_back(assembly_->system().name(joints_.joint(joints_.first_row(joint))));
+  }
+  if (!names.empty()) return names;
+  for (const ClosedContact& contact : closed_.list()) names.push_back(finder_->name(contact.at.key));
+  return names;
+}
+
 std::string IslandMotion::driven_by() const {
   std::string text;
   for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {

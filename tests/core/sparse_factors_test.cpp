@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -248,6 +249,46 @@ TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
     // What is solved for is not large: as large as what the best solution needs.
     const Eigen::VectorXd least = matrix.completeOrthogonalDecomposition().solve(right);
     EXPECT_LE(found.cwiseAbs().maxCoeff(), 100.0 * (1.0 + least.cwiseAbs().maxCoeff()));
+  }
+}
+
+// Cranks on one coupler at an angle a from their line, that turn at x_k, the coupler moving by y, turning by
+// phi at places c_k: rows a (x_k - x_0) and x_k - y - c_k phi. All but one of the former follow from the
+// others; eliminated first, they leave rounding/a^2 where nothing should be left.
+TEST(SparseFactors, WeakRowsDoNotPassForIndependent) {
+  Random random(17);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Eigen::Index cranks = 3 + random.below(6);
+    const double a = std::pow(10.0, random.uniform(-4.0, -1.0));
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * cranks - 1, cranks + 2);
+    for (Eigen::Index k = 0; k < cranks; ++k) {
+      rows(cranks - 1 + k, k) = 1.0;
+      rows(cranks - 1 + k, cranks) = -1.0;
+      rows(cranks - 1 + k, cranks + 1) = k == 0 ? 0.0 : -random.uniform(0.5, 3.0);
+      if (k == 0) continue;
+      rows(k - 1, k) = a;
+      rows(k - 1, 0) = -a;
+    }
+    // Twins, so that no order of elimination is a good one.
+    const Eigen::Index count = rows.rows();
+    rows.conservativeResize(2 * count, Eigen::NoChange);
+    rows.bottomRows(count) = rows.topRows(count);
+    const Eigen::MatrixXd matrix = rows * rows.transpose();
+    const Entries entries = entries_of(matrix, random);
+    SparseFactors factors;
+    factors.reveal_rank(true);
+    const Places places = analyse(factors, static_cast<Index>(matrix.rows()), entries);
+    set_values(factors, places, entries, matrix);
+    factors.factor();
+    Eigen::Index independent = 0;
+    for (std::size_t row = 0; row < factors.size(); ++row) {
+      independent += factors.pivot(row) > dependent_pivot ? 1 : 0;
+    }
+    EXPECT_EQ(independent, cranks + 1) << trial << ", a = " << a;
+    // What the rows ask of velocities that they allow but for a small change.
+    const Eigen::VectorXd change = random_vector(rows.cols(), random);
+    const Eigen::VectorXd left = rows * (change - rows.transpose() * solved(factors, rows * change));
+    EXPECT_LE(left.cwiseAbs().maxCoeff(), 1e-13 / a) << trial << ", a = " << a;
   }
 }
 

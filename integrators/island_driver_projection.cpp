@@ -1,0 +1,38 @@
+// Problem: take what is left against the constraints out of an island's motion, and no more than that.
+
+#include <carom/integrators/island_driver.h>
+
+#include <utility>
+
+namespace carom {
+
+/// Projects a state that the workspace holds an evaluation of; returns the energy taken out. What tolerances
+/// leave is small, and near singular positions magnified by up to 1/sqrt(dependent_pivot).
+double IslandDriver::project(std::span<double> y, bool& changed, DriverNews& news) {
+  const double lost = motion_.project(y, changed, news.shift);
+  const double taken = motion_.projection_energy();
+  const double tolerated = 0.5 * motion_.absolute_tolerances().back() * options_.absolute_tolerance;
+  if (!(taken > tolerated / dependent_pivot)) return lost;
+  const double present = motion_.total_kinetic_energy();
+  if (taken <= options_.largest_projection * present) return lost;
+  fail("projecting velocities onto the constraints changes " + to_text(taken) + " J of " + to_text(present) +
+           " J kinetic energy; allowed: up to largest_projection, " + to_text(options_.largest_projection) +
+           " of it. The position is singular, or too near one",
+       motion_.projected_by());
+}
+
+bool IslandDriver::settle(DriverNews& news) {
+  bool changed = false;
+  news.flows[EnergyFlow::projection] += project(y_, changed, news);
+  return changed;
+}
+
+/// What has stopped slipping stands, and with it what can only move with it.
+void IslandDriver::settle_stopped(DriverNews& news) {
+  ContactMode& mode = motion_.closed().list()[next_.which].mode;
+  const ContactMode before = std::exchange(mode, ContactMode::stick);
+  settle(news);
+  mode = before;
+}
+
+}  // namespace carom
