@@ -1,5 +1,6 @@
 // Problem: impacts at one instant, where they come from and where they lead to: accumulations, the ledger.
 
+#include <carom/contact/impact_restitution.h>
 #include <carom/integrators/island_driver.h>
 
 #include <algorithm>
@@ -80,6 +81,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
       contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     }
   }
+  share_impact_restitution(touching, velocity, 0.0);
   const bool captured = fastest <= options_.capture_speed;
   if (captured) take_captured(first, last);
   const double energy_before = motion_.kinetic_energy(touching.front().body);

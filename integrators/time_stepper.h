@@ -176,7 +176,11 @@ private:
   void hold_velocities(Index island);
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
-  void book_rubbing(const ContactCluster& cluster, std::size_t contact);
+  // What friction in a joint does, and the size of the terms that it is the sum of [J].
+  struct FrictionWork {
+    double work, scale;
+  };
+  FrictionWork book_rubbing(const ContactCluster& cluster, std::size_t contact);
   void rate(Index island, const State& state, double step, double contraction);
 
   void demand_finite_loads(Index island, const StateView& at, const State& state, double step);

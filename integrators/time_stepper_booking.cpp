@@ -123,7 +123,9 @@ void TimeStepper::book_contacts(const State& state, double step) {
     double scale = 0.0;
     for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
       if (cluster.contacts()[contact].rubs()) {
-        book_rubbing(cluster, contact);
+        const FrictionWork work = book_rubbing(cluster, contact);
+        gain += work.work;
+        scale += work.scale;
         continue;
       }
       record(cluster, contact);
@@ -150,16 +152,22 @@ void TimeStepper::book_contacts(const State& state, double step) {
   }
 }
 
-/// Friction in a joint; the velocities halfway are at hand.
-void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact) {
+/// Friction in a joint; the velocities halfway are at hand. Returns its share in the gain of an impact.
+TimeStepper::FrictionWork TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact) {
   const Contact& at = cluster.contacts()[contact];
+  const auto place = static_cast<std::size_t>(cluster.first_row(contact) + 1);
   JointReaction reaction;
-  reaction.moment = cluster.impulses()[static_cast<std::size_t>(cluster.first_row(contact) + 1)];
-  flows_[EnergyFlow::joint_friction] -= reaction.moment * at.times(1, middle_.v.data());
+  reaction.moment = cluster.impulses()[place];
+  const double mean_rate = at.times(1, middle_.v.data());
+  const FrictionWork work{
+      reaction.moment * mean_rate,
+      2.0 * std::abs(reaction.moment) * std::max(std::abs(cluster.before()[place]), std::abs(mean_rate))};
+  flows_[EnergyFlow::joint_friction] -= work.work;
   report_.joint_impulses.push_back(
       {JointId{at.key.of.serial, assembly_->system().token()}, reaction, trial_.time});
   const ContactMode mode = cluster.modes()[contact];
   rubbing_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
+  return work;
 }
 
 void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {

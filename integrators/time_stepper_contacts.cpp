@@ -1,6 +1,7 @@
 // Problem: which contacts take part in a step, their impulses against the guess of the loads, and a guess
 // that is good around them too.
 
+#include <carom/contact/impact_restitution.h>
 #include <carom/integrators/time_stepper.h>
 
 #include <algorithm>
@@ -32,6 +33,10 @@ void TimeStepper::find_contacts(Index island, const State& state) {
       if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
       contact.friction = contact.law.sticking_friction();
     }
+  }
+  // Friction in joints comes last.
+  if (contacts_.back().rubs()) {
+    share_impact_restitution(contacts_, state.v.data(), options_.capture_speed);
   }
   response_.resize(trial_.v.size());
   free_.resize(trial_.v.size());

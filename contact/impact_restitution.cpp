@@ -1,0 +1,28 @@
+#include <carom/contact/impact_restitution.h>
+
+namespace carom {
+
+namespace {
+
+// Where contact and friction move together (a mechanism of one degree of freedom), both mean velocities
+// vanish and every friction impulse within its bound leads to the same motion. A restitution less by a few
+// roundings chooses the one against the rate after the impact.
+constexpr double chooses_rate_after = 1.0 - 1e-13;
+
+}  // namespace
+
+void share_impact_restitution(std::span<Contact> contacts, const double* velocities, double least_speed) {
+  double fastest = least_speed, restitution = 0.0;
+  for (const Contact& contact : contacts) {
+    if (contact.rubs()) continue;
+    const double approach = -contact.velocity(0, velocities);
+    if (!(approach > fastest)) continue;
+    fastest = approach;
+    restitution = contact.law.normal_restitution;
+  }
+  for (Contact& contact : contacts) {
+    if (contact.rubs()) contact.law.tangential_restitution = chooses_rate_after * restitution;
+  }
+}
+
+}  // namespace carom
