@@ -20,21 +20,24 @@ namespace {
 }
 
 void demand_positive(double value, std::string_view function, std::string_view quantity, const char* unit) {
-  if (std::isfinite(value) && value > 0.0) return;
-  refuse(function, quantity, to_text(value) + unit, "finite and > 0");
+  if (is_admissible(value) && value > 0.0) return;
+  refuse(function, quantity, to_text(value) + unit, allowed_instead(value, "finite and > 0"));
 }
 
 void demand_finite(const Vec<2>& value, std::string_view function, std::string_view quantity) {
-  if (value.allFinite()) return;
-  refuse(function, quantity, "(" + to_text(value[0]) + ", " + to_text(value[1]) + ") m", "finite numbers");
+  if (is_admissible(value[0]) && is_admissible(value[1])) return;
+  const double worse = is_admissible(value[0]) ? value[1] : value[0];
+  refuse(function, quantity, "(" + to_text(value[0]) + ", " + to_text(value[1]) + ") m",
+         allowed_instead(worse, "finite numbers"));
 }
 
 /// Demands mass properties that can be; without inertia they are a point mass.
 void demand_possible(const MassProperties<2>& properties, std::string_view function,
                      const std::string& part) {
   demand_positive(properties.mass, function, part + "mass", " kg");
-  if (!(std::isfinite(properties.inertia) && properties.inertia >= 0.0)) {
-    refuse(function, part + "moment of inertia", to_text(properties.inertia) + " kg m^2", "finite and >= 0");
+  if (!(is_admissible(properties.inertia) && properties.inertia >= 0.0)) {
+    refuse(function, part + "moment of inertia", to_text(properties.inertia) + " kg m^2",
+           allowed_instead(properties.inertia, "finite and >= 0"));
   }
   demand_finite(properties.centre, function, part + "centre");
 }

@@ -11,6 +11,12 @@ namespace carom::generic {
 
 void RigidBodyKind<2>::add(const RigidBody<2>& part, const PartCheck& check) {
   check.positive(part.mass.mass, "mass", "kg");
+  if (std::isnan(part.mass.inertia)) {
+    check.refuse(
+        "moment of inertia", "nan kg m^2, it is missing",
+        "mass properties made by disc(), rod(), box(), ring(), solid_sphere(), thin_shell(), polygon() "
+        "or compose(), e.g. RigidBody{.mass = disc(1.0, 0.5)}");
+  }
   check.positive(part.mass.inertia, "moment of inertia", "kg m^2");
   // The body's frame has the centre of mass as origin; what is left by composing parts is rounding.
   const double gyration_radius = std::sqrt(part.mass.inertia / part.mass.mass);

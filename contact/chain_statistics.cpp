@@ -1,4 +1,5 @@
 #include <carom/contact/chain_statistics.h>
+#include <carom/core/enum_name.h>
 
 #include <algorithm>
 #include <iomanip>
@@ -6,7 +7,7 @@
 
 namespace carom {
 
-std::string_view to_string(SolverId solver) { return solver_names[static_cast<std::size_t>(solver)]; }
+std::string_view to_string(SolverId solver) { return enum_name(solver_names, solver); }
 
 ChainStatistics& ChainStatistics::operator+=(const ChainStatistics& other) {
   problems += other.problems;

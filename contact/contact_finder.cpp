@@ -1,4 +1,5 @@
 #include <carom/contact/contact_finder.h>
+#include <carom/contact/contact_name.h>
 #include <carom/core/space.h>
 
 #include <algorithm>
@@ -122,22 +123,7 @@ bool ContactFinder::needs_rotations() const {
 }
 
 std::string ContactFinder::name(const ContactKey& key) const {
-  const System& system = assembly_->system();
-  const Index token = system.token();
-  if (key.of.owner == FeatureKey::Owner::joint) {
-    const JointKind& kind = system.joint_kinds().kind_of(key.of.serial);
-    const std::string name = system.name(JointId{key.of.serial, token});
-    return kind.rubs() ? name : name + " (" + std::string(kind.limit_label(key.of.feature)) + ")";
-  }
-  std::string text =
-      key.of.owner == FeatureKey::Owner::body
-          ? system.name(BodyId{key.of.serial, token})
-          : system.name(ShapeId{key.of.serial, token}) + " (feature " + std::to_string(key.of.feature) + ")";
-  if (key.of.owner == FeatureKey::Owner::shape) {
-    const auto place = system.shape_kinds().place(key.of.serial);
-    text += " of " + system.name(system.shape_kinds().entries()[place.entry].kind->body(place.slot));
-  }
-  return text + " on " + system.name(ObstacleId{key.against.serial, token});
+  return contact_name(assembly_->system(), key);
 }
 
 void ContactFinder::find(Index island, const StateView& state, const Evaluation& evaluation, double margin,

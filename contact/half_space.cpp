@@ -45,7 +45,7 @@ Vec<D> point_of(const ObstacleMotion& motion) {
 template <int D>
 void HalfSpaceKind<D>::add(const HalfSpace<D>& part, const PartCheck& check) {
   check.finite({part.point.data(), D}, "point", "m");
-  check.finite({part.normal.data(), D}, "normal", "");
+  check.direction({part.normal.data(), D}, "normal");
   check.material(part.material);
   const double length = part.normal.stableNorm();
   if (!(length > 0.0)) check.refuse("normal", "zero", "a direction of any length > 0");

@@ -294,10 +294,9 @@ State Assembly::initial_state() const {
   return state;
 }
 
-void check_state(const Assembly& assembly, const State& state) {
+void check_sizes(const Assembly& assembly, const State& state) {
   const Layout& layout = *assembly.layout();
   const PartCheck check("state", assembly.system());
-  check.finite(state.time, "time", "s");
   if (state.q.size() != layout.q_size() || state.v.size() != layout.v_size() ||
       state.z.size() != layout.z_size()) {
     const auto sizes = [](auto q, auto v, auto z) {
@@ -307,6 +306,15 @@ void check_state(const Assembly& assembly, const State& state) {
                  sizes(state.q.size(), state.v.size(), state.z.size()),
                  sizes(layout.q_size(), layout.v_size(), layout.z_size()));
   }
+  if (state.layout() != nullptr && state.layout()->token() == layout.token()) return;
+  check.refuse("model", state.layout() == nullptr ? "none" : "another one", "a state of this model");
+}
+
+void check_state(const Assembly& assembly, const State& state) {
+  const Layout& layout = *assembly.layout();
+  const PartCheck check("state", assembly.system());
+  check_sizes(assembly, state);
+  check.finite(state.time, "time", "s");
   for (const InternalSlot& slot : layout.internals()) {
     const PartCheck element_check(
         "state of " + assembly.system().name(ElementId{slot.serial, assembly.system().token()}),
@@ -316,7 +324,7 @@ void check_state(const Assembly& assembly, const State& state) {
   for (Index body = 0; body < layout.bodies().size(); ++body) {
     const BodySlot& slot = layout.bodies()[body];
     const auto all_finite = [](const double* numbers, Index count) {
-      return std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); });
+      return std::all_of(numbers, numbers + count, is_admissible);
     };
     if (all_finite(state.q.data() + slot.q, slot.q_size) && all_finite(state.v.data() + slot.v, slot.v_size))
       continue;

@@ -254,6 +254,8 @@ CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const
 /// Resizes a workspace for an assembly.
 [[nodiscard]] CAROM_API Evaluation make_evaluation(const Assembly& assembly);
 
+/// Demands a state of this model: its sizes, and its identities. Throws ModelError.
+CAROM_API void check_sizes(const Assembly& assembly, const State& state);
 /// Demands a state of this layout with finite numbers. Throws ModelError naming the body and the value.
 CAROM_API void check_state(const Assembly& assembly, const State& state);
 

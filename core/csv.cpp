@@ -1,5 +1,6 @@
 #include <carom/core/csv.h>
 #include <carom/core/errors.h>
+#include <carom/core/whole_file.h>
 
 #include <array>
 #include <charconv>
@@ -28,6 +29,7 @@ void append_csv(std::string& line, std::string_view text) {
 
 CsvReader::CsvReader(std::string_view what, const std::string& path) : name_(what) {
   name_ += " '" + path + "'";
+  if (is_special_file(path)) throw FileError(name_ + " cannot be read: it is not a regular file");
   std::ifstream file(path, std::ios::binary);
   if (file) text_.assign(std::istreambuf_iterator<char>(file), {});
   if (!file) throw FileError(name_ + " cannot be read");

@@ -1,4 +1,6 @@
 #include <carom/core/energy_ledger.h>
+#include <carom/core/enum_name.h>
+#include <carom/core/errors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +12,12 @@ namespace carom {
 std::string_view to_string(StoredEnergy term) {
   constexpr std::array<std::string_view, stored_energy_count> names{"kinetic", "gravity", "elastic",
                                                                     "potential"};
-  return names[static_cast<std::size_t>(term)];
+  return enum_name(names, term);
+}
+
+void refuse_term(std::size_t place, std::size_t count) {
+  throw ModelError("energy: term is " + std::to_string(place) + "; allowed: an enumerator, 0 to " +
+                   std::to_string(count - 1));
 }
 
 std::string_view to_string(EnergyFlow term) {
@@ -22,7 +29,7 @@ std::string_view to_string(EnergyFlow term) {
       "joint_friction",    "rolling",
       "accumulation",      "projection",
       "mode_switch",       "coupling_discretisation"};
-  return names[static_cast<std::size_t>(term)];
+  return enum_name(names, term);
 }
 
 void EnergyLedger::open(const StoredEnergies& stored) {

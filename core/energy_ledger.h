@@ -35,7 +35,9 @@ public:
   /// Total when the ledger was opened [J].
   [[nodiscard]] double initial() const { return initial_; }
   /// One flow, summed since the start [J].
-  [[nodiscard]] double flow(EnergyFlow term) const { return flows_[static_cast<std::size_t>(term)].value(); }
+  [[nodiscard]] double flow(EnergyFlow term) const {
+    return flows_[term_place(term, energy_flow_count)].value();
+  }
   /// Sum of the losses since the start [J].
   [[nodiscard]] double lost() const;
   /// Residual [J], by the equation above: zero up to rounding if no term is missing.

@@ -42,6 +42,16 @@ inline constexpr std::size_t energy_flow_count = 14;
 [[nodiscard]] CAROM_API std::string_view to_string(StoredEnergy term);
 [[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);  ///< likewise
 
+/// Throws the ModelError of a value that is no term.
+[[noreturn]] CAROM_API void refuse_term(std::size_t place, std::size_t count);
+/// Number of a term among `count`. Throws ModelError for a value that is none of them.
+template <class Term>
+[[nodiscard]] constexpr std::size_t term_place(Term term, std::size_t count) {
+  const auto place = static_cast<std::size_t>(term);
+  if (place >= count) refuse_term(place, count);
+  return place;
+}
+
 /// True for the flows that are counted as gains.
 [[nodiscard]] constexpr bool is_gain(EnergyFlow flow) {
   return flow == EnergyFlow::external || flow == EnergyFlow::intervention;
@@ -51,9 +61,13 @@ inline constexpr std::size_t energy_flow_count = 14;
 struct StoredEnergies {
   std::array<double, stored_energy_count> values{};
 
-  /// One of them.
-  [[nodiscard]] double& operator[](StoredEnergy term) { return values[static_cast<std::size_t>(term)]; }
-  [[nodiscard]] double operator[](StoredEnergy term) const { return values[static_cast<std::size_t>(term)]; }
+  /// One of them. Throws ModelError for a value that is no term.
+  [[nodiscard]] double& operator[](StoredEnergy term) {
+    return values[term_place(term, stored_energy_count)];
+  }
+  [[nodiscard]] double operator[](StoredEnergy term) const {
+    return values[term_place(term, stored_energy_count)];
+  }
   /// Sum of all forms.
   [[nodiscard]] double total() const {
     double sum = 0.0;
@@ -75,9 +89,11 @@ struct StoredEnergies {
 struct EnergyFlows {
   std::array<double, energy_flow_count> values{};
 
-  /// One of them.
-  [[nodiscard]] double& operator[](EnergyFlow term) { return values[static_cast<std::size_t>(term)]; }
-  [[nodiscard]] double operator[](EnergyFlow term) const { return values[static_cast<std::size_t>(term)]; }
+  /// One of them. Throws ModelError for a value that is no term.
+  [[nodiscard]] double& operator[](EnergyFlow term) { return values[term_place(term, energy_flow_count)]; }
+  [[nodiscard]] double operator[](EnergyFlow term) const {
+    return values[term_place(term, energy_flow_count)];
+  }
 };
 
 }  // namespace carom

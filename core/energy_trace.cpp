@@ -1,4 +1,5 @@
 #include <carom/core/energy_trace.h>
+#include <carom/core/enum_name.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
 
@@ -51,7 +52,7 @@ std::size_t index_of(std::string_view name) {
 
 std::string_view unit(Quantity quantity) {
   constexpr std::array<std::string_view, 5> units{"s", "J", "N s", "N m s", "m"};
-  return units[static_cast<std::size_t>(quantity)];
+  return enum_name(units, quantity);
 }
 
 double TraceRow::scale(Quantity quantity) const {

@@ -173,6 +173,7 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
 }  // namespace
 
 JointClosure close_joints(const Assembly& assembly, State& state) {
+  check_sizes(assembly, state);
   JointClosure closure;
   if (assembly.joint_kinds().empty()) return closure;
   const std::vector<double> lengths = assembly.length_scales();
@@ -183,6 +184,7 @@ JointClosure close_joints(const Assembly& assembly, State& state) {
 }
 
 Mobility mobility(const Assembly& assembly, const State& state) {
+  check_sizes(assembly, state);
   Mobility result;
   result.velocities = assembly.layout()->v_size();
   Evaluation evaluation = make_evaluation(assembly);

@@ -20,7 +20,8 @@ struct JointClosure {
 /// Projects the positions of a state onto the joints, and then its velocities, both by the smallest changes
 /// in the mass norm; bodies with System::keeps_place() are not moved. A state that satisfies the joints up to
 /// rounding is not changed. Throws ModelError naming the joint that cannot be closed, its gap, and the joints
-/// that contradict it.
+/// that contradict it; and for a state of
+/// another model.
 CAROM_API JointClosure close_joints(const Assembly& assembly, State& state);
 
 /// A joint whose rows depend linearly on those of others: its reactions, and theirs, are not unique.
@@ -38,7 +39,8 @@ struct Mobility {
   std::vector<RedundantJoint> redundant;  ///< by the order of assembly
 };
 
-/// Counts the degrees of freedom at a state, without contacts.
+/// Counts the degrees of freedom at a state, without contacts. Throws ModelError for a state of another
+/// model.
 [[nodiscard]] CAROM_API Mobility mobility(const Assembly& assembly, const State& state);
 
 }  // namespace carom

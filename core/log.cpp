@@ -1,3 +1,4 @@
+#include <carom/core/enum_name.h>
 #include <carom/core/errors.h>
 #include <carom/core/log.h>
 
@@ -15,7 +16,7 @@ namespace carom {
 
 std::string_view to_string(LogLevel level) {
   constexpr std::array<std::string_view, 6> names{"trace", "debug", "info", "warning", "error", "off"};
-  return names[static_cast<std::size_t>(level)];
+  return enum_name(names, level);
 }
 
 namespace {
@@ -92,6 +93,10 @@ private:
 };
 
 Log::Log(LogSink sink, LogLevel level) {
+  if (level > LogLevel::off) {
+    throw ModelError("log: level is " + std::to_string(static_cast<int>(level)) +
+                     "; allowed: one of LogLevel, trace (0) to off (5)");
+  }
   if (!sink || level == LogLevel::off) return;
   level_ = level;
   logger_ = std::make_shared<Logger>(std::move(sink));

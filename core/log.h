@@ -35,6 +35,7 @@ public:
   Log() = default;
   /// \param sink takes the lines; an empty one makes a quiet log
   /// \param level the lowest level that passes
+  /// Throws ModelError for a value that is no level.
   explicit Log(LogSink sink, LogLevel level = LogLevel::info);
   Log(const Log&) = default;
   /// A log that was moved from is quiet.

@@ -24,7 +24,36 @@ std::string with_unit(double value, std::string_view unit) {
   return text;
 }
 
+template <class K, class Identity>
+std::string with_removal(const System& system, const Registry<K>& parts, Identity id) {
+  std::string text = system.name(id);
+  const bool was_given = id.token == system.token() && parts.kind_ever(id.serial) != nullptr;
+  if (was_given && !system.contains(id)) text += ", which was removed";
+  return text;
+}
+
 }  // namespace
+
+std::string allowed_instead(double value, std::string_view allowed) {
+  if (!std::isfinite(value) || is_admissible(value)) return std::string(allowed);
+  return "a number of a magnitude up to " + to_text(largest_magnitude);
+}
+
+std::string refused_name(const System& system, BodyId id) {
+  return with_removal(system, system.body_kinds(), id);
+}
+std::string refused_name(const System& system, ElementId id) {
+  return with_removal(system, system.force_kinds(), id);
+}
+std::string refused_name(const System& system, JointId id) {
+  return with_removal(system, system.joint_kinds(), id);
+}
+std::string refused_name(const System& system, ShapeId id) {
+  return with_removal(system, system.shape_kinds(), id);
+}
+std::string refused_name(const System& system, ObstacleId id) {
+  return with_removal(system, system.obstacle_kinds(), id);
+}
 
 void PartCheck::refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const {
   std::string message = part_;
@@ -33,7 +62,8 @@ void PartCheck::refuse(std::string_view quantity, std::string_view value, std::s
 }
 
 void PartCheck::finite(double value, std::string_view quantity, std::string_view unit) const {
-  if (!std::isfinite(value)) refuse(quantity, with_unit(value, unit), "a finite number");
+  if (is_admissible(value)) return;
+  refuse(quantity, with_unit(value, unit), allowed_instead(value, "a finite number"));
 }
 
 void PartCheck::finite(std::span<const double> values, std::string_view quantity,
@@ -42,11 +72,19 @@ void PartCheck::finite(std::span<const double> values, std::string_view quantity
 }
 
 void PartCheck::positive(double value, std::string_view quantity, std::string_view unit) const {
-  if (!(std::isfinite(value) && value > 0.0)) refuse(quantity, with_unit(value, unit), "finite and > 0");
+  if (is_admissible(value) && value > 0.0) return;
+  refuse(quantity, with_unit(value, unit), allowed_instead(value, "finite and > 0"));
 }
 
 void PartCheck::non_negative(double value, std::string_view quantity, std::string_view unit) const {
-  if (!(std::isfinite(value) && value >= 0.0)) refuse(quantity, with_unit(value, unit), "finite and >= 0");
+  if (is_admissible(value) && value >= 0.0) return;
+  refuse(quantity, with_unit(value, unit), allowed_instead(value, "finite and >= 0"));
+}
+
+void PartCheck::direction(std::span<const double> values, std::string_view quantity) const {
+  for (const double value : values) {
+    if (!std::isfinite(value)) refuse(quantity, to_text(value), "a finite number");
+  }
 }
 
 void PartCheck::between(double value, double lower, double upper, std::string_view quantity) const {
@@ -85,7 +123,12 @@ void PartCheck::body(BodyId id, std::string_view quantity, bool may_be_ground) c
   }
   if (!id.valid()) refuse(quantity, "not given", "a body of this system");
   if (id.token != system_->token()) refuse(quantity, "a body of another system", "a body of this system");
-  if (!system_->contains(id)) refuse(quantity, "a body that was removed", "a body of this system");
+  if (system_->contains(id)) return;
+  const bool was_removed = system_->body_kinds().kind_ever(id.serial) != nullptr;
+  refuse(quantity,
+         was_removed ? "a body that was removed, " + system_->name(id)
+                     : "a body that was never given, #" + std::to_string(id.serial),
+         "a body of this system");
 }
 
 void PartCheck::oriented_body(BodyId id, std::string_view quantity) const {

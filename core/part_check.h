@@ -20,6 +20,26 @@ struct Surface;
 /// The shortest text of a number that reads back to the same double.
 [[nodiscard]] CAROM_API std::string to_text(double value);
 
+/// Numbers that describe parts, states and options are not larger than this in magnitude: their squares, and
+/// products of two of them, stay within the range of double.
+inline constexpr double largest_magnitude = 1e150;
+
+/// True for a finite number of a magnitude up to largest_magnitude.
+[[nodiscard]] constexpr bool is_admissible(double value) {
+  return value >= -largest_magnitude && value <= largest_magnitude;
+}
+
+/// What a message says is allowed in the place of a number that was refused: `allowed`, unless the number is
+/// finite and too large.
+[[nodiscard]] CAROM_API std::string allowed_instead(double value, std::string_view allowed);
+
+/// Text for an identity that is refused: the name of the part, and that it was removed, if it was.
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, BodyId id);
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ElementId id);   ///< likewise
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, JointId id);     ///< likewise
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ShapeId id);     ///< likewise
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ObstacleId id);  ///< likewise
+
 /// Checks one part. `part` is the text by which messages name it, e.g. "particle 'upper'".
 class CAROM_API PartCheck {
 public:
@@ -33,14 +53,16 @@ public:
   /// Throws the ModelError "<part>: <quantity> is <value>; allowed: <allowed>".
   [[noreturn]] void refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const;
 
-  /// Demands a finite number.
+  /// Demands a finite number; as all others not above largest_magnitude in magnitude.
   void finite(double value, std::string_view quantity, std::string_view unit) const;
-  /// Demands finite numbers.
+  /// Demands finite numbers, likewise.
   void finite(std::span<const double> values, std::string_view quantity, std::string_view unit) const;
   /// Demands a finite number > 0.
   void positive(double value, std::string_view quantity, std::string_view unit) const;
   /// Demands a finite number >= 0.
   void non_negative(double value, std::string_view quantity, std::string_view unit) const;
+  /// Demands the numbers of a direction, whose length does not matter: finite, of any magnitude.
+  void direction(std::span<const double> values, std::string_view quantity) const;
   /// Demands a number in [lower, upper].
   void between(double value, double lower, double upper, std::string_view quantity) const;
   /// Demands times that are finite and ascending.

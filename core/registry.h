@@ -20,11 +20,12 @@ namespace carom {
 template <class K>
 class Registry {
 public:
-  /// One kind and the serial numbers of its parts, slot by slot.
+  /// One kind and the serial numbers of its parts, slot by slot; `given` has those of removed parts too.
   struct Entry {
     std::type_index type;
     std::unique_ptr<K> kind;
     SerialList serials;
+    SerialList given;
   };
   /// Place of a part.
   struct Place {
@@ -37,7 +38,7 @@ public:
   Registry(const Registry& other) : next_serial_(other.next_serial_) {
     entries_.reserve(other.entries_.size());
     for (const Entry& entry : other.entries_)
-      entries_.push_back({entry.type, entry.kind->clone(), entry.serials});
+      entries_.push_back({entry.type, entry.kind->clone(), entry.serials, entry.given});
   }
   Registry(Registry&&) noexcept = default;
   Registry& operator=(Registry other) noexcept {
@@ -59,9 +60,10 @@ public:
     } else {
       auto kind = std::make_unique<Concrete>();
       kind->add(part, check);
-      entries_.push_back({type, std::move(kind), {}});
+      entries_.push_back({type, std::move(kind), {}, {}});
     }
-    entries_[at].serials.push_back(next_serial_++);
+    entries_[at].serials.push_back(next_serial_);
+    entries_[at].given.push_back(next_serial_++);
   }
 
   /// Serial number the next part will get.
@@ -76,6 +78,13 @@ public:
       if (slot != none) return {entry, slot};
     }
     return {};
+  }
+  /// Kind of a part that is contained or was removed; null if no part ever had this serial number.
+  [[nodiscard]] const K* kind_ever(Index serial) const {
+    for (const Entry& entry : entries_) {
+      if (entry.given.find(serial) != none) return entry.kind.get();
+    }
+    return nullptr;
   }
   /// Kind of a part that is contained.
   [[nodiscard]] const K& kind_of(Index serial) const { return *entries_[place(serial).entry].kind; }

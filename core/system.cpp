@@ -47,13 +47,14 @@ template <class Identity, class K>
 std::string System::name_in(Role role, const Registry<K>& registry, Identity id) const {
   if (!id.valid()) return "part that was never given";
   if (id.token != token_) return "part of another system";
-  if (!registry.contains(id.serial)) return "removed part #" + std::to_string(id.serial);
+  const K* const kind = registry.kind_ever(id.serial);
+  if (kind == nullptr) return "part that was never given";
   const auto names = names_.find(role);
   std::string given;
   if (names != names_.end()) {
     if (const auto found = names->second.find(id.serial); found != names->second.end()) given = found->second;
   }
-  return describe(registry.kind_of(id.serial).label(), given, id.serial);
+  return describe(kind->label(), given, id.serial);
 }
 
 std::string System::name(BodyId id) const {
@@ -65,6 +66,10 @@ std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_
 std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, obstacles_, id); }
 
 std::string System::given_name(BodyId id) const {
+  if (id == ground) return {};
+  if (id.token != token_ || bodies_.kind_ever(id.serial) == nullptr) {
+    PartCheck("name of a body", *this).body(id, "body", false);
+  }
   const auto names = names_.find(Role::body);
   if (names == names_.end()) return {};
   const auto found = names->second.find(id.serial);
@@ -90,7 +95,18 @@ ObstacleId System::obstacle(std::string_view name) const {
 }
 
 bool System::has_orientation(BodyId id) const {
-  return contains(id) && bodies_.kind_of(id.serial).has_orientation();
+  PartCheck("orientation of a body", *this).body(id, "body", true);
+  return id != ground && bodies_.kind_of(id.serial).has_orientation();
+}
+
+BodyId System::body_of(ShapeId shape) const {
+  if (shape.token == token_) {
+    if (const auto place = shapes_.place(shape.serial); place.slot != none)
+      return shapes_.entries()[place.entry].kind->body(place.slot);
+    if (const auto found = former_carriers_.find(shape.serial); found != former_carriers_.end())
+      return found->second;
+  }
+  throw ModelError("body of a shape: shape is " + name(shape) + "; allowed: a shape of this system");
 }
 
 template <class Identity, class K>
@@ -101,9 +117,9 @@ void System::remove_from(Role role, Registry<K>& registry, Identity id, std::str
                      ": it is not in this system; allowed: a part of this system");
   }
   registry.remove(id.serial);
+  // The part keeps its name in messages; another one may take it.
   if (const auto found = names_[role].find(id.serial); found != names_[role].end()) {
     serials_by_name_[role].erase(found->second);
-    names_[role].erase(found);
   }
 }
 
@@ -157,7 +173,11 @@ void System::remove(JointId id) {
   }
   remove_from(Role::joint, joints_, id, "joint");
 }
-void System::remove(ShapeId id) { remove_from(Role::shape, shapes_, id, "shape"); }
+void System::remove(ShapeId id) {
+  const BodyId carrier = contains(id) ? body_of(id) : BodyId{};
+  remove_from(Role::shape, shapes_, id, "shape");
+  former_carriers_.emplace(id.serial, carrier);
+}
 void System::remove(ObstacleId id) {
   remove_from(Role::obstacle, obstacles_, id, "obstacle");
   surfaces_.erase(id.serial);
@@ -170,6 +190,11 @@ void System::keep_place(BodyId body, bool keep) {
   } else {
     kept_.erase(body.serial);
   }
+}
+
+bool System::keeps_place(BodyId body) const {
+  PartCheck("place to keep", *this).body(body, "body", false);
+  return kept_.contains(body.serial);
 }
 
 MaterialId System::material(std::string_view name) {
@@ -191,7 +216,8 @@ void System::between(MaterialId a, MaterialId b, const Surface& surface) {
 
 std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
   if (!contains(obstacle))
-    throw ModelError("law of contact: obstacle is " + name(obstacle) + "; allowed: one of this system");
+    throw ModelError("law of contact: obstacle is " + refused_name(*this, obstacle) +
+                     "; allowed: one of this system");
   PartCheck("law of contact", *this).material(a);
   const auto place = obstacles_.place(obstacle.serial);
   const MaterialId b = obstacles_.entries()[place.entry].kind->material(place.slot);

@@ -65,8 +65,8 @@ public:
   /// Excludes a body from the projection onto the joints at the start of a run: it keeps its described
   /// position and velocity, and others are moved. Throws ModelError for a body that is not of this system.
   void keep_place(BodyId body, bool keep = true);
-  /// True if it is excluded.
-  [[nodiscard]] bool keeps_place(BodyId body) const { return kept_.contains(body.serial); }
+  /// True if it is excluded. Throws ModelError likewise.
+  [[nodiscard]] bool keeps_place(BodyId body) const;
 
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);
@@ -84,13 +84,15 @@ public:
   [[nodiscard]] ShapeId shape(std::string_view name) const;
   [[nodiscard]] ObstacleId obstacle(std::string_view name) const;
 
-  /// Name of a part in messages: "particle 'lower'" or "particle #3"; "ground".
+  /// Name of a part in messages: "particle 'lower'" or "particle #3"; "ground". A removed part keeps its
+  /// name. Of an identity that is not of this system it says so: "part of another system".
   [[nodiscard]] std::string name(BodyId id) const;
   [[nodiscard]] std::string name(ElementId id) const;
   [[nodiscard]] std::string name(JointId id) const;
   [[nodiscard]] std::string name(ShapeId id) const;
   [[nodiscard]] std::string name(ObstacleId id) const;
-  /// The name a body was given, empty if none.
+  /// The name a body was given, empty if none; a removed body keeps it. Throws ModelError for a body that was
+  /// never in this system.
   [[nodiscard]] std::string given_name(BodyId id) const;
 
   /// True if the part is of this system and was not removed.
@@ -106,7 +108,11 @@ public:
   [[nodiscard]] bool contains(MaterialId id) const {
     return id.token == token_ && id.serial < materials_.size();
   }
-  /// True if the body has an orientation.
+  /// The body that a shape is fixed to, or was until it was removed. Throws ModelError for a shape that was
+  /// never in this system.
+  [[nodiscard]] BodyId body_of(ShapeId shape) const;
+  /// True if the body has an orientation; false of the ground. Throws ModelError for a body that is not of
+  /// this system.
   [[nodiscard]] bool has_orientation(BodyId id) const;
 
   /// Parts, in the order in which they were added.
@@ -177,7 +183,8 @@ private:
   std::vector<std::string> materials_;
   std::map<std::pair<Index, Index>, Surface> laws_;
   std::map<Index, Surface> surfaces_;
-  std::set<Index> kept_;  // bodies that stay where they are
+  std::set<Index> kept_;                     // bodies that stay where they are
+  std::map<Index, BodyId> former_carriers_;  // bodies of removed shapes
 };
 
 }  // namespace carom

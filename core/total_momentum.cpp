@@ -25,6 +25,7 @@ struct Sum {
 }  // namespace
 
 TotalMomentum total_momentum(const Assembly& assembly, const State& state) {
+  check_sizes(assembly, state);
   const Layout& layout = *assembly.layout();
   const auto dimension = static_cast<Index>(layout.dimension());
   std::vector<double> momentum(state.v.size());

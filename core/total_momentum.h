@@ -18,7 +18,7 @@ struct TotalMomentum {
   double angular_scale = 0.0;       ///< largest single term of the angular sums [N m s]
 };
 
-/// Momentum of `state`, which must be of this assembly.
+/// Momentum of `state`. Throws ModelError for a state of another model.
 [[nodiscard]] CAROM_API TotalMomentum total_momentum(const Assembly& assembly, const State& state);
 
 }  // namespace carom

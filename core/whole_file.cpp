@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace carom {
 
@@ -15,7 +17,15 @@ namespace {
 
 }  // namespace
 
+bool is_special_file(const std::string& path) {
+  std::error_code unknown;
+  const auto status = std::filesystem::status(path, unknown);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
 std::string read_file(const std::string& path, std::string_view what) {
+  // A device may never end, and reading a pipe may wait for ever.
+  if (is_special_file(path)) fail(what, path, "read: it is not a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(what, path, "read");
   std::string content;
@@ -30,6 +40,8 @@ std::string read_file(const std::string& path, std::string_view what) {
 }
 
 void write_file(const std::string& path, std::string_view content, std::string_view what) {
+  // Renaming would put a regular file in the place of a device.
+  if (is_special_file(path)) fail(what, path, "written: it is not a regular file");
   const std::string unfinished = path + ".unfinished";
   std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
   file << content;

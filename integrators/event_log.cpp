@@ -1,6 +1,7 @@
 // Problem: tell events to people and programs.
 
 #include <carom/core/csv.h>
+#include <carom/core/enum_name.h>
 #include <carom/core/whole_file.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/simulation.h>
@@ -22,7 +23,7 @@ std::string_view to_string(EventKind kind) {
                                                                  "kink",
                                                                  "law break",
                                                                  "mode switch"};
-  return names[static_cast<std::size_t>(kind)];
+  return enum_name(names, kind);
 }
 
 namespace {
@@ -47,6 +48,7 @@ std::string name_with_bodies(const System& system, ElementId element) {
 
 void write_events(std::ostream& out, const std::vector<EventRecord>& events,
                   const std::function<std::string(const EventRecord&)>& name_of) {
+  if (!name_of) throw ModelError("events: name_of is empty; allowed: a function that tells names");
   out << "time [s],kind,part,normal velocity before [m/s],tangential velocity before [m/s],"
          "normal velocity after [m/s],tangential velocity after [m/s],normal impulse [N s],"
          "tangential impulse [N s],kinetic energy before [J],kinetic energy after [J],mode,outcome,solver,"

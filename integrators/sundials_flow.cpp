@@ -152,6 +152,10 @@ double SundialsFlow::horizon(double longest) const {
 std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem, double relative_tolerance) {
   if (method == FlowMethod::one_step) return std::make_unique<OneStepFlow>(problem, relative_tolerance);
   if (method == FlowMethod::explicit_runge_kutta) return make_runge_kutta_flow(problem, relative_tolerance);
+  if (method > FlowMethod::one_step) {
+    throw ModelError("flow: method is " + std::to_string(static_cast<int>(method)) +
+                     "; allowed: one of FlowMethod, explicit_runge_kutta (0) to one_step (3)");
+  }
   return make_multistep_flow(method, problem, relative_tolerance);
 }
 

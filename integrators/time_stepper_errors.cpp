@@ -47,11 +47,18 @@ std::string listed(const std::vector<std::string>& names) {
 void check_options(const TimeStepping& options) {
   const auto refuse = [](const char* option, double value, const char* allowed) {
     throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
-                     "; allowed: " + allowed);
+                     "; allowed: " + allowed_instead(value, allowed));
   };
-  if (!(std::isfinite(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
-  if (!(std::isfinite(options.tolerance) && options.tolerance >= 0.0)) {
+  if (!(is_admissible(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
+  if (!(is_admissible(options.tolerance) && options.tolerance >= 0.0)) {
     refuse("tolerance", options.tolerance, "finite and >= 0 m");
+  }
+  if (options.force_rule > ForceRule::energy_momentum) {
+    refuse("force_rule", static_cast<double>(options.force_rule), "trapezoidal (0) or energy_momentum (1)");
+  }
+  if (options.iteration > Iteration::linearly_implicit) {
+    refuse("iteration", static_cast<double>(options.iteration),
+           "one of Iteration, fixed_point (0) to linearly_implicit (2)");
   }
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
   if (options.threads < 1) refuse("threads", options.threads, "at least 1");
@@ -60,20 +67,20 @@ void check_options(const TimeStepping& options) {
   }
   if (options.control) {
     const StepControl& control = *options.control;
-    if (!(std::isfinite(control.tolerance) && control.tolerance > 0.0)) {
+    if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
       refuse("control.tolerance", control.tolerance, "finite and > 0 m");
     }
-    if (!(std::isfinite(control.smallest) && control.smallest > 0.0)) {
+    if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
       refuse("control.smallest", control.smallest, "finite and > 0 s");
     }
-    if (!(std::isfinite(control.largest) && control.largest >= control.smallest)) {
+    if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
       refuse("control.largest", control.largest, "finite and >= control.smallest");
     }
     if (!(options.step >= control.smallest && options.step <= control.largest)) {
       refuse("step", options.step, "between control.smallest and control.largest");
     }
   }
-  if (!(std::isfinite(options.capture_speed) && options.capture_speed >= 0.0)) {
+  if (!(is_admissible(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
   check_failure_directory(options.failure_directory, "time stepping");

@@ -13,8 +13,9 @@ void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
   if (part.bound == 0.0 && part.coefficient == 0.0) {
     check.refuse("bound", "0, and coefficient too", "one of them > 0");
   }
-  if (!(part.static_factor >= 1.0) || !std::isfinite(part.static_factor)) {
-    check.refuse("static_factor", to_text(part.static_factor), "a finite number >= 1");
+  if (!(part.static_factor >= 1.0 && is_admissible(part.static_factor))) {
+    check.refuse("static_factor", to_text(part.static_factor),
+                 allowed_instead(part.static_factor, "a finite number >= 1"));
   }
   if (const Index other = slot_on(part.joint); other != none) {
     check.refuse("joint", check.system().name(part.joint) + ", which has " + parts_[other].name + " already",

@@ -7,14 +7,22 @@
 namespace carom {
 
 JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at) {
-  const JointTable& table = *layout.joints();
-  const JointTable::Place place = table.place(joint.serial);
+  const JointTable* const joints = joint.token == layout.token() ? layout.joints() : nullptr;
+  const JointTable::Place place = joints != nullptr ? joints->place(joint.serial) : JointTable::Place{};
+  if (place.slot == none) {
+    throw ModelError("coordinate of a joint: it is not in this model; allowed: a joint of this model");
+  }
+  const JointTable& table = *joints;
   JointRow row;
   table.kinds[place.kind]->coordinate(at, place.slot, row);
   return row;
 }
 
 std::vector<BodyId> bodies_of(const System& system, JointId joint) {
+  if (!system.contains(joint)) {
+    throw ModelError("bodies of a joint: joint is " + refused_name(system, joint) +
+                     "; allowed: a joint of this system");
+  }
   std::vector<BodyId> ends;
   const auto place = system.joint_kinds().place(joint.serial);
   system.joint_kinds().entries()[place.entry].kind->ends(place.slot, ends);
@@ -24,7 +32,7 @@ std::vector<BodyId> bodies_of(const System& system, JointId joint) {
 void check_coordinate(const PartCheck& check, JointId joint) {
   const System& system = check.system();
   if (!joint.valid()) check.refuse("joint", "not given", "a joint of this system");
-  if (!system.contains(joint)) check.refuse("joint", system.name(joint), "a joint of this system");
+  if (!system.contains(joint)) check.refuse("joint", refused_name(system, joint), "a joint of this system");
   const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
   constexpr std::string_view allowed =
       "a joint with a coordinate (revolute, prismatic, point on line, rolling)";

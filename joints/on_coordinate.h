@@ -18,10 +18,10 @@ namespace carom {
 /// Demands a joint with a coordinate, of the system that the part is added to. Throws ModelError.
 CAROM_API void check_coordinate(const PartCheck& check, JointId joint);
 
-/// Bodies that a joint of the system connects.
+/// Bodies that a joint of the system connects. Throws ModelError for a joint that is not of this system.
 [[nodiscard]] CAROM_API std::vector<BodyId> bodies_of(const System& system, JointId joint);
 
-/// The coordinate of a joint of an assembly.
+/// The coordinate of a joint of an assembly. Throws ModelError for a joint that is not in it.
 [[nodiscard]] CAROM_API JointRow coordinate_row(const Layout& layout, JointId joint, const JointView& at);
 
 /// Stores all parts `P` of a system, each with a member `joint`, of the kind `Self`. \tparam Base JointKind

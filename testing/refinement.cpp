@@ -36,6 +36,7 @@ std::vector<RefinedTrace> refine(const std::vector<double>& steps,
                                  const std::function<EnergyTrace(double step)>& run) {
   std::vector<RefinedTrace> traces;
   traces.reserve(steps.size());
+  if (!run) throw ModelError("refinement: run is empty; allowed: a function that runs with a step");
   for (const double step : steps) traces.push_back({step, run(step)});
   return traces;
 }

@@ -98,7 +98,9 @@ TEST(MassProperties, RefuseImpossibleMassesAndSizes) {
       EXPECT_MODEL_ERROR(maker.make(1.0, bad), maker.name + ": " + maker.size + " is " + to_text(bad) + " m",
                          "finite and > 0");
     }
-    EXPECT_MODEL_ERROR(maker.make(1.0, 1e200), maker.name + ": moment of inertia is inf kg m^2");
+    EXPECT_MODEL_ERROR(maker.make(1.0, 1e200), maker.name + ": " + maker.size + " is 1e+200 m",
+                       "a magnitude up to 1e+150");
+    EXPECT_MODEL_ERROR(maker.make(1.0, 1e100), maker.name + ": moment of inertia is ", "up to 1e+150");
   }
   EXPECT_MODEL_ERROR(disc(1.0, 1e-200), "disc: moment of inertia is 0 kg m^2", "> 0");
   EXPECT_MODEL_ERROR(point_mass(-1.0), "point_mass: mass is -1 kg");
@@ -205,7 +207,9 @@ TEST(Polygon, RefusesWhatIsNone) {
   EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {1, 1}, {3, 3}}), "polygon: area is 0 m^2", "above rounding");
   EXPECT_MODEL_ERROR(polygon(1.0, {{1, 2}, {1, 2}, {1, 2}}), "polygon: area is 0 m^2");
   EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {0.1, 0.1}, {0.3, 0.3}}), "polygon: area is", "above rounding");
-  EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {1e200, 0}, {0, 1e200}}), "polygon: area is inf");
+  EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {1e200, 0}, {0, 1e200}}), "polygon: vertex 1 is (1e+200, 0) m",
+                     "a magnitude up to 1e+150");
+  EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {1e100, 0}, {0, 1e100}}), "polygon: moment of inertia is");
   // A bow tie, whose area is not zero.
   EXPECT_MODEL_ERROR(polygon(1.0, {{0, 0}, {2, 2}, {2, 0}, {0, 1}}), "polygon: outline is crossing itself",
                      "sides 0 and 2", "a simple polygon");
@@ -258,7 +262,9 @@ TEST(Compose, RefusesNothingAndImpossibleParts) {
   bad = good;
   bad.centre[1] = infinity;
   EXPECT_MODEL_ERROR(compose({good, good, bad}), "compose: part 2 centre is (0, inf) m", "finite");
-  EXPECT_MODEL_ERROR(compose({good, shifted(good, {1e200, 0.0})}), "compose: moment of inertia is inf");
+  EXPECT_MODEL_ERROR(shifted(good, {1e200, 0.0}), "shifted: offset is (1e+200, 0) m", "up to 1e+150");
+  EXPECT_MODEL_ERROR(compose({good, shifted(good, {1e100, 0.0})}), "compose: moment of inertia is",
+                     "up to 1e+150");
 }
 
 TEST(Shifted, MovesTheCentreOnly) {

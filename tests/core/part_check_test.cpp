@@ -54,7 +54,14 @@ TEST_F(PartCheckTest, MessageNamesPartQuantityValueAndWhatIsAllowed) {
 }
 
 TEST_F(PartCheckTest, Finite) {
-  EXPECT_NO_THROW(check.finite(-1e300, "value", "m"));
+  EXPECT_NO_THROW(check.finite(-1e150, "value", "m"));
+  EXPECT_MODEL_ERROR(check.finite(-1.01e150, "value", "m"), "value is -1.01e+150 m",
+                     "allowed: a number of a magnitude up to 1e+150");
+  EXPECT_MODEL_ERROR(check.positive(1e300, "mass", "kg"), "mass is 1e+300 kg", "a magnitude up to 1e+150");
+  EXPECT_MODEL_ERROR(check.non_negative(1e151, "k", "N/m"), "k is 1e+151 N/m", "a magnitude up to 1e+150");
+  // Directions are of any length.
+  EXPECT_NO_THROW(check.direction(std::array{1e300, 0.0}, "axis"));
+  EXPECT_MODEL_ERROR(check.direction(std::array{nan, 0.0}, "axis"), "axis is nan", "finite");
   EXPECT_MODEL_ERROR(check.finite(nan, "angle", "rad"), "part 'tested'", "angle is nan rad", "finite");
   EXPECT_MODEL_ERROR(check.finite(-infinity, "angle", ""), "angle is -inf;");
   const std::array<double, 3> numbers{1.0, infinity, 2.0};

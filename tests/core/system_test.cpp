@@ -80,7 +80,8 @@ TEST(System, NamesPartsByNameOrNumber) {
   EXPECT_EQ(system.name(BodyId{}), "part that was never given");
   EXPECT_EQ(System().name(upper), "part of another system");
   system.remove(rim);
-  EXPECT_EQ(system.name(rim), "removed part #0");
+  EXPECT_EQ(system.name(rim), "disc 'rim'");
+  EXPECT_EQ(system.name(ShapeId{7, system.token()}), "part that was never given");
 }
 
 TEST(System, UnknownNamesAreRefused) {
@@ -161,7 +162,7 @@ TEST(System, ForeignPartsAreRefused) {
   const BodyId foreign = other.add(particle());  // the same serial number
   EXPECT_EQ(own.serial, foreign.serial);
   EXPECT_FALSE(system.contains(foreign));
-  EXPECT_FALSE(system.has_orientation(foreign));
+  EXPECT_MODEL_ERROR((void)system.has_orientation(foreign), "body is a body of another system");
   EXPECT_MODEL_ERROR(system.remove(foreign), "removal of body #0", "not in this system");
   EXPECT_MODEL_ERROR(system.add(SpringDamper{.from = own, .to = foreign}), "spring-damper #0",
                      "to is a body of another system", "a body of this system");
@@ -298,7 +299,8 @@ TEST(System, LawBetweenMaterialsComesBeforeTheSurfaceOfTheObstacle) {
   system.between(steel, steel, {.friction = 0.4, .normal_restitution = 0.0});
   EXPECT_EQ(friction(steel, bare), 0.4);
   system.remove(plain);
-  EXPECT_MODEL_ERROR(system.law(rubber, plain), "obstacle is removed part #0", "one of this system");
+  EXPECT_MODEL_ERROR(system.law(rubber, plain), "obstacle is half-plane #0, which was removed",
+                     "one of this system");
 }
 
 TEST(System, ImpossibleSurfacesAreRefusedByName) {
