@@ -22,8 +22,11 @@ struct Discontinuity {
 /// Those at one time, of a list in ascending order of times.
 [[nodiscard]] inline std::span<const Discontinuity> discontinuities_at(std::span<const Discontinuity> list,
                                                                        double time) {
-  const auto found = std::ranges::equal_range(list, time, {}, &Discontinuity::time);
-  return {found.begin(), found.end()};
+  const auto first = std::lower_bound(list.begin(), list.end(), time,
+                                      [](const Discontinuity& at, double t) { return at.time < t; });
+  const auto last = std::upper_bound(first, list.end(), time,
+                                     [](double t, const Discontinuity& at) { return t < at.time; });
+  return {first, last};
 }
 
 }  // namespace carom

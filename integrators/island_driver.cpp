@@ -187,7 +187,8 @@ double IslandDriver::longest_step() const {
 
 void IslandDriver::take_step() {
   const std::vector<Discontinuity>& breaks = motion_.breaks();
-  const auto due = std::ranges::upper_bound(breaks, time_, {}, &Discontinuity::time);
+  const auto due = std::upper_bound(breaks.begin(), breaks.end(), time_,
+                                    [](double t, const Discontinuity& at) { return t < at.time; });
   const double until_break = due == breaks.end() ? never : due->time - time_;
   landed_at_ = never;
   pending_ = true;

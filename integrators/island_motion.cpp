@@ -108,7 +108,8 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     const std::vector<Discontinuity> of_obstacles = finder.breaks();
     breaks_.insert(breaks_.end(), of_obstacles.begin(), of_obstacles.end());
   }
-  std::ranges::stable_sort(breaks_, {}, &Discontinuity::time);
+  std::stable_sort(breaks_.begin(), breaks_.end(),
+                   [](const Discontinuity& a, const Discontinuity& b) { return a.time < b.time; });
   breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
   double mass = 0.0;
   const Island& all = assembly.islands()[island];
