@@ -37,6 +37,33 @@ bool leaves_joints(const IslandJoints& joints, MotionWorkspace& work) {
   return false;
 }
 
+/// Discontinuities of the joints and force elements of an island.
+std::vector<Discontinuity> breaks_in(const Assembly& assembly, Index island) {
+  std::vector<Discontinuity> all;
+  std::vector<double> times;
+  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+    const Range joints = assembly.joints(island, kind);
+    for (Index joint = joints.begin; joint < joints.end; ++joint) {
+      times.clear();
+      assembly.joint_kinds()[kind]->breaks(joint, times);
+      for (const double time : times) {
+        all.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
+      }
+    }
+  }
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const Range elements = assembly.elements(island, kind);
+    for (Index element = elements.begin; element < elements.end; ++element) {
+      times.clear();
+      assembly.force_kinds()[kind]->breaks(element, times);
+      for (const double time : times) {
+        all.push_back({.time = time, .element = assembly.element_id(kind, element)});
+      }
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 MotionWorkspace::MotionWorkspace(const Assembly& assembly)
@@ -64,7 +91,6 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       pairs_(finder.pairs(island)),
       joints_(assembly, island),
       guards_(assembly, island) {
-  std::vector<double> times;
   if (!joints_.empty()) {
     joints_.factors().reveal_rank(true);
     closed_.bind(assembly, joints_);
@@ -77,15 +103,6 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
       return group(a.body) < group(b.body);
     });
     depends_on_time_ = joints_.depends_on_time();
-    for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
-      const Range joints = assembly.joints(island, kind);
-      for (Index joint = joints.begin; joint < joints.end; ++joint) {
-        times.clear();
-        assembly.joint_kinds()[kind]->breaks(joint, times);
-        for (const double time : times)
-          breaks_.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
-      }
-    }
   }
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     if (assembly.elements(island, kind).empty()) continue;
@@ -95,16 +112,11 @@ IslandMotion::IslandMotion(const Assembly& assembly, const ContactFinder& finder
     depends_on_time_ = depends_on_time_ || elements.depends_on_time();
     only_fields_ =
         only_fields_ && elements.is_field() && !elements.books_dissipative() && !elements.depends_on_time();
-    const Range acting = assembly.elements(island, kind);
-    for (Index element = acting.begin; element < acting.end; ++element) {
-      times.clear();
-      elements.breaks(element, times);
-      for (const double time : times)
-        breaks_.push_back({.time = time, .element = assembly.element_id(kind, element)});
-    }
   }
-  if (!pairs_.empty() && finder.has_moving_obstacles()) {
-    depends_on_time_ = true;
+  const bool obstacles_move = !pairs_.empty() && finder.has_moving_obstacles();
+  depends_on_time_ = depends_on_time_ || obstacles_move;
+  breaks_ = breaks_in(assembly, island);
+  if (obstacles_move) {
     const std::vector<Discontinuity> of_obstacles = finder.breaks();
     breaks_.insert(breaks_.end(), of_obstacles.begin(), of_obstacles.end());
   }
