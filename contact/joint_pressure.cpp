@@ -47,10 +47,10 @@ Range JointPressure::rows(const Contact& contact) const {
   return {first, first + bearing->joint->rows()};
 }
 
-void JointPressure::take(const double* multipliers, double duration) {
+void JointPressure::take(const double* multipliers, double duration, double size) {
   multipliers_ = multipliers;
   duration_ = duration;
-  largest_ = 0.0;
+  largest_ = size;
   for (std::size_t row = 0; row < rows_; ++row) largest_ = std::max(largest_, std::abs(multipliers[row]));
 }
 

@@ -30,7 +30,8 @@ public:
   [[nodiscard]] Range rows(const Contact& contact) const;
   /// Takes note of the multipliers of all rows of the island's joints: forces, or impulses over a duration
   /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
-  void take(const double* multipliers, double duration);
+  /// \param size of loads whose rounding is in the multipliers, as these
+  void take(const double* multipliers, double duration, double size = 0.0);
   /// Sets `pressed` of friction in a joint. Returns the change against the number itself, or against that of
   /// the largest force in the island where it is small; does nothing and returns 0 for what is bound by a
   /// constant only.

@@ -149,6 +149,9 @@ public:
 
 private:
   bool add_pressed_reactions();
+  [[nodiscard]] double largest_load() const;
+  bool settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
+                     SolverChain& chain, bool least);
   // Parts of the Jacobian: changes of a contact's load, its forces as they are, and of the accelerations
   // along its rows, those of the bodies as they are.
   struct ContactChange {

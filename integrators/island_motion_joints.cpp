@@ -1,36 +1,44 @@
 // Problem: what joints add to the motion of an island: their reactions, friction in them, jumps of what
 // drives them.
 
+#include <carom/contact/rank_revealing_qr.h>
+#include <carom/integrators/bound_iteration.h>
 #include <carom/integrators/island_motion.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace carom {
 
 namespace {
 
-// Bounds of friction in joints and the forces in them are repeated until they change no more than by this
-// part; answers of contact problems are certified to 1e-12.
-constexpr double settled = 1e-13;
-// Where the changes do not shrink any more this is rounding.
-constexpr double nearly_settled = 1e-11;
-constexpr int most_repetitions = 200;
-
-/// Whether bounds have settled, from their changes one after the other.
-class Settling {
-public:
-  /// True if there is no need to go on.
-  bool take(double change) {
-    const bool stalls = change <= nearly_settled && change >= 0.5 * before_;
-    before_ = change;
-    return change <= settled || stalls;
+/// Impulses of least norm that change velocities as those of a problem's answer do: without their part along
+/// the null vectors of W. Of an answer that is not unique solvers find any, these are always the same.
+std::vector<double> least_impulses(const ContactProblem& problem, std::span<const double> impulses) {
+  constexpr double dependent = 1e-11;  // pivots of W below this part of the largest are rounding
+  const auto n = static_cast<std::size_t>(problem.rows());
+  RankRevealingQr factors;
+  factors.factor(problem.matrix(), n, n, dependent);
+  std::vector<double> least(impulses.begin(), impulses.end());
+  std::vector<std::vector<double>> null;
+  const auto remove_part = [](const std::vector<double>& along, std::vector<double>& from) {
+    const double part = std::inner_product(from.begin(), from.end(), along.begin(), 0.0);
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] -= part * along[i];
+  };
+  for (std::size_t index = 0; index + factors.rank() < n; ++index) {
+    std::vector<double> vector(n);
+    factors.null_vector(index, vector);
+    for (int pass = 0; pass < 2; ++pass) {  // the second for what rounding left
+      for (const std::vector<double>& other : null) remove_part(other, vector);
+    }
+    const double length = std::sqrt(std::inner_product(vector.begin(), vector.end(), vector.begin(), 0.0));
+    for (double& number : vector) number /= length;
+    null.push_back(std::move(vector));
   }
-
-private:
-  double before_ = std::numeric_limits<double>::infinity();
-};
+  for (const std::vector<double>& vector : null) remove_part(vector, least);
+  return least;
+}
 
 }  // namespace
 
@@ -42,45 +50,88 @@ bool IslandMotion::add_pressed_reactions() {
   work.free.resize(work.acceleration.size());
   std::copy(work.acceleration.begin() + v.begin, work.acceleration.begin() + v.end,
             work.free.begin() + v.begin);
-  Settling settling;
-  for (int i = 0; i < most_repetitions; ++i) {
+  const double size = largest_load();
+  BoundIteration iteration;
+  for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
     std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
     if (!closed_.add_reactions(*assembly_, work.acceleration.data())) return false;
     const std::span<const double> multipliers = joint_multipliers();
-    pressure_.take(multipliers.data(), 1.0);
+    pressure_.take(multipliers.data(), 1.0, size);
     double change = 0.0;
+    iteration.begin();
     for (ClosedContact& contact : closed_.list()) {
+      if (!pressure_.bears(contact.at)) continue;
+      const double before = contact.at.pressed;
       change = std::max(change, pressure_.press(contact.at, at));
+      iteration.add(before, contact.at.pressed);
     }
-    if (settling.take(change)) return true;
+    if (iteration.settled(change)) return true;
+    if (!iteration.accelerates()) continue;
+    std::size_t bound = 0;
+    for (ClosedContact& contact : closed_.list()) {
+      if (pressure_.bears(contact.at)) contact.at.pressed = iteration.guess(bound++);
+    }
   }
   return false;
+}
+
+/// Loads without reactions: forces small against them are rounding.
+double IslandMotion::largest_load() const {
+  const Range v = assembly_->islands()[island_].v;
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) largest = std::max(largest, std::abs(work_->momentum[i]));
+  return largest;
 }
 
 bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
                          SolverChain& chain) {
   if (pressure_.empty()) return cluster.solve(chain).usable();
+  // Of answers that are not unique one may follow another for ever.
+  return settle_bounds(cluster, contacts, level, chain, false) ||
+         (cluster.report().usable() && settle_bounds(cluster, contacts, level, chain, true));
+}
+
+bool IslandMotion::settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
+                                 SolverChain& chain, bool least) {
   MotionWorkspace& work = *work_;
   const Range v = assembly_->islands()[island_].v;
   const JointView at{work.trial.view(), work.evaluation.rotation.data()};
   const bool impact = level == JointLevel::change;
   std::vector<double>& answer = work.of_velocity;
   work.multipliers.resize(joints_.size());
-  Settling settling;
-  for (int i = 0; i < most_repetitions; ++i) {
+  const double size = impact ? 0.0 : largest_load();
+  BoundIteration iteration;
+  for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
     if (!cluster.solve(chain).usable()) return false;
     for (Index k = v.begin; k < v.end; ++k) answer[k] = impact ? 0.0 : work.momentum[k];
-    cluster.add_loads(1.0, answer.data());
+    if (least) {
+      const std::vector<double> found(cluster.impulses().begin(), cluster.impulses().end());
+      cluster.set_impulses(least_impulses(cluster.problem(), found));
+      cluster.add_loads(1.0, answer.data());
+      cluster.set_impulses(found);
+    } else {
+      cluster.add_loads(1.0, answer.data());
+    }
     joints_.apply_inverse_mass(answer.data());
     joints_.hold(level, answer.data(), work.multipliers.data());
-    pressure_.take(work.multipliers.data(), impact ? 0.0 : 1.0);
+    pressure_.take(work.multipliers.data(), impact ? 0.0 : 1.0, size);
     double change = 0.0;
+    iteration.begin();
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       if (!pressure_.bears(contacts[c])) continue;
+      const double before = contacts[c].pressed;
       change = std::max(change, pressure_.press(contacts[c], at));
+      iteration.add(before, contacts[c].pressed);
       cluster.press(c);
     }
-    if (settling.take(change)) return true;
+    if (iteration.settled(change)) return true;
+    if (!iteration.accelerates()) continue;
+    std::size_t bound = 0;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      if (!pressure_.bears(contacts[c])) continue;
+      contacts[c].pressed = iteration.guess(bound++);
+      cluster.press(c);
+    }
   }
   return false;
 }
