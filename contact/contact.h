@@ -96,6 +96,16 @@ struct Contact {
   [[nodiscard]] double velocity(int i, const double* velocities) const {
     return times(i, velocities) - obstacle_velocity[static_cast<std::size_t>(i)];
   }
+  /// Sum of the magnitudes that the contact velocity along row i is the sum of [m/s]: what its rounding is
+  /// to be measured with. \param velocities of all bodies
+  [[nodiscard]] double speed(int i, const double* velocities) const {
+    double sum = std::abs(obstacle_velocity[static_cast<std::size_t>(i)]);
+    for (int c = 0; c < columns; ++c) sum += std::abs(row(i)[c] * velocities[v + static_cast<Index>(c)]);
+    for (int c = 0; c < other_columns; ++c) {
+      sum += std::abs(row(i)[columns + c] * velocities[other_v + static_cast<Index>(c)]);
+    }
+    return sum;
+  }
   /// Speed of sliding [m/s]. \param velocities of all bodies
   [[nodiscard]] double sliding_speed(const double* velocities) const {
     const double along = velocity(1, velocities);

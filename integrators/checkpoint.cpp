@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 5\n";
+constexpr std::string_view mark = "carom checkpoint 6\n";
 
 /// Numbers as bytes, lowest first, whatever the machine.
 class Writer {
@@ -106,6 +106,8 @@ void for_statistics(S& s, F&& f) {
   f(s.steps_across_impacts);
   f(s.energy_gains);
   f(s.energy_gained);
+  f(s.lasting_gains);
+  f(s.lasting_gained);
   f(s.deepest_gap);
   f(s.worst_residual);
   for (auto& count : s.events) f(count);

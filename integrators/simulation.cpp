@@ -237,8 +237,9 @@ void Simulation::Impl::advance(double limit) {
 void Simulation::Impl::write_news() {
   if (!log.enabled(LogLevel::warning)) return;
   const std::string when = "t = " + to_text(report.time) + " s: ";
-  if (report.energy_gain > 0.0) {
-    log.write(LogLevel::warning, when + "impact adds " + to_text(report.energy_gain) + " J");
+  const double impact_gain = report.energy_gain - report.lasting_gain;
+  if (impact_gain > 0.0) {
+    log.write(LogLevel::warning, when + "impact adds " + to_text(impact_gain) + " J");
   }
   for (const ContactRecord& contact : report.contacts) {
     if (contact.outcome != Outcome::several_solutions) continue;

@@ -139,6 +139,7 @@ void StepController::merge(StepReport& report) {
     report.worst_coupling_rate = second_.worst_coupling_rate;
   }
   report.energy_gain += second_.energy_gain;
+  report.lasting_gain += second_.lasting_gain;
   report.projected = std::max(report.projected, second_.projected);
   report.contacts.insert(report.contacts.end(), second_.contacts.begin(), second_.contacts.end());
   for (std::size_t i = 0; i < report.joint_impulses.size(); ++i) {

@@ -64,9 +64,12 @@ struct StepReport {
   double contraction = 0.0;    ///< ratio of successive changes, the largest over islands (0: none seen)
   ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
-  double energy_gain = 0.0;          ///< energy that contact added, summed over problems that gained [J]
-  double projected = 0.0;            ///< largest displacement by which a body was moved out of obstacles [m]
-  ControlReport control;             ///< of step control
+  /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
+  /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
+  double energy_gain = 0.0;
+  double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
+  double projected = 0.0;     ///< largest displacement by which a body was moved out of obstacles [m]
+  ControlReport control;      ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
   /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
@@ -85,8 +88,10 @@ struct Statistics {
   std::int64_t forces_not_unique = 0;     ///< contact problems with more than one set of impulses
   std::int64_t rejected_steps = 0;        ///< lengths that step control rejected
   std::int64_t steps_across_impacts = 0;  ///< steps whose error could not be estimated because of contact
-  std::int64_t energy_gains = 0;          ///< steps in which contact added energy
+  std::int64_t energy_gains = 0;          ///< steps in which impacts added energy
   double energy_gained = 0.0;             ///< sum of those gains [J]
+  std::int64_t lasting_gains = 0;         ///< steps in which lasting contact added energy
+  double lasting_gained = 0.0;            ///< sum of those gains [J]
   double deepest_gap = 0.0;               ///< the most negative gap found [m]
   double worst_residual = 0.0;            ///< the largest certificate of a contact problem
   EventCounts events{};                   ///< of the event-driven mode, by kind

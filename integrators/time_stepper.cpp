@@ -93,7 +93,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.contraction = 0.0;
   report_.worst_coupling = {};
   report_.worst_coupling_rate = 0.0;
-  report_.energy_gain = 0.0;
+  report_.energy_gain = report_.lasting_gain = 0.0;
   report_.projected = 0.0;
   report_.control = {};
   place_obstacles(state, step, end_time);

@@ -174,13 +174,17 @@ private:
   void book_couplings(Index island, const State& state, double step);
   void project(Index island, const State& state, const Companion& companion, double step);
   void hold_velocities(Index island);
+  // Of one contact problem in a step.
+  struct ContactWork {
+    double gain = 0.0;    // of all impulses [J]
+    double scale = 0.0;   // sum of what its parts are made of [J]
+    bool impact = false;  // something closed faster than the capture speed
+  };
   void book_contacts(const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
-  // What friction in a joint does, and the size of the terms that it is the sum of [J].
-  struct FrictionWork {
-    double work, scale;
-  };
-  FrictionWork book_rubbing(const ContactCluster& cluster, std::size_t contact);
+  void book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum);
+  void book_gain(const ContactCluster& cluster, const ContactWork& work, const State& state, double step);
+  void book_rubbing(const ContactCluster& cluster, std::size_t contact, ContactWork& sum);
   void rate(Index island, const State& state, double step, double contraction);
 
   void demand_finite_loads(Index island, const StateView& at, const State& state, double step);

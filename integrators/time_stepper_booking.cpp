@@ -118,56 +118,78 @@ void TimeStepper::hold_velocities(Index island) {
 void TimeStepper::book_contacts(const State& state, double step) {
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     const ContactCluster& cluster = clusters_[i];
-    bool impact = false;
-    double gain = 0.0;
-    double scale = 0.0;
+    ContactWork work;
     for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
       if (cluster.contacts()[contact].rubs()) {
-        const FrictionWork work = book_rubbing(cluster, contact);
-        gain += work.work;
-        scale += work.scale;
-        continue;
-      }
-      record(cluster, contact);
-      if (finder_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
-      const ContactRecord& entry = report_.contacts.back();
-      impact = impact || entry.impact;
-      for (int direction = 0; direction < entry.directions; ++direction) {
-        const auto at = static_cast<std::size_t>(direction);
-        gain += entry.work[at];
-        scale += std::abs(entry.impulse[at]) *
-                 (std::abs(entry.velocity_before[at]) + std::abs(entry.velocity_after[at]));
-        const EnergyFlow line =
-            entry.impact ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
-                         : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
-        flows_[line] -= entry.work[at];
+        book_rubbing(cluster, contact, work);
+      } else {
+        book_contact(cluster, contact, work);
       }
     }
-    // Rounding of the sum of works; a gain above it is real. In lasting contact the loads of the step take
-    // part, and the sign of the contact's share says nothing about the law.
-    constexpr double rounding = 1e-13;
-    if (!impact || !(gain > rounding * scale)) continue;
-    report_.energy_gain += gain;
-    if (options_.refuse_energy_gain) refuse_gain(cluster, gain, state, step);
+    if (work.gain > 0.0) book_gain(cluster, work, state, step);
   }
 }
 
-/// Friction in a joint; the velocities halfway are at hand. Returns its share in the gain of an impact.
-TimeStepper::FrictionWork TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact) {
+void TimeStepper::book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
+  record(cluster, contact);
+  if (finder_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
+  const ContactRecord& entry = report_.contacts.back();
+  sum.impact = sum.impact || entry.impact;
+  for (int direction = 0; direction < entry.directions; ++direction) {
+    const auto at = static_cast<std::size_t>(direction);
+    sum.gain += entry.work[at];
+    sum.scale += std::abs(entry.impulse[at]) *
+                 (std::abs(entry.velocity_before[at]) + std::abs(entry.velocity_after[at]));
+    const EnergyFlow line = entry.impact
+                                ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                                : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+    flows_[line] -= entry.work[at];
+  }
+}
+
+/// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
+/// an error of the step: the law holds the velocity along the row at its start, which turns meanwhile.
+void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& work, const State& state,
+                            double step) {
+  // Rounding of the sum of works; a gain above it is real.
+  constexpr double rounding = 1e-13;
+  double scale = work.scale;
+  if (!work.impact) {
+    // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
+    // velocities of the bodies, of those of the obstacles.
+    for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
+      const Contact& contact = cluster.contacts()[c];
+      for (int i = contact.begin_row(); i < contact.rows; ++i) {
+        const auto row = static_cast<std::size_t>(cluster.first_row(c) + i);
+        const double size = std::abs(cluster.problem().vector()[row]) + contact.speed(i, trial_.v.data());
+        scale += std::abs(cluster.impulses()[row]) * size;
+      }
+    }
+  }
+  if (!(work.gain > rounding * scale)) return;
+  report_.energy_gain += work.gain;
+  if (!work.impact) {
+    report_.lasting_gain += work.gain;
+  } else if (options_.refuse_energy_gain) {
+    refuse_gain(cluster, work.gain, state, step);
+  }
+}
+
+/// Friction in a joint; the velocities halfway are at hand.
+void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
   const Contact& at = cluster.contacts()[contact];
   const auto place = static_cast<std::size_t>(cluster.first_row(contact) + 1);
   JointReaction reaction;
-  reaction.moment = cluster.impulses()[place];
+  const double moment = cluster.impulses()[place];
   const double mean_rate = at.times(1, middle_.v.data());
-  const FrictionWork work{
-      reaction.moment * mean_rate,
-      2.0 * std::abs(reaction.moment) * std::max(std::abs(cluster.before()[place]), std::abs(mean_rate))};
-  flows_[EnergyFlow::joint_friction] -= work.work;
+  reaction.moment = moment;
+  flows_[EnergyFlow::joint_friction] -= moment * mean_rate;
+  sum.gain += moment * mean_rate;
+  sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(cluster.before()[place]), std::abs(mean_rate));
   report_.joint_impulses.push_back(
       {JointId{at.key.of.serial, assembly_->system().token()}, reaction, trial_.time});
   const ContactMode mode = cluster.modes()[contact];
   rubbing_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
-  return work;
 }
 
 void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
@@ -232,9 +254,13 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
     companion.contact_statistics += chain.statistics();
     chain.reset_statistics();
   }
-  if (report_.energy_gain > 0.0) {
+  if (report_.energy_gain > report_.lasting_gain) {
     ++statistics.energy_gains;
-    statistics.energy_gained += report_.energy_gain;
+    statistics.energy_gained += report_.energy_gain - report_.lasting_gain;
+  }
+  if (report_.lasting_gain > 0.0) {
+    ++statistics.lasting_gains;
+    statistics.lasting_gained += report_.lasting_gain;
   }
   std::swap(report, report_);
 }

@@ -51,7 +51,8 @@ struct StepControl {
 };
 
 /// Forces of elements by the implicit trapezoidal rule with a fixed-point iteration, contacts detected at the
-/// start of a step, the contact law in every step of a lasting contact. docs/two_modes.md has a table of
+/// start of a step, the contact law in every step of a lasting contact (kept where turning opens it:
+/// docs/method.md). docs/two_modes.md has a table of
 /// these options.
 struct TimeStepping {
   double step = 1e-3;  ///< h > 0 [s]
@@ -64,7 +65,7 @@ struct TimeStepping {
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger only, never on the motion [m/s].
   double capture_speed = 1e-2;
-  /// Refuse, with a SolverError, a step in which contact adds energy (possible where e_n and e_t differ).
+  /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements

@@ -31,11 +31,13 @@ inline std::vector<std::uint64_t> bits_of(const carom::Simulation& simulation) {
   append_bits(bits, state.z);
   for (const double number : simulation.energy().save()) append_bits(bits, number);
   const carom::Statistics& s = simulation.statistics();
-  for (const std::int64_t count : {s.steps, s.sweeps, std::int64_t{s.most_sweeps}, s.impacts, s.contact_steps,
-                                   s.several_solutions, s.forces_not_unique, s.energy_gains}) {
+  for (const std::int64_t count :
+       {s.steps, s.sweeps, std::int64_t{s.most_sweeps}, s.impacts, s.contact_steps, s.several_solutions,
+        s.forces_not_unique, s.energy_gains, s.lasting_gains}) {
     bits.push_back(static_cast<std::uint64_t>(count));
   }
-  for (const double number : {s.largest_contraction, s.energy_gained, s.deepest_gap, s.worst_residual})
+  for (const double number :
+       {s.largest_contraction, s.energy_gained, s.lasting_gained, s.deepest_gap, s.worst_residual})
     append_bits(bits, number);
   const carom::ChainStatistics& c = simulation.contact_statistics();
   for (const std::int64_t count : {c.problems, c.fall_backs, c.tolerated, c.several_solutions,
