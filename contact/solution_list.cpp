@@ -113,7 +113,13 @@ void SolutionList::consider(const ContactProblem& problem) {
   }
   problem.velocities(trial_, xi_);
   const double error = residual(problem, trial_, xi_).value;
-  least_residual_ = std::min(least_residual_, error);
+  // The residual is one of the impulses: beside those without bound of a jam everything is small. A near miss
+  // is one against the scale of the data, unless rounding of such impulses hides it.
+  constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
+  double size = scale_;
+  for (const double impulse : trial_) size = std::max(size, std::abs(impulse));
+  const bool hidden = !(scale_ > 0.0) || error <= rounding;
+  least_residual_ = std::min(least_residual_, hidden ? error : error * (size / scale_));
   if (!(error <= listed_residual)) return;
   for (std::size_t k = 0; k < count_; ++k) {
     if (same(trial_, xi_, k, false)) return;

@@ -42,6 +42,9 @@
 ///       void guard_motion(const ElementMotion<D>& at, GuardMotion* out) const;  // optional: the same with
 ///                                                       // derivatives (guard_motion.h); then none is missed
 ///
+/// Optional: `bool lacks_direction(const ElementView<D>& at, double fastest) const`, whether there is a force
+/// whose direction is not determined (ForceKind::first_without_direction); no run begins there.
+///
 /// An element may read and load only bodies that it names in bodies(). Its potential is booked as
 /// `potential` unless it has `static constexpr StoredEnergy stored = StoredEnergy::elastic;`. Without
 /// fingerprint() a checkpoint cannot distinguish it from one with other parameters.
@@ -258,6 +261,17 @@ public:
     } else {
       ForceKind::derivatives(at, element, out);
     }
+  }
+  [[nodiscard]] Index first_without_direction(const EvaluationContext& at, Range elements,
+                                              double fastest) const override {
+    if constexpr (requires(const P& part, const ElementView<D>& seen) {
+                    part.lacks_direction(seen, fastest);
+                  }) {
+      for (Index i = elements.begin; i < elements.end; ++i) {
+        if (parts_[i].lacks_direction(view(at, i), fastest)) return i;
+      }
+    }
+    return elements.end;
   }
   [[nodiscard]] Index guard_size() const override { return static_cast<Index>(guard_count); }
   void guards(const EvaluationContext& at, Range elements, double* out) const override {

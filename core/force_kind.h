@@ -136,6 +136,15 @@ public:
     return at.step * internal_loss_rate(at.middle, elements);
   }
 
+  /// The first of a range of elements whose force has a size but no direction: it acts along the line between
+  /// two ends that stand at one place, but for rounding, and does not vanish there. No motion follows from
+  /// such a state. elements.end if there is none.
+  /// \param fastest ends that part or pass faster than this [m/s] give the line by themselves; infinity: none
+  [[nodiscard]] virtual Index first_without_direction(const EvaluationContext& /*at*/, Range elements,
+                                                      double /*fastest*/) const {
+    return elements.end;
+  }
+
   /// Number of switching values of each element, the same for all of a kind: at their changes of sign the
   /// loads have a kink or jump. For the event-driven mode.
   [[nodiscard]] virtual Index guard_size() const { return 0; }

@@ -1,6 +1,7 @@
 // Problem: what happens at an event: impacts until nothing approaches, then the modes of all that touches.
 
 #include <carom/integrators/failure_file.h>
+#include <carom/integrators/force_directions.h>
 #include <carom/integrators/island_driver.h>
 
 #include <algorithm>
@@ -82,6 +83,10 @@ void IslandDriver::begin_phase(DriverNews& news) {
   if (!motion_.evaluate(time_, y_.data(), true))
     fail("the forces of closed contacts contradict each other", {});
   if (settle(news)) motion_.evaluate(time_, y_.data(), true);
+  const MotionWorkspace& work = work_->motion;
+  const ElementId lost =
+      find_without_direction(*assembly_, motion_.island(), work.trial.view(), work.evaluation, speed_noise());
+  if (lost.valid()) fail(tell_without_direction(*assembly_, lost), {assembly_->system().name(lost)});
   in_phase_ = true;
   resting_ = at_rest();
   if (resting_) return;
@@ -250,7 +255,14 @@ std::vector<std::string> IslandDriver::parts_of_event() {
 
 void IslandDriver::count_event() {
   if (events_.exceeds(options_.event_limit, time_)) {
-    fail("more than " + to_text(options_.event_limit) + " events per second (event_limit)", parts_of_event());
+    std::string what = "more than " + to_text(options_.event_limit) + " events per second (event_limit)";
+    // Where two ends have met, their line turns round by rounding, and with it the force, at one event after
+    // the other.
+    const ElementId lost =
+        find_without_direction(*assembly_, motion_.island(), work_->motion.trial.view(),
+                               work_->motion.evaluation, std::numeric_limits<double>::infinity());
+    if (lost.valid()) what += "; " + tell_without_direction(*assembly_, lost);
+    fail(what, parts_of_event());
   }
 }
 

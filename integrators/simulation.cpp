@@ -3,6 +3,7 @@
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/event_driver.h>
+#include <carom/integrators/force_directions.h>
 #include <carom/integrators/mode_takeover.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/simulation.h>
@@ -59,6 +60,7 @@ struct Simulation::Impl {
     /// displacement.
     [[nodiscard]] double prepare(State& start) const {
       const double shift = close_joints(assembly, start).shift;
+      demand_directions(assembly, start);
       if (machines.driver) machines.driver->demand_start(start);
       return shift;
     }

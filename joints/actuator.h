@@ -86,6 +86,11 @@ struct LinearActuator {
     out.external(from, -push);
     out.external(to, push);
   }
+  /// Whether its ends stand at one place although its force, at a rate of zero, does not vanish there.
+  [[nodiscard]] bool lacks_direction(const ElementView<D>& at, double fastest) const {
+    return at_one_place(at.context(), at.attach(from), at.attach(to), fastest) &&
+           stays_without_length([&](double length) { return force(at.time(), length, 0.0); });
+  }
   /// Derivatives: the law's, the line's in closed form.
   void derivatives(const ElementView<D>& at, ElementDerivatives<D>& out) const {
     const LineOfAction<D> line(at, from, to);

@@ -8,6 +8,8 @@
 #include <carom/core/force_element.h>
 #include <carom/core/system.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace carom {
@@ -44,6 +46,29 @@ void book_pull(ElementLoads<D>& out, const End<D>& from, const End<D>& to, const
   out.conservative(to, -elastic);
   out.dissipative(from, viscous);
   out.dissipative(to, -viscous);
+}
+
+/// Whether two ends stand at one place, but for the rounding of what their positions are added up from, and
+/// do not move against each other faster than `fastest` [m/s]. The line between them has no direction then.
+template <int D>
+[[nodiscard]] bool at_one_place(const EvaluationContext& at, const Attachment<D>& from,
+                                const Attachment<D>& to, double fastest) {
+  constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+  const Vec<D> from_lever = from.lever(at.evaluation), to_lever = to.lever(at.evaluation);
+  const Vec<D> a = from.position(at.state, from_lever), b = to.position(at.state, to_lever);
+  const double size = a.norm() + b.norm() + from_lever.norm() + to_lever.norm();
+  if (!((b - a).norm() <= rounding * size)) return false;
+  return !((to.velocity(at.state, to_lever) - from.velocity(at.state, from_lever)).norm() > fastest);
+}
+
+/// Whether a law that is asked for lengths > 0 only does not vanish with the length, judged at two lengths
+/// that are small against all that is built.
+template <class Law>
+[[nodiscard]] bool stays_without_length(const Law& law) {
+  constexpr double tiny = 1e-12, small = 1e-6;  // [m]
+  // Laws that fall at least as the square root of the length come below 1e-3.
+  constexpr double vanishing = 1e-2;
+  return !(std::abs(law(tiny)) <= vanishing * std::abs(law(small)));
 }
 
 /// The line between two ends: with d from `from` to `to`, the length |d|, d/|d| and the rate of the length.

@@ -56,6 +56,11 @@ struct MaxwellElement {
     const MeanLine<D> line(step, from, to);
     pull(mean_tension(step, line) * line.direction, out);
   }
+  /// Whether its ends stand at one place although its force does not vanish there.
+  [[nodiscard]] bool lacks_direction(const ElementView<D>& at, double fastest) const {
+    return tension(0.0, *at.internal()) != 0.0 &&
+           at_one_place(at.context(), at.attach(from), at.attach(to), fastest);
+  }
   /// T^2 / (2 k) [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {
     const double pull = tension(length(at), *at.internal());

@@ -78,6 +78,10 @@ struct NonlinearSpring {
     if (line.length == 0.0) return;
     line.add_pull(out, from, to, force(line.length) + damping * line.rate, slope(line.length), damping);
   }
+  /// Whether its ends stand at one place although its force does not vanish there.
+  [[nodiscard]] bool lacks_direction(const ElementView<D>& at, double fastest) const {
+    return at_one_place(at.context(), at.attach(from), at.attach(to), fastest) && stays_without_length(force);
+  }
   /// V(l) [J].
   [[nodiscard]] double potential(const ElementView<D>& at) const {
     return potential_of((at.position(to) - at.position(from)).norm());

@@ -90,6 +90,10 @@ struct OneSidedSpring {
       line.add_pull(out, from, to, side * (spring + dashpot), stiffness, damping);
     }
   }
+  /// Whether its ends stand at one place although its force does not vanish there: a bumper.
+  [[nodiscard]] bool lacks_direction(const ElementView<D>& at, double fastest) const {
+    return excess(0.0) > 0.0 && at_one_place(at.context(), at.attach(from), at.attach(to), fastest);
+  }
   /// Switching value, zero where it goes taut or slack: (l^2 - L^2)/(2 L), near L as l - L [m]; 1 m where L =
   /// 0.
   void guards(const ElementView<D>& at, double* out) const {

@@ -307,6 +307,17 @@ void SpringDamperKind<D>::derivatives(const EvaluationContext& at, Index element
 }
 
 template <int D>
+Index SpringDamperKind<D>::first_without_direction(const EvaluationContext& at, Range elements,
+                                                   double fastest) const {
+  for (Index i = elements.begin; i < elements.end; ++i) {
+    if (!(stiffness_[i] * free_length_[i] > 0.0)) continue;
+    const Ends ends = ends_of(i);
+    if (at_one_place(at, ends.from, ends.to, fastest)) return i;
+  }
+  return elements.end;
+}
+
+template <int D>
 void SpringDamperKind<D>::fingerprint(Fingerprint& print) const {
   for (Index element = 0; element < size(); ++element) {
     const SpringDamper<D> part = described(element);

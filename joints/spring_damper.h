@@ -20,8 +20,9 @@ template <int D>
 class SpringDamperKind;
 
 /// Spring and dashpot between two ends, along the line between them: with d from `from` to `to`, l = |d|,
-/// the force on `to` is -(k (l - L) + c dl/dt) d/l. At l = 0 the direction is undefined: for L = 0 the force
-/// of the spring is zero there by continuity, for L > 0 it is set to zero, like that of the dashpot.
+/// the force on `to` is -(k (l - L) + c dl/dt) d/l. At l = 0 the direction is undefined: for L = 0 the
+/// spring's force is zero there by continuity, for L > 0 it is set to zero, as is the dashpot's. No run
+/// begins where k L > 0 and l = 0 (ModelError).
 template <int D>
 struct SpringDamper {
   static constexpr Role role = Role::force;
@@ -65,6 +66,8 @@ public:
   void derivatives(const EvaluationContext& at, Index element,
                    std::vector<LoadDerivative>& out) const override;
   [[nodiscard]] bool has_derivatives() const override { return true; }
+  [[nodiscard]] Index first_without_direction(const EvaluationContext& at, Range elements,
+                                              double fastest) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:

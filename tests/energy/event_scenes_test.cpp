@@ -43,11 +43,11 @@ bool has_no_solution(const SolverError& error) {
 
 // Open questions, of the scenes 0 to 179,999 (their ledgers close to 1.4e-6 at the default tolerance, all
 // but three dozen to 1e-7, which close to 1e-8 at the tight one):
-//   22935, 32129, 82959, 85944, 95909: two particles at one place, joined by a spring that is longer; its
-//   force has no direction, and what happens hangs on rounding. 146150, 147131: an impact of three corners,
-//   two of them almost without friction, that has no solution, which is not proved: the error says not
-//   solved.
-constexpr std::array<std::uint64_t, 7> open_questions{22935, 32129, 82959, 85944, 95909, 146150, 147131};
+//   85944: two particles on a spring that pushes them apart slide into the corner of a V from both sides.
+//   Their line turns ever faster the nearer they come, and at 4e-7 m events pass the limit.
+// Not run: 22935, 32129, 95909 (two particles start at one place, joined by a spring that is longer) and
+// 82959 (they meet there), which are named (tests/integrators/force_directions_test.cpp).
+constexpr std::array<std::uint64_t, 5> open_questions{22935, 32129, 82959, 85944, 95909};
 
 void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_residual, Findings& findings) {
   const std::string name = "scene " + std::to_string(seed) + ": ";
@@ -218,6 +218,17 @@ TEST(EventScenes, WhatMovesTogetherStopsTogether) { expect_sound_scenes({101074,
 
 // A corner was stopped at the price of pushing another one off, which came back at once.
 TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({17418, 36733}); }
+
+// Three corners jam, two of them almost without friction: no solution, which was not seen beside candidates
+// with impulses of 1e8 times all others.
+TEST(EventScenes, JamsOfThreeCornersAreProvedToHaveNoSolution) {
+  for (const std::uint64_t seed : {146150u, 147131u}) {
+    Findings findings;
+    run_scene(seed, {}, residual_at_default, findings);
+    for (const std::string& failure : findings.failures) ADD_FAILURE() << failure;
+    EXPECT_EQ(findings.without_solution, 1) << seed;
+  }
+}
 
 // Multistep methods at order 1: gaps and their rates contradict each other by the tolerance.
 TEST(EventScenes, LowOrderLetsNoGapFallThatOpens) {
