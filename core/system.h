@@ -6,6 +6,7 @@
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
+#include <carom/core/model_finding.h>
 #include <carom/core/part.h>
 #include <carom/core/registry.h>
 #include <carom/core/surface.h>
@@ -114,6 +115,10 @@ public:
   /// True if the body has an orientation; false of the ground. Throws ModelError for a body that is not of
   /// this system.
   [[nodiscard]] bool has_orientation(BodyId id) const;
+
+  /// What may be a mistake: laws of contact that cannot act, parts that can touch nothing, and the like
+  /// (core/model_finding.h). Empty if nothing was found. A Simulation calls it; StepReport::findings.
+  [[nodiscard]] std::vector<ModelFinding> check() const;
 
   /// Parts, in the order in which they were added.
   [[nodiscard]] std::vector<BodyId> bodies() const { return identities<BodyId>(bodies_); }

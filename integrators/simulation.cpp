@@ -73,6 +73,7 @@ struct Simulation::Impl {
       : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode, stop)) {
     state = model->assembly.initial_state();
     report.projected = model->prepare(state);
+    report.findings = model->assembly.system().check();
     forget_history();
     companion.ledger.open(stored_energies(model->assembly, state));
   }
@@ -116,6 +117,8 @@ struct Simulation::Impl {
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
   void rethrow(const std::vector<std::exception_ptr>& thrown);
   void advance(double limit);
+  void advance_keeping_findings(double limit);
+  void write_findings();
   void write_news();
   void write_event_news(std::size_t told);
   [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
@@ -132,6 +135,7 @@ struct Simulation::Impl {
   std::vector<EventRecord> events;
   Callbacks callbacks;
   Log log;
+  bool findings_written = false;
   bool progress = false;
 };
 
@@ -172,10 +176,11 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
   {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
-    advance(std::min(limit, next_due()));
+    advance_keeping_findings(std::min(limit, next_due()));
   }
   try {
     const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
+    write_findings();
     write_news();
     write_event_news(told);
   } catch (...) {
@@ -233,6 +238,29 @@ void Simulation::Impl::advance(double limit) {
     const bool snapped = limit <= grid_end + close;
     advance_to(full, snapped ? limit : grid_end);
     ++companion.grid_steps;
+  }
+}
+
+/// Steps make their reports anew; findings are of the model.
+void Simulation::Impl::advance_keeping_findings(double limit) {
+  struct Keep {
+    explicit Keep(StepReport& of) : report(of), findings(std::move(of.findings)) {}
+    ~Keep() { report.findings = std::move(findings); }
+    Keep(const Keep&) = delete;
+    Keep& operator=(const Keep&) = delete;
+
+    StepReport& report;
+    std::vector<ModelFinding> findings;
+  } keep(report);
+  advance(limit);
+}
+
+/// Once for every model, as soon as there is a sink.
+void Simulation::Impl::write_findings() {
+  if (findings_written || !log.enabled(LogLevel::warning)) return;
+  findings_written = true;
+  for (const ModelFinding& finding : report.findings) {
+    log.write(LogLevel::warning, std::string(to_string(finding.kind)) + ": " + finding.text);
   }
 }
 
@@ -342,12 +370,18 @@ void Simulation::stop_when(StopFunction stop) {
 }
 
 void Simulation::edit(const std::function<void(System&)>& change) {
+  if (!change) throw ModelError("edit: change is empty; allowed: a function");
   Impl& self = *impl_;
   self.guard.demand("edit", CallGuard::Need::no_reader);
   System system = self.model->assembly.system();
+  const Index token = system.token();
   {
     const CallGuard::Scope scope(self.guard, CallGuard::Caller::change);
     change(system);
+  }
+  if (system.token() != token) {
+    throw ModelError(
+        "edit: the system was replaced by another one; allowed: changes of the one that is given");
   }
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   std::unique_ptr<Impl::Model> edited = self.assembled(std::move(system));
@@ -367,7 +401,12 @@ void Simulation::edit(const std::function<void(System&)>& change) {
     std::copy_n(self.state.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
     std::copy_n(self.state.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
   }
-  self.report.projected = edited->prepare(state);
+  const double projected = edited->prepare(state);
+  std::vector<ModelFinding> findings = edited->assembly.system().check();
+  const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
+  self.findings_written = self.findings_written && std::ranges::equal(findings, self.report.findings, same);
+  self.report.projected = projected;
+  self.report.findings = std::move(findings);
   self.model = std::move(edited);
   self.state = std::move(state);
   // What stuck goes on sticking: velocities have not changed.
@@ -436,7 +475,7 @@ JointReaction Simulation::reaction(JointId joint) const {
   const Assembly& assembly = self.model->assembly;
   const System& system = assembly.system();
   if (!system.contains(joint)) {
-    throw ModelError("reaction of a joint: joint is " + system.name(joint) +
+    throw ModelError("reaction of a joint: joint is " + refused_name(system, joint) +
                      "; allowed: a joint of this model");
   }
   const JointKind& kind = system.joint_kinds().kind_of(joint.serial);

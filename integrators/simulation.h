@@ -41,7 +41,8 @@ public:
   using Action = Callbacks::Action;
 
   /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
-  /// joints they are corrected (joint_closure.h); report().projected has the largest displacement. Throws
+  /// joints they are corrected (joint_closure.h); report().projected has the largest displacement, and
+  /// report().findings what System::check() found, which log() gets as warnings at the first step. Throws
   /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in obstacles
   /// than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
@@ -72,7 +73,8 @@ public:
   void stop_when(StopFunction stop);
 
   /// Changes a copy of the model, assembles it and transfers the state by identity; new bodies start as
-  /// described. An error changes nothing. The change of the energy is booked as `intervention`.
+  /// described. An error changes nothing. The change of the energy is booked as `intervention`. Throws
+  /// ModelError for an empty function, and where another system was put in the place of the model.
   void edit(const std::function<void(System&)>& change);
   /// Replaces the state (time included); positions and velocities are projected onto the joints. Throws
   /// ModelError naming the body for numbers that are not finite. The change of the energy is booked as
@@ -113,7 +115,8 @@ public:
   [[nodiscard]] const Companion& companion() const;  ///< all that can influence a later step
   [[nodiscard]] const Mode& mode() const;            ///< the mode and its options
 
-  /// Name of a contact: "particle 'lower' on half-plane #0".
+  /// Name of a contact: "particle 'lower' on half-plane #0". Parts that were removed since keep their names;
+  /// of a key made by default "no contact". Throws ModelError for a key of parts that this model never had.
   [[nodiscard]] std::string name(const ContactKey& key) const;
   /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
   /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps.

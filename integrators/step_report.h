@@ -8,6 +8,7 @@
 #include <carom/contact/solver_chain.h>
 #include <carom/core/ids.h>
 #include <carom/core/joint_kind.h>
+#include <carom/core/model_finding.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/time_stepping.h>
 
@@ -74,6 +75,8 @@ struct StepReport {
   /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
   std::vector<JointImpulse> joint_impulses;
+  /// What System::check() found in the model, at the start or the last edit; the same in every step.
+  std::vector<ModelFinding> findings;
 };
 
 /// Counts and extremes since the start.

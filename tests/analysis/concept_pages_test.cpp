@@ -55,6 +55,12 @@ BodyId add_hammer(System& system, const Vec<2>& place) {
   return hammer;
 }
 
+void list_findings(const System& system, std::ostream& out) {
+  for (const ModelFinding& finding : system.check()) {
+    out << to_string(finding.kind) << ": " << finding.text << "\n";
+  }
+}
+
 void cut_the_rope(Simulation& simulation) {
   simulation.edit([](System& system) { system.remove(system.element("rope")); });
 }
@@ -170,6 +176,20 @@ TEST(ModellingPage, TheLawIsThatOfTheMaterials) {
     simulation.run_until(1.0);
     // It slides with mu = 0.01, in time stepping perhaps not in the first of a thousand steps.
     EXPECT_NEAR(simulation.state().velocity(stone)[0], 2.0 - 0.01 * 9.81, 1e-3 * 0.01 * 9.81);
+  }
+}
+
+TEST(ModellingPage, FindsTheLawOfRubber) {
+  std::ostringstream out;
+  list_findings(curling(), out);
+  EXPECT_EQ(
+      out.str(),
+      "law without effect: surface between 'ice' and 'rubber': an obstacle is of 'ice', but nothing that "
+      "can touch it is of 'rubber'\n");
+  const std::string page = text_of("docs/modelling.md");
+  for (const char* const name : {"law_without_effect", "contact_without_law", "touches_nothing",
+                                 "untouched_obstacle", "body_without_shape", "keep_without_joint"}) {
+    EXPECT_NE(page.find("| `" + std::string(name) + "` |"), std::string::npos) << name;
   }
 }
 

@@ -1,0 +1,195 @@
+// Problem: find what a model describes in vain.
+
+#include <carom/core/enum_name.h>
+#include <carom/core/system.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace carom {
+
+std::string_view to_string(FindingKind kind) {
+  constexpr std::array<std::string_view, finding_kind_count> names{
+      "law without effect", "contact without a law", "touches nothing",
+      "untouched obstacle", "body without a shape",  "kept without a joint"};
+  return enum_name(names, kind);
+}
+
+namespace {
+
+using PartNames = std::vector<std::string>;
+
+constexpr const char* who_touches = "; bodies touch obstacles, not each other";
+
+/// "disc 'rim', disc #1 and 7 more".
+std::string listed(const PartNames& parts) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(parts.size(), most); ++i) text += (i == 0 ? "" : ", ") + parts[i];
+  if (parts.size() > most) text += " and " + std::to_string(parts.size() - most) + " more";
+  return text;
+}
+
+/// A material and the first part that has it.
+struct Toucher {
+  MaterialId material;
+  std::string name;
+};
+
+/// Everything that can touch an obstacle.
+struct Touching {
+  std::vector<Toucher> by_material;
+  PartNames intended;  // shapes, and particles with a material: made to touch something
+  bool any = false;
+};
+
+Touching touching_parts(const System& system) {
+  Touching all;
+  const auto add = [&](MaterialId material, bool intended, auto id) {
+    all.any = true;
+    if (intended) all.intended.push_back(system.name(id));
+    const auto known = std::find_if(all.by_material.begin(), all.by_material.end(),
+                                    [&](const Toucher& toucher) { return toucher.material == material; });
+    if (known == all.by_material.end()) all.by_material.push_back({material, system.name(id)});
+  };
+  // PartNames are made of few parts only where there are obstacles: then none is listed as intended.
+  const bool lists = system.obstacles().empty();
+  for (const auto& entry : system.body_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (!entry.kind->has_contact_point(slot)) continue;
+      const MaterialId material = entry.kind->material(slot);
+      add(material, lists && material.valid(), BodyId{entry.serials[slot], system.token()});
+    }
+  }
+  for (const auto& entry : system.shape_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      add(entry.kind->material(slot), lists, ShapeId{entry.serials[slot], system.token()});
+    }
+  }
+  return all;
+}
+
+bool has(const Touching& touching, MaterialId material) {
+  return std::any_of(touching.by_material.begin(), touching.by_material.end(),
+                     [&](const Toucher& toucher) { return toucher.material == material; });
+}
+
+/// Materials of obstacles.
+std::vector<MaterialId> obstacle_materials(const System& system) {
+  std::vector<MaterialId> all;
+  for (const auto& entry : system.obstacle_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) all.push_back(entry.kind->material(slot));
+  }
+  return all;
+}
+
+/// Bodies on which elements act or which joints bind, by serial number.
+template <class K>
+void mark_ends(const Registry<K>& parts, std::vector<char>& marked) {
+  std::vector<BodyId> ends;
+  for (const auto& entry : parts.entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      ends.clear();
+      entry.kind->ends(slot, ends);
+      for (const BodyId end : ends) {
+        if (end.serial < marked.size()) marked[end.serial] = 1;
+      }
+    }
+  }
+}
+
+void find_bodies_without_shape(const System& system, std::vector<ModelFinding>& out) {
+  const auto& kinds = system.body_kinds().entries();
+  const auto oriented = [](const auto& entry) {
+    return entry.kind->has_orientation() && !entry.serials.empty();
+  };
+  if (std::none_of(kinds.begin(), kinds.end(), oriented)) return;
+  std::vector<char> held(system.body_kinds().next_serial(), 0);
+  for (const auto& entry : system.shape_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) held[entry.kind->body(slot).serial] = 1;
+  }
+  mark_ends(system.force_kinds(), held);
+  mark_ends(system.joint_kinds(), held);
+  PartNames bare;
+  for (const auto& entry : system.body_kinds().entries()) {
+    if (!entry.kind->has_orientation()) continue;
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (held[entry.serials[slot]] == 0)
+        bare.push_back(system.name(BodyId{entry.serials[slot], system.token()}));
+    }
+  }
+  if (bare.empty()) return;
+  std::string text = listed(bare) + ": there is no shape, so that no obstacle is touched";
+  out.push_back({FindingKind::body_without_shape, std::move(bare), std::move(text)});
+}
+
+void find_contacts_without_law(const System& system, const Touching& touching,
+                               std::vector<ModelFinding>& out) {
+  for (const ObstacleId obstacle : system.obstacles()) {
+    for (const Toucher& toucher : touching.by_material) {
+      if (system.law(toucher.material, obstacle)) continue;
+      const std::string name = system.name(obstacle);
+      out.push_back({FindingKind::contact_without_law,
+                     {toucher.name, name},
+                     "contact of " + toucher.name + " on " + name +
+                         ": law is not given; allowed: a Surface on the obstacle or between the two "
+                         "materials"});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ModelFinding> System::check() const {
+  std::vector<ModelFinding> found;
+  const Touching touching = touching_parts(*this);
+  const std::vector<MaterialId> solid = obstacle_materials(*this);
+  const auto is_solid = [&](MaterialId material) {
+    return std::find(solid.begin(), solid.end(), material) != solid.end();
+  };
+  for (const auto& [pair, law] : laws_) {
+    const MaterialId a{pair.first, token_}, b{pair.second, token_};
+    if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
+    const std::string name_a = "'" + materials_[a.serial] + "'", name_b = "'" + materials_[b.serial] + "'";
+    std::string text = "surface between " + name_a + " and " + name_b + ": ";
+    if (!is_solid(a) && !is_solid(b)) {
+      text += "no obstacle is of " + name_a + (a == b ? "" : " or " + name_b) + who_touches;
+    } else {
+      const bool solid_a = is_solid(a);
+      text += "an obstacle is of " + (solid_a ? name_a : name_b) + ", but nothing that can touch it is of " +
+              (solid_a ? name_b : name_a);
+    }
+    found.push_back({FindingKind::law_without_effect, {materials_[a.serial], materials_[b.serial]}, text});
+  }
+  if (solid.empty()) {
+    if (!touching.intended.empty()) {
+      std::string text = listed(touching.intended) + ": there is no obstacle to touch" + who_touches;
+      found.push_back({FindingKind::touches_nothing, touching.intended, std::move(text)});
+    }
+  } else {
+    find_contacts_without_law(*this, touching, found);
+    if (!touching.any) {
+      PartNames untouched;
+      for (const ObstacleId obstacle : obstacles()) untouched.push_back(name(obstacle));
+      std::string text = listed(untouched) + ": no body has a shape or touches as a particle";
+      found.push_back({FindingKind::untouched_obstacle, std::move(untouched), std::move(text)});
+    }
+    find_bodies_without_shape(*this, found);
+  }
+  if (!kept_.empty()) {
+    std::vector<char> bound(bodies_.next_serial(), 0);
+    mark_ends(joints_, bound);
+    PartNames kept;
+    for (const Index serial : kept_) {
+      if (bound[serial] == 0) kept.push_back(name(BodyId{serial, token_}));
+    }
+    if (!kept.empty()) {
+      std::string text = listed(kept) + ": no joint binds it, so that keep_place() has no effect";
+      found.push_back({FindingKind::keep_without_joint, std::move(kept), std::move(text)});
+    }
+  }
+  return found;
+}
+
+}  // namespace carom
