@@ -54,6 +54,9 @@ public:
   /// Says where the moving obstacles are at a time; does nothing if `places` already says so for this finder.
   /// Throws SolverError, naming the obstacle, where a prescribed motion is not finite.
   void place(double time, ObstaclePlaces& places) const;
+  /// Demands that no moving obstacle jumps between two times: places `before` and `after`, both of this
+  /// finder. Throws SolverError naming the obstacle, the time, and by how much it jumps (core/law_jump.h).
+  void demand_continuous(const ObstaclePlaces& before, const ObstaclePlaces& after) const;
   /// Times at which motions of obstacles have jumps or kinks, in the order of obstacles. Made at each call.
   [[nodiscard]] std::vector<Discontinuity> breaks() const;
 
@@ -103,7 +106,7 @@ public:
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass.
   [[nodiscard]] bool needs_rotations() const;
 
-  /// "particle 'lower' on half-plane #0".
+  /// As contact_name() of the assembly's system.
   [[nodiscard]] std::string name(const ContactKey& key) const;
 
 private:

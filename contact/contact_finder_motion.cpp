@@ -2,9 +2,11 @@
 
 #include <carom/contact/contact_finder.h>
 #include <carom/contact/prescribed_motion.h>
+#include <carom/core/law_jump.h>
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +37,24 @@ void ContactFinder::place(double time, ObstaclePlaces& places) const {
     }
   }
   places.time_ = time;
+}
+
+void ContactFinder::demand_continuous(const ObstaclePlaces& before, const ObstaclePlaces& after) const {
+  const auto point_of = [](const ObstacleMotion& motion, double time) {
+    return LawPoint{time, motion.point, motion.velocity, motion.angle, motion.spin};
+  };
+  for (const Obstacle& obstacle : obstacles_) {
+    if (obstacle.moving == none) continue;
+    const LawPoint from = point_of(before.motions_[obstacle.moving], before.time_),
+                   to = point_of(after.motions_[obstacle.moving], after.time_);
+    if (looks_smooth(from, to)) continue;
+    auto law = [&](double time) { return point_of(obstacle.kind->place(obstacle.slot, time), time); };
+    const std::optional<LawJump> jump = find_jump(law, from, to);
+    if (!jump) continue;
+    const ObstacleId id{obstacle.serial, assembly_->system().token()};
+    fail_jump(assembly_->system().name(id), jump->of_angle ? "angle" : "displacement",
+              jump->of_angle ? "rad" : "m", *jump);
+  }
 }
 
 std::vector<Discontinuity> ContactFinder::breaks() const {

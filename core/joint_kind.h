@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
 #include <carom/core/ids.h>
+#include <carom/core/law_jump.h>
 #include <carom/core/state.h>
 
 #include <array>
@@ -137,7 +138,11 @@ public:
   virtual void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const = 0;
   /// True if rows depend on time.
   [[nodiscard]] virtual bool depends_on_time() const { return false; }
-  /// Appends the times at which a joint's law of time has a kink or a jump [s].
+  /// True if a joint prescribes its coordinate as a function of time.
+  [[nodiscard]] virtual bool prescribes(Index /*joint*/) const { return false; }
+  /// The coordinate that a joint prescribes and its rate at a time [s].
+  [[nodiscard]] virtual LawPoint prescribed(Index /*joint*/, double time) const { return {.time = time}; }
+  /// Appends the times at which the rate of a joint's law of time jumps, or a function of it has a kink [s].
   virtual void breaks(Index /*joint*/, std::vector<double>& /*out*/) const {}
 
   /// True if joints of this kind have a coordinate, on which drivers, motors and stops act.

@@ -51,7 +51,7 @@ public:
   /// Position and motion of a moving obstacle at a time [s]. Not finite where its functions are not.
   [[nodiscard]] virtual ObstacleMotion place(Index /*slot*/, double /*time*/) const { return {}; }
   /// Appends the times [s], in their order, at which the velocity of a moving obstacle jumps or its motion
-  /// has a kink. place() at such a time gives the motion after it.
+  /// has a kink. place() at such a time gives the motion after it. The place itself does not jump.
   virtual void breaks(Index /*slot*/, std::vector<double>& /*out*/) const {}
 
   /// Distance of a point from an obstacle at rest. \param point 2 or 3 numbers [m]

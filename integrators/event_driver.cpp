@@ -1,5 +1,6 @@
 // Problem: islands at their own pace, one state for everybody else.
 
+#include <carom/integrators/coupling_rating.h>
 #include <carom/integrators/event_driver.h>
 #include <carom/integrators/failure_file.h>
 
@@ -12,9 +13,9 @@ namespace carom {
 
 void check_options(const EventDriven& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
-    if (std::isfinite(value) && value > 0.0) return;
+    if (is_admissible(value) && value > 0.0) return;
     throw ModelError(std::string("event-driven mode: ") + option + " is " + to_text(value) +
-                     "; allowed: finite and > 0" + unit);
+                     "; allowed: " + allowed_instead(value, std::string("finite and > 0") + unit));
   };
   positive("relative_tolerance", options.relative_tolerance, "");
   positive("absolute_tolerance", options.absolute_tolerance, " m");
@@ -29,6 +30,10 @@ void check_options(const EventDriven& options) {
     throw ModelError("event-driven mode: evaluation_limit is " + std::to_string(options.evaluation_limit) +
                      "; allowed: at least 1");
   }
+  if (options.method > FlowMethod::one_step) {
+    throw ModelError("event-driven mode: method is " + std::to_string(static_cast<int>(options.method)) +
+                     "; allowed: one of FlowMethod, explicit_runge_kutta (0) to one_step (3)");
+  }
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
@@ -36,6 +41,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
     : assembly_(&assembly),
       options_((check_options(options), options)),
       finder_(assembly),
+      prescribed_(assembly),
       work_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
@@ -56,6 +62,7 @@ void EventDriver::start(const State& state, const Companion& companion) {
 
 void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
                           std::vector<EventRecord>& events) {
+  demand_continuous_laws(state.time, target);
   if (!started_) start(state, companion);
   news_.flows = {};
   news_.events.clear();
@@ -73,6 +80,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   modes_.clear();
   for (auto& island : islands_) island->write(trial_, modes_);
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
+  if (!std::isfinite(stored.total())) fail_energy(state.time, target);
   order_events();
   std::vector<ContactRecord> contacts = std::move(report.contacts);
   contacts.clear();
@@ -94,6 +102,39 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.z.swap(trial_.z);
   state.time = target;
   if (options_.record_events) events.insert(events.end(), news_.events.begin(), news_.events.end());
+}
+
+void EventDriver::demand_continuous_laws(double from, double to) {
+  try {
+    prescribed_.demand_continuous(from, to);
+    if (!finder_.has_moving_obstacles()) return;
+    if (places_after_.time() == from) std::swap(places_, places_after_);
+    finder_.place(from, places_);
+    finder_.place(to, places_after_);
+    finder_.demand_continuous(places_, places_after_);
+  } catch (const SolverError& error) {
+    SolverFailure failure = error.failure();
+    failure.time = from;
+    failure.step = to - from;
+    throw SolverError("event-driven at t = " + to_text(from) + " s: " + error.what(), std::move(failure));
+  }
+}
+
+void EventDriver::fail_energy(double from, double to) {
+  started_ = false;
+  work_.chain.reset_statistics();
+  SolverFailure failure;
+  failure.time = from;
+  failure.step = to - from;
+  std::string message = "event-driven at t = " + to_text(to) + " s: ";
+  for (Index island = 0; island < assembly_->islands().size(); ++island) {
+    evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
+    const ElementId cause = find_non_finite_potential(*assembly_, island, trial_.view(), evaluation_);
+    if (cause.valid()) failure.parts.push_back(assembly_->system().name(cause));
+  }
+  message += failure.parts.empty() ? "an energy is too large to be counted"
+                                   : "the potential of " + failure.parts.front() + " is not finite";
+  throw SolverError(message, std::move(failure));
 }
 
 JointReaction EventDriver::reaction(const State& state, const Companion& companion, JointId joint) {

@@ -10,6 +10,7 @@
 #include <carom/integrators/companion.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/island_driver.h>
+#include <carom/integrators/prescribed_joints.h>
 #include <carom/integrators/step_report.h>
 
 #include <memory>
@@ -45,12 +46,16 @@ public:
 private:
   void start(const State& state, const Companion& companion);
   void count(Companion& companion);
+  void demand_continuous_laws(double from, double to);
+  [[noreturn]] void fail_energy(double from, double to);
   void order_events();
   void report_contacts(const DriverNews& news, StepReport& report) const;
 
   const Assembly* assembly_;
   EventDriven options_;
   ContactFinder finder_;
+  PrescribedJoints prescribed_;
+  ObstaclePlaces places_, places_after_;  // at the ends of an advance
   DriverWorkspace work_;
   std::vector<std::unique_ptr<IslandDriver>> islands_;
   Evaluation evaluation_;

@@ -204,11 +204,11 @@ void IslandDriver::take_step() {
     try {
       flow_->advance(std::min(longest_step(), until_break));
     } catch (const SolverError& error) {
-      if (!find_jam()) fail(error.what(), {});
+      if (!find_jam()) fail_flow(error);
       end_here(error.what());
       return;
     }
-    if (!watch(flow_->end(), flow_->state().data(), end_)) fail("the loads are not finite", {});
+    if (!watch(flow_->end(), flow_->state().data(), end_)) fail_loads();
     work_->looks.forget();
     landed_at_ = never;
     next_ = find_event();

@@ -177,6 +177,9 @@ private:
   [[nodiscard]] double accumulation_time() const;
 
   [[nodiscard]] std::string tell_approach(const std::vector<Contact>& contacts, const double* velocity) const;
+  void demand_finite_loads();
+  [[noreturn]] void fail_loads();
+  [[noreturn]] void fail_flow(const SolverError& error);
   [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
                          const ContactCluster* cluster = nullptr) const;
 

@@ -80,8 +80,10 @@ void IslandDriver::begin_phase(DriverNews& news) {
   stopped_ = {};
   fresh_ = false;
 
-  if (!motion_.evaluate(time_, y_.data(), true))
+  if (!motion_.evaluate(time_, y_.data(), true)) {
+    demand_finite_loads();
     fail("the forces of closed contacts contradict each other", {});
+  }
   if (settle(news)) motion_.evaluate(time_, y_.data(), true);
   const MotionWorkspace& work = work_->motion;
   const ElementId lost =
@@ -90,7 +92,7 @@ void IslandDriver::begin_phase(DriverNews& news) {
   in_phase_ = true;
   resting_ = at_rest();
   if (resting_) return;
-  if (!watch(time_, y_.data(), start_)) fail("the loads are not finite", {});
+  if (!watch(time_, y_.data(), start_)) fail_loads();
   guards_.update(start_.seen.guards, guard_noise());
   // A method of many steps is not helped by the length that the last step had.
   const bool one_step =
@@ -154,6 +156,7 @@ bool IslandDriver::decide_body(std::size_t first, std::size_t last, DriverNews& 
   std::vector<Candidate>& candidates = work_->candidates;
   if (candidates.empty()) return true;
   const Decision decision = decide_candidates(first, last);
+  if (decision == Decision::impossible || decision == Decision::failed) demand_finite_loads();
   if (decision == Decision::impossible) {
     impact_without_collision(news);
     return false;

@@ -19,6 +19,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       stop_(stop),
       workers_(std::max(options.threads, 1)),
       finder_(assembly),
+      prescribed_(assembly),
       trial_(assembly.layout()),
       evaluation_(make_evaluation(assembly)) {
   check_options(options);
@@ -116,11 +117,13 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 }
 
 void TimeStepper::place_obstacles(const State& state, double step, double end_time) {
-  if (!finder_.has_moving_obstacles()) return;
   try {
+    prescribed_.demand_continuous(state.time, end_time);
+    if (!finder_.has_moving_obstacles()) return;
     if (places_after_.time() == state.time) std::swap(places_, places_after_);
     finder_.place(state.time, places_);
     finder_.place(end_time, places_after_);
+    finder_.demand_continuous(places_, places_after_);
   } catch (const SolverError& error) {
     fail_motion(error, state, step);
   }

@@ -42,6 +42,7 @@
 #include <carom/integrators/fixed_point.h>
 #include <carom/integrators/gap_projection.h>
 #include <carom/integrators/implicit_solver.h>
+#include <carom/integrators/prescribed_joints.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/stop_request.h>
 #include <carom/integrators/time_stepping.h>
@@ -226,6 +227,7 @@ private:
   const StopRequest* stop_;  // may be null
   Workers workers_;
   ContactFinder finder_;
+  PrescribedJoints prescribed_;
   std::vector<SolverChain> chains_;  // one for each run of an island; the first for what is not shared out
 
   ObstaclePlaces places_;           // of the obstacles at the start

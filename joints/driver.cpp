@@ -52,6 +52,15 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
   out->drift -= now.second;
 }
 
+LawPoint DriverKind::prescribed(Index joint, double time) const {
+  const Driver& driver = parts_[joint].part;
+  LawPoint point{.time = time};
+  point.place[0] = driver.position(time);
+  point.velocity[0] =
+      driver.velocity ? driver.velocity(time) : TimeDifference(time, 1, driver.breaks)(driver.position);
+  return point;
+}
+
 // What is prescribed depends on time alone.
 void DriverKind::derivatives(const JointView& at, Index joint, JointRowDerivative* out) const {
   const JointTable& table = *layout_->joints();

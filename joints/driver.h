@@ -31,7 +31,9 @@ struct Driver {
   std::function<double(double time)> position{};      ///< the coordinate [rad, m] (required)
   std::function<double(double time)> velocity{};      ///< its rate
   std::function<double(double time)> acceleration{};  ///< and that of the rate
-  std::vector<double> breaks{};                       ///< when a function jumps or has a kink, ascending [s]
+  /// When the velocity or acceleration jumps or a function has a kink, ascending [s]. The position is
+  /// continuous: a jump of it is a SolverError.
+  std::vector<double> breaks{};
 };
 
 /// All drivers of a system.
@@ -48,6 +50,8 @@ public:
   void evaluate(const JointView& at, Index joint, JointRow* out) const override;
   void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override;
   [[nodiscard]] bool depends_on_time() const override { return true; }
+  [[nodiscard]] bool prescribes(Index) const override { return true; }
+  [[nodiscard]] LawPoint prescribed(Index joint, double time) const override;
   void breaks(Index joint, std::vector<double>& out) const override;
   /// The force of a driver is given as the moment of its reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,

@@ -1,0 +1,58 @@
+#pragma once
+
+/// \file
+/// Jumps of prescribed displacements. A displacement is continuous; its velocity may jump. One that jumps has
+/// no velocity, and a difference across the jump gives one that throws what it touches.
+
+#include <carom/core/export.h>
+#include <carom/core/function_ref.h>
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace carom {
+
+/// A prescribed place at one time, with its rates. A single coordinate is the first number of `place`.
+struct LawPoint {
+  double time = 0.0;                 ///< [s]
+  std::array<double, 3> place{};     ///< [m]; a coordinate in its own unit
+  std::array<double, 3> velocity{};  ///< its rate
+  double angle = 0.0;                ///< [rad]; where whole turns do not matter
+  double spin = 0.0;                 ///< its rate [rad/s]
+};
+
+/// A jump that was found.
+struct LawJump {
+  double time = 0.0;      ///< the last time before it [s]
+  double size = 0.0;      ///< |change| of the place, or change of the angle
+  bool of_angle = false;  ///< of which
+};
+
+/// Part of the way that velocities may miss: two points of a law are taken as parts of a smooth motion where
+///     |x1 - x0 - h (v0 + v1)/2|  <=  smooth_share (|x1 - x0| + h (|v0| + |v1|)/2) + resolved_share max|x|.
+/// and the velocities do not change much, |v1 - v0| <= bent_share (|v0| + |v1|): a jump that velocities by
+/// differences have felt may look like a start from rest. By the rule's error h^3 |x'''|/12 a law of angular
+/// frequency w passes for h w < 1 or so, but where it turns back.
+inline constexpr double smooth_share = 0.1;
+inline constexpr double bent_share = 0.5;  ///< see smooth_share
+/// Smallest jump that is looked for, as part of the largest |x|: rounding of usual laws is far below.
+inline constexpr double resolved_share = 1e-9;
+
+/// True if two points of a law look like points of one smooth motion, as above.
+[[nodiscard]] CAROM_API bool looks_smooth(const LawPoint& from, const LawPoint& to);
+
+/// Looks for a jump between two points of a law that do not look smooth: the interval is halved as long as
+/// its parts do not look smooth either, down to the rounding of time. A jump is a change that over the last
+/// interval is still most of what it is over one a thousand times as long: fast and rough motions, and kinks,
+/// have none. A jump that velocities by differences have felt (core/time_difference.h) may lie a little
+/// outside of the interval, and is found there. Not found are jumps of less than smooth_share of the way of
+/// the motion around them, and all but the eight roughest parts of an interval.
+[[nodiscard]] CAROM_API std::optional<LawJump> find_jump(FunctionRef<LawPoint(double time)> law,
+                                                         const LawPoint& from, const LawPoint& to);
+
+/// Throws the SolverError of a jump. \param part whose law it is \param quantity what jumps, in `unit`
+[[noreturn]] CAROM_API void fail_jump(const std::string& part, const std::string& quantity, const char* unit,
+                                      const LawJump& jump);
+
+}  // namespace carom

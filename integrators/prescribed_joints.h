@@ -1,0 +1,36 @@
+#pragma once
+
+/// \file
+/// Joints that prescribe their coordinates: a watch over jumps of what they prescribe.
+
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/law_jump.h>
+
+#include <vector>
+
+namespace carom {
+
+/// All joints of an assembly that prescribe a coordinate (drivers).
+class CAROM_API PrescribedJoints {
+public:
+  /// \param assembly must outlive it
+  explicit PrescribedJoints(const Assembly& assembly);
+
+  /// Demands that no prescribed coordinate jumps between two times [s]. Throws SolverError naming the joint,
+  /// the time, and by how much it jumps (core/law_jump.h).
+  void demand_continuous(double from, double to);
+
+private:
+  struct Law {
+    const JointKind* kind;
+    Index slot;
+    JointId id;
+    LawPoint last;  // at the end of what was looked at last
+  };
+
+  const Assembly* assembly_;
+  std::vector<Law> laws_;
+};
+
+}  // namespace carom
