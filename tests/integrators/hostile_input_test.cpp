@@ -209,7 +209,7 @@ TEST(HostileInput, NumbersThatAreNoneOrTooLarge) {
 
 TEST(HostileInput, EnumeratorsThatAreNone) {
   const Bench bench;
-  for (const int bad : {7, 77, 255}) {
+  for (const int bad : {20, 77, 255}) {
     EXPECT_MODEL_ERROR(Simulation(bench.system, TimeStepping{.force_rule = static_cast<ForceRule>(bad)}),
                        "force_rule", "allowed");
     EXPECT_MODEL_ERROR(Simulation(bench.system, TimeStepping{.iteration = static_cast<Iteration>(bad)}),
@@ -219,10 +219,10 @@ TEST(HostileInput, EnumeratorsThatAreNone) {
     EXPECT_MODEL_ERROR(Log([](LogLevel, std::string_view) {}, static_cast<LogLevel>(bad)), "level",
                        "allowed");
     const EnergyLedger ledger;
-    EXPECT_MODEL_ERROR((void)ledger.flow(static_cast<EnergyFlow>(bad + 7)), "term", "allowed");
+    EXPECT_MODEL_ERROR((void)ledger.flow(static_cast<EnergyFlow>(bad)), "term", "allowed");
     EXPECT_MODEL_ERROR((void)ledger.stored(static_cast<StoredEnergy>(bad)), "term", "allowed");
     for (const std::string_view name :
-         {to_string(static_cast<EventKind>(bad + 7)), to_string(static_cast<EnergyFlow>(bad + 7)),
+         {to_string(static_cast<EventKind>(bad)), to_string(static_cast<EnergyFlow>(bad)),
           to_string(static_cast<StoredEnergy>(bad)), to_string(static_cast<LogLevel>(bad)),
           to_string(static_cast<SolverId>(bad)), to_string(static_cast<ForceRule>(bad)),
           to_string(static_cast<Iteration>(bad)), to_string(static_cast<FindingKind>(bad)),
