@@ -3,6 +3,9 @@
 #include <carom/integrators/coupling_rating.h>
 #include <carom/integrators/island_driver.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,12 +37,14 @@ void IslandDriver::fail_loads() {
 }
 
 void IslandDriver::fail_flow(const SolverError& error) {
-  // What the flow evaluated last need not be where it failed: a law of time shows itself at the end of the
-  // step that was tried, too.
+  // The last evaluation of the flow need not be where it failed: a law of time shows itself at the end of the
+  // step that was tried, or behind it, up to some thousand roundings of time.
   demand_finite_loads();
   const double end = error.failure().time + error.failure().step;
-  for (const double time : {time_, end}) {
-    (void)motion_.evaluate(time, y_.data(), false);
+  const double rounding = std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(end));
+  constexpr double farthest = 4096.0;
+  for (double ahead = 0.0; ahead <= farthest; ahead = std::max(1.0, 2.0 * ahead)) {
+    (void)motion_.evaluate(end + ahead * rounding, y_.data(), false);
     demand_finite_loads();
   }
   fail(error.what(), error.failure().parts);
