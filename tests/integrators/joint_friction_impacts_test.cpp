@@ -1,0 +1,106 @@
+// Friction in joints that is bound by their force, in impacts: with one restitution for all contacts nothing
+// is gained, in both modes.
+
+#include "tests/integrators/redundant_mechanisms.h"
+#include "tests/shares.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace joint_scenes;
+
+/// One to three bars, pinned to the ground and to each other with friction, swing against a slope and a wall.
+struct Scenario {
+  Linkage linkage;
+  double restitution = 0.0;  ///< of all contacts, in both directions
+
+  explicit Scenario(std::uint64_t seed) {
+    carom_test::Random random(seed);
+    System& system = linkage.scene.system;
+    system.add(Gravity{{0.0, -g}});
+    restitution = random.below(3) == 0 ? 1.0 : random.uniform(0.0, 1.0);
+    const unsigned bars = 1 + random.below(3);
+    Vec<2> at(0.0, 0.5 * bars), velocity = Vec<2>::Zero();
+    std::vector<Vec<2>> tips{at};
+    Linkage::Bar before = linkage.base;
+    for (unsigned i = 0; i < bars; ++i) {
+      const double spin = random.uniform(-6.0, 6.0), length = random.uniform(0.5, 1.0);
+      const Vec<2> way = length * Linkage::along(random.uniform(-0.5, 3.6));
+      const Linkage::Bar bar = linkage.bar(random.uniform(0.3, 3.0), at, at + way, velocity, spin);
+      linkage.pin(before, bar, at);
+      // Of a pin: mu times its radius; half of the largest that a bar of this length could bear.
+      system.add(
+          JointFriction{.joint = system.joints().back(), .coefficient = random.uniform(0.0, 0.3) * length},
+          "rust " + std::to_string(i));
+      system.add(Point{.body = bar.body, .position = {0.5 * length, 0.0}});
+      at += way;
+      tips.push_back(at);
+      velocity += spin * Vec<2>(-way[1], way[0]);
+      before = bar;
+    }
+    // The floor and the wall are some way off all tips.
+    const auto put = [&](const Vec<2>& normal) {
+      double nearest = normal.dot(tips.front());
+      for (const Vec<2>& tip : tips) nearest = std::min(nearest, normal.dot(tip));
+      const double mu = random.below(3) == 0 ? 0.0 : random.uniform(0.05, 0.8);
+      system.add(
+          HalfPlane{.point = (nearest - random.uniform(0.02, 0.5)) * normal, .normal = normal},
+          Surface{.friction = mu, .normal_restitution = restitution, .tangential_restitution = restitution});
+    };
+    put(Linkage::along(quarter + random.uniform(-0.3, 0.3)));
+    if (random.below(2) == 0) put(Vec<2>(-1.0, 0.0));
+  }
+};
+
+constexpr double end = 1.0;
+
+/// Runs until the end, or until friction in joints that is bound by their force has no solution that is
+/// found. True if it came to the end.
+bool run(Simulation& simulation) {
+  try {
+    simulation.run_until(end);
+  } catch (const SolverError&) {
+    return false;
+  }
+  return true;
+}
+
+void expect_no_gain(std::uint64_t first, std::uint64_t last) {
+  // Kinetic energies are sums of a few roundings.
+  constexpr double rounding = 1e-12;
+  std::uint64_t ended = 0;
+  std::size_t impacts = 0;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    const std::string name = "scene " + std::to_string(seed);
+    const Scenario scenario(seed);
+    Simulation stepping(scenario.linkage.scene.system, TimeStepping{.step = 1e-3});
+    ended += run(stepping) ? 1U : 0U;
+    // Steps of lasting contact are another matter (StepReport::lasting_gain).
+    EXPECT_LE(stepping.statistics().energy_gained - stepping.statistics().lasting_gained, 0.0) << name;
+    Simulation events(scenario.linkage.scene.system, EventDriven{.interval = 0.1 * end, .event_limit = 1e5});
+    ended += run(events) ? 1U : 0U;
+    EXPECT_EQ(events.statistics().energy_gained, 0.0) << name;
+    for (const EventRecord& event : events.events()) {
+      if (event.kind != EventKind::impact) continue;
+      ++impacts;
+      EXPECT_LE(event.energy_after, event.energy_before * (1.0 + rounding)) << name;
+    }
+  }
+  EXPECT_GT(impacts, (last - first) / 4);
+  EXPECT_GT(ended, 3 * (last - first) / 2);
+}
+TEST(JointFrictionImpacts, WithOneRestitutionNothingIsGained) { expect_no_gain(0, 16); }
+TEST(JointFrictionImpactsLong, WithOneRestitutionNothingIsGained) {
+  expect_no_gain(16, carom_test::all_seeds() ? 500 : 60);
+}
+
+}  // namespace
