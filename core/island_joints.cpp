@@ -125,12 +125,11 @@ IslandJoints::IslandJoints(const Assembly& assembly, Index island)
   if (depends_on_time) rate_.assign(end.row, 0.0);
   pattern_ = std::move(pattern);
   // Masses of planar bodies, and of particles, are diagonal in the velocities.
-  std::vector<double> ones(assembly.layout()->v_size(), 0.0), inverse(ones.size(), 0.0);
-  std::fill(ones.begin() + v_.begin, ones.begin() + v_.end, 1.0);
+  const std::vector<double> ones(v_.size(), 1.0);
+  inverse_mass_.resize(v_.size());
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    kind.apply_inverse_mass(slots, ones.data() + v, inverse.data() + v);
+    kind.apply_inverse_mass(slots, ones.data() + (v - v_.begin), inverse_mass_.data() + (v - v_.begin));
   });
-  inverse_mass_.assign(inverse.begin() + v_.begin, inverse.begin() + v_.end);
 }
 
 void IslandJoints::hold_still(Range velocities) {

@@ -103,7 +103,22 @@ std::size_t worst_row(std::span<const double> off) {
   return worst;
 }
 
-void close_island(const Assembly& assembly, Index island, const std::vector<double>& lengths, State& state,
+/// Numbers over the whole model that islands share: made for each they would cost the square of their number.
+struct ClosureWork {
+  explicit ClosureWork(const Assembly& assembly, const State& state)
+      : lengths(assembly.length_scales()),
+        evaluation(make_evaluation(assembly)),
+        start(state.q),
+        before(state.v),
+        change(state.v.size(), 0.0),
+        moved(state.q.size(), 0.0) {}
+  std::vector<double> lengths;
+  Evaluation evaluation;
+  std::vector<double> start, before;  // q and v as they were
+  std::vector<double> change, moved;
+};
+
+void close_island(const Assembly& assembly, Index island, ClosureWork& work, State& state,
                   JointClosure& closure) {
   IslandJoints joints(assembly, island);
   if (joints.empty()) return;
@@ -113,14 +128,15 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
     const BodySlot slot = layout.bodies()[body];
     if (assembly.system().keeps_place(layout.id(body))) joints.hold_still({slot.v, slot.v + slot.v_size});
   }
-  Evaluation evaluation = make_evaluation(assembly);
+  Evaluation& evaluation = work.evaluation;
+  const std::vector<double>& lengths = work.lengths;
   const auto locate = [&] {
     evaluate_positions(assembly, island, state.view(), evaluation);
     joints.locate({state.view(), evaluation.rotation.data()});
   };
   std::vector<double> off(joints.size());
-  const std::vector<double> start = state.q;
-  std::vector<double> change(state.v.size(), 0.0), moved(state.q.size(), 0.0);
+  const std::vector<double>& start = work.start;
+  std::vector<double>&change = work.change, &moved = work.moved;
   double best = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
     locate();
@@ -143,8 +159,8 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
   }
   demand_unique_pressure(assembly, island, joints);
   // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
-  for (const BodySlot& slot : layout.bodies()) {
-    if (slot.v < range.v.begin || slot.v >= range.v.end) continue;
+  for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
+    const BodySlot slot = layout.bodies()[body];
     for (Index i = 0; i < std::min(slot.q_size, slot.v_size); ++i) {
       closure.shift =
           std::max(closure.shift, std::abs(state.q[slot.q + i] - start[slot.q + i]) * lengths[slot.v + i]);
@@ -156,7 +172,7 @@ void close_island(const Assembly& assembly, Index island, const std::vector<doub
   for (std::size_t i = 0; i < off.size(); ++i) speed = std::max(speed, std::abs(joints.rate(i)));
   find_off();
   if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
-  const std::vector<double> before = state.v;
+  const std::vector<double>& before = work.before;
   joints.hold(JointLevel::velocity, state.v.data());
   joints.hold(JointLevel::velocity, state.v.data());  // what rounding left
   find_off();
@@ -176,9 +192,9 @@ JointClosure close_joints(const Assembly& assembly, State& state) {
   check_sizes(assembly, state);
   JointClosure closure;
   if (assembly.joint_kinds().empty()) return closure;
-  const std::vector<double> lengths = assembly.length_scales();
+  ClosureWork work(assembly, state);
   for (Index island = 0; island < assembly.islands().size(); ++island) {
-    close_island(assembly, island, lengths, state, closure);
+    close_island(assembly, island, work, state, closure);
   }
   return closure;
 }
