@@ -34,6 +34,7 @@ public:
   /// While it lives, calls are taken to come from this caller.
   class CAROM_API Scope {
   public:
+    /// \param guard must outlive this
     Scope(CallGuard& guard, Caller caller) : guard_(&guard), before_(std::exchange(guard.caller_, caller)) {}
     ~Scope() { guard_->caller_ = before_; }
     Scope(const Scope&) = delete;

@@ -21,6 +21,7 @@ class Simulation;
 /// simulation calls it; keeps nothing alive.
 class CallbackId {
 public:
+  /// Of no function.
   CallbackId() = default;
 
 private:
@@ -33,11 +34,12 @@ private:
 /// added (observers are called from the next step on) and any may be removed.
 class CAROM_API Callbacks {
 public:
-  using Observer = std::function<void(const Simulation&)>;
-  using Action = std::function<void(Simulation&)>;
+  using Observer = std::function<void(const Simulation&)>;  ///< called after every step
+  using Action = std::function<void(Simulation&)>;          ///< called at the times of a rhythm
 
+  /// Adds an observer behind the others.
   CallbackId add_observer(Observer observer);
-  /// Its rhythm is the next of Companion::rhythms.
+  /// Adds an action behind the others. Its rhythm is the next of Companion::rhythms.
   CallbackId add_action(Action action);
   /// Removes one, with its rhythm. False if it is not there.
   [[nodiscard]] bool remove(const CallbackId& id, std::vector<Rhythm>& rhythms);

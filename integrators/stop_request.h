@@ -25,6 +25,7 @@ using StopFunction = std::function<bool()>;
 /// Asks a StopFunction between the parts of long work.
 class CAROM_API StopRequest {
 public:
+  /// Never ends.
   StopRequest() = default;
   /// \param function empty: never ends
   explicit StopRequest(StopFunction function) : function_(std::move(function)) {}
