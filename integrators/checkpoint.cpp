@@ -98,6 +98,8 @@ void for_statistics(S& s, F&& f) {
   f(s.sweeps);
   f(s.most_sweeps);
   f(s.largest_contraction);
+  for (auto& count : s.steps_by_iteration) f(count);
+  f(s.fallbacks);
   f(s.impacts);
   f(s.contact_steps);
   f(s.several_solutions);
@@ -182,6 +184,12 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   }
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
+  out.add(std::uint64_t{companion.iterations.entries().size()});
+  for (const IterationMemory::Entry& entry : companion.iterations.entries()) {
+    out.add(std::uint64_t{entry.island});
+    out.add(std::uint64_t{static_cast<std::uint8_t>(entry.solved)});
+    out.add(entry.steps);
+  }
   out.add(std::uint64_t{companion.loads.valid && companion.loads.mean});
   if (companion.loads.valid && companion.loads.mean) out.add(companion.loads.total);
   out.add(companion.next_step);
@@ -258,6 +266,19 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   }
   history.sweeps.resize(in.count());
   for (int& sweeps : history.sweeps) in.get(sweeps);
+  const std::size_t remembered = in.count();
+  for (std::size_t i = 0; i < remembered; ++i) {
+    std::uint64_t island = 0, solved = 0;
+    IterationMemory::Entry entry;
+    in.get(island);
+    in.get(solved);
+    in.get(entry.steps);
+    entry.island = static_cast<Index>(island);
+    entry.solved = static_cast<Iteration>(solved);
+    if (island >= none || solved >= iteration_count || !other.iterations.append(entry)) {
+      in.damaged("an iteration is unknown");
+    }
+  }
   std::uint64_t has_mean_loads = 0;
   in.get(has_mean_loads);
   if (has_mean_loads > 1) in.damaged("it is unknown whether it holds loads");

@@ -7,6 +7,7 @@
 #include <carom/contact/contact.h>
 #include <carom/contact/contact_solver.h>
 #include <carom/core/energy_ledger.h>
+#include <carom/integrators/iteration_memory.h>
 #include <carom/integrators/load_history.h>
 #include <carom/integrators/step_report.h>
 
@@ -43,12 +44,13 @@ struct Companion {
   Statistics statistics;               ///< counts since the start
   ChainStatistics contact_statistics;  ///< of the contact solvers in accepted steps
   std::vector<float>
-      rounding;             ///< what rounding cut off the velocities: carried on, so that it does not add up
-  LoadHistory history;      ///< for the guess at the loads of the next step
-  double grid_start = 0.0;  ///< times of steps are grid_start + n h, so that rounding does not add up [s]
-  std::int64_t grid_steps = 0;                            ///< n
-  double next_step = 0.0;                                 ///< of step control; 0: as described [s]
-  PresentLoads loads;                                     ///< at the state
+      rounding;         ///< what rounding cut off the velocities: carried on, so that it does not add up
+  LoadHistory history;  ///< for the guess at the loads of the next step
+  IterationMemory iterations;   ///< with which the next step begins
+  double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
+  std::int64_t grid_steps = 0;  ///< n
+  double next_step = 0.0;       ///< of step control; 0: as described [s]
+  PresentLoads loads;           ///< at the state
   std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
   std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()
 };

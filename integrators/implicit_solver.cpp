@@ -79,7 +79,7 @@ ImplicitSolver& ImplicitSolver::operator=(ImplicitSolver&&) noexcept = default;
 
 ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index island, const StateView& state,
                                                const Evaluation& evaluation, double step,
-                                               const Border* joints) {
+                                               const Border* joints, bool make_definite) {
   Factors& self = *factors_;
   self.assembly = &assembly;
   self.island = island;
@@ -99,6 +99,7 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index i
       self.triplets.emplace_back(std::max(row, column), std::min(row, column), value);
     }
   }
+  const auto first_mass = static_cast<std::ptrdiff_t>(self.triplets.size());
   std::vector<double> unit, image;
   assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
     const Index size = kind.v_size();
@@ -121,6 +122,20 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index i
   // The pattern is that of the graph; an element may leave out entries at times, so it is looked at again.
   self.factors.analyzePattern(self.matrix);
   self.factors.factorize(self.matrix);
+  // Loads that give way as much as this (a spring pushed together, against turning aside) are not followed to
+  // where they lead: the correction becomes shorter instead. Doubled: some 50 times are the whole range of
+  // numbers that a step can need.
+  constexpr int most_additions = 60;
+  const auto definite = [&] {
+    return self.factors.info() == Eigen::Success && self.factors.vectorD().minCoeff() > 0.0;
+  };
+  for (int i = 0; make_definite && i < most_additions && !definite(); ++i) {
+    for (auto mass = self.triplets.begin() + first_mass; mass != self.triplets.end(); ++mass) {
+      *mass = {mass->row(), mass->col(), 2.0 * mass->value()};
+    }
+    self.matrix.setFromTriplets(self.triplets.begin(), self.triplets.end());
+    self.factors.factorize(self.matrix);
+  }
   if (self.factors.info() != Eigen::Success) return Outcome::singular;
   self.rows = 0;
   if (joints != nullptr && !self.surround(*joints)) return Outcome::singular;

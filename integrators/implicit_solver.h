@@ -37,8 +37,10 @@ public:
   /// Linearises the loads at a state and factors. The position group of `evaluation` must be up to date. A
   /// matrix A that is not definite can be solved with, but not in contact problems.
   /// \param joints of the island, both placed; null: none
+  /// \param make_definite add as much of the mass matrix to A as makes it definite
   [[nodiscard]] Outcome factor(const Assembly& assembly, Index island, const StateView& state,
-                               const Evaluation& evaluation, double step, const Border* joints);
+                               const Evaluation& evaluation, double step, const Border* joints,
+                               bool make_definite = false);
   /// f becomes x over the velocities of the island, `f` beginning with the first of them.
   /// \param r of the joints; null: zero
   void solve(double* f, const double* r = nullptr) const;

@@ -94,6 +94,7 @@ struct Simulation::Impl {
     companion.modes.clear();
     companion.rounding.assign(state.v.size(), 0.0);
     companion.history.known = 0;
+    companion.iterations.clear();
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();
   }
@@ -460,6 +461,7 @@ void Simulation::switch_to(Mode mode) {
   self.mode = std::move(mode);
   self.model->machines = std::move(machines);
   self.companion.next_step = 0.0;
+  self.companion.iterations.clear();
   self.restart_grid();
 }
 

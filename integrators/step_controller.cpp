@@ -131,6 +131,8 @@ double StepController::error(double step) const {
 void StepController::merge(StepReport& report) {
   std::swap(report, first_);
   report.time = second_.time;
+  report.iteration = std::max(report.iteration, second_.iteration);
+  report.fallbacks += second_.fallbacks;
   report.sweeps = std::max(report.sweeps, second_.sweeps);
   report.local_sweeps = std::max(report.local_sweeps, second_.local_sweeps);
   report.contraction = std::max(report.contraction, second_.contraction);

@@ -57,10 +57,13 @@ struct ControlReport {
 
 /// The last accepted step.
 struct StepReport {
-  double time = 0.0;                             ///< at its end [s]
-  double step = 0.0;                             ///< its length [s]
-  Iteration iteration = Iteration::fixed_point;  ///< the one that was used
-  int sweeps = 0;                                ///< of the iteration, the most over all islands
+  double time = 0.0;  ///< at its end [s]
+  double step = 0.0;  ///< its length [s]
+  /// Which solved the step; where islands differ the one farthest from the fixed-point iteration, in the
+  /// order of the enumeration.
+  Iteration iteration = Iteration::fixed_point;
+  int fallbacks = 0;           ///< iterations that were given up for another one, summed over islands
+  int sweeps = 0;              ///< of the iteration that solved the step, the most over all islands
   int local_sweeps = 0;        ///< sweeps before, of the bodies near contacts only; the most over all islands
   double contraction = 0.0;    ///< ratio of successive changes, the largest over islands (0: none seen)
   ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
@@ -81,10 +84,13 @@ struct StepReport {
 
 /// Counts and extremes since the start.
 struct Statistics {
-  std::int64_t steps = 0;                 ///< accepted steps
-  std::int64_t sweeps = 0;                ///< sum over steps of StepReport::sweeps
-  int most_sweeps = 0;                    ///< the most in one step
-  double largest_contraction = 0.0;       ///< the largest StepReport::contraction
+  std::int64_t steps = 0;            ///< accepted steps
+  std::int64_t sweeps = 0;           ///< sum over steps of StepReport::sweeps
+  int most_sweeps = 0;               ///< the most in one step
+  double largest_contraction = 0.0;  ///< the largest StepReport::contraction
+  /// Steps by StepReport::iteration: fixed-point, Anderson, linearly implicit.
+  std::array<std::int64_t, iteration_count> steps_by_iteration{};
+  std::int64_t fallbacks = 0;             ///< sum over steps of StepReport::fallbacks
   std::int64_t impacts = 0;               ///< contacts that closed faster than the capture speed
   std::int64_t contact_steps = 0;         ///< contacts that took part in steps
   std::int64_t several_solutions = 0;     ///< of contact problems with more than one end velocity

@@ -59,21 +59,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   changes_.resize(most_blocks);
   earlier_changes_.resize(most_blocks);
   works_.resize(most_blocks);
-  if (options.iteration == Iteration::linearly_implicit) {
-    update_.resize(size);
-    free_.resize(size);
-  }
-  if (options.iteration == Iteration::anderson) {
-    const std::vector<double> ones(size, 1.0);
-    weights_.resize(size);
-    for (Index island = 0; island < assembly.islands().size(); ++island) {
-      assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-        kind.apply_inverse_mass(slots, ones.data() + v, weights_.data() + v);
-      });
-    }
-    const std::vector<double> lengths = assembly.length_scales();
-    for (std::size_t i = 0; i < size; ++i) weights_[i] *= lengths[i];
-  }
+  set_iteration(automatic() ? Iteration::fixed_point : options.iteration);
 }
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
@@ -88,7 +74,8 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   rubbing_modes_.clear();
   report_.time = end_time;
   report_.step = step;
-  report_.iteration = options_.iteration;
+  report_.iteration = Iteration::fixed_point;
+  report_.fallbacks = 0;
   report_.sweeps = 0;
   report_.local_sweeps = 0;
   report_.contraction = 0.0;
@@ -104,6 +91,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
   }
   const auto islands = static_cast<Index>(assembly_->islands().size());
+  iterations_.clear();
   open_history(companion);
   try {
     for (Index island = 0; island < islands; ++island) {
@@ -131,11 +119,18 @@ void TimeStepper::place_obstacles(const State& state, double step, double end_ti
 
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
   if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
-  find_contacts(island, state);
-  const bool with_joints = jointed(island);
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
-  if (!iterate(island, state, companion, step, judge))
-    fail_contraction(island, state, companion, step, judge);
+  if (automatic()) set_iteration(Iteration::fixed_point);
+  tentative_ = false;
+  if (automatic() && needed_sweeps_[island] != Sweeps::unneeded) {
+    iterate_somehow(island, state, companion, step, judge);
+  } else {
+    find_contacts(island, state);
+    if (!iterate(island, state, companion, step, judge)) {
+      fail_contraction(island, state, companion, step, judge);
+    }
+  }
+  const bool with_joints = jointed(island);
   const double contraction = judge.contraction();
 
   book_couplings(island, state, step);
@@ -143,6 +138,7 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
   book_contacts(state, step);
   if (options_.project_gaps) project(island, state, companion, step);
   rate(island, state, step, contraction);
+  report_.iteration = std::max(report_.iteration, iteration_);
   report_.sweeps = std::max(report_.sweeps, judge.sweeps());
   report_.contraction = std::max(report_.contraction, contraction);
 }
@@ -155,7 +151,7 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
     sweeps_[island] = 1;
     return judge.judge(0.0, 0.0) == Verdict::converged;
   }
-  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool implicit = iteration_ == Iteration::linearly_implicit;
   const bool with_joints = jointed(island);
   start_iteration(island, state, step);
   if (in_one_pass(island)) {
@@ -218,7 +214,7 @@ TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, 
     solve_contacts(island, block, part, state, companion, step);
     sweep(island, block, part, state, companion, step);
   };
-  if (in_one_pass(island) && options_.iteration == Iteration::fixed_point &&
+  if (in_one_pass(island) && iteration_ == Iteration::fixed_point &&
       assembly_->islands()[island].blocks.size() > 1 && judge.sweeps() + 2 == expected) {
     sweep_twice(island, state, companion, step, sweep_first);
     demand_solved(island, state, companion, step, judge.sweeps() + 2);
@@ -240,7 +236,7 @@ TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, 
     follow_iterate(island, state, step);
   }
   const bool by_cause = judge.sweeps() + 1 >= expected;
-  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool implicit = iteration_ == Iteration::linearly_implicit;
   evaluate_iterate(island, state, companion, step, by_cause ? LoadsAsked::by_cause : LoadsAsked::total,
                    !implicit, first);
   if (in_one_pass(island)) demand_solved(island, state, companion, step, judge.sweeps() + 1);
@@ -253,7 +249,7 @@ void TimeStepper::start_iteration(Index island, const State& state, double step)
   std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
   swept_ = false;
   if (jointed(island)) start_joints(island, state, step);
-  if (options_.iteration == Iteration::anderson) anderson_.start(v.size());
+  if (iteration_ == Iteration::anderson) anderson_.start(v.size());
 }
 
 void TimeStepper::sort_islands() {
@@ -271,7 +267,7 @@ void TimeStepper::sort_islands() {
 }
 
 void TimeStepper::sweep_all(Index island, const State& state, const Companion& companion, double step) {
-  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool implicit = iteration_ == Iteration::linearly_implicit;
   if (jointed(island)) {
     if (implicit) guess_implicit(island, state, step);
     sweep_joints(island, state, companion, step);

@@ -79,6 +79,16 @@ private:
   /// Sweeps until the judge is content; false if the iteration does not contract.
   [[nodiscard]] bool iterate(Index island, const State& state, const Companion& companion, double step,
                              FixedPointJudge& judge);
+  /// Likewise by one iteration after the other (Iteration::automatic); throws SolverError if none contracts.
+  void iterate_somehow(Index island, const State& state, const Companion& companion, double step,
+                       FixedPointJudge& judge);
+  /// The contacts of an island and sweeps by one iteration, whose failure leads to another one.
+  [[nodiscard]] bool attempt(Iteration iteration, Index island, const State& state,
+                             const Companion& companion, double step, FixedPointJudge& judge);
+  [[noreturn]] void fail_all_iterations(Index island, const State& state, const Companion& companion,
+                                        double step);
+  void set_iteration(Iteration iteration);
+  [[nodiscard]] bool automatic() const { return options_.iteration == Iteration::automatic; }
   void advance_under_constant_loads(Index island, const State& state, const Companion& companion,
                                     double step);
   void find_contacts(Index island, const State& state);
@@ -108,7 +118,9 @@ private:
   void sweep(Index island, const State& state, const Companion& companion, double step);
   void sweep(Index island, const Block& block, Index part, const State& state, const Companion& companion,
              double step);
-  [[nodiscard]] bool in_one_pass(Index island) const { return needed_sweeps_[island] == Sweeps::in_one_pass; }
+  [[nodiscard]] bool in_one_pass(Index island) const {
+    return needed_sweeps_[island] == Sweeps::in_one_pass && iteration_ != Iteration::linearly_implicit;
+  }
   [[nodiscard]] bool jointed(Index island) const { return !joints_.empty() && !joints_[island].end.empty(); }
   void prepare_joints();
   void start_joints(Index island, const State& state, double step);
@@ -250,6 +262,9 @@ private:
   std::vector<SweepChange> changes_, earlier_changes_;  // by block of the island at hand; of the sweep before
   std::vector<Works> works_;                            // likewise
   std::vector<double> weights_;                         // of loads: lengths by mass
+  Iteration iteration_ = Iteration::fixed_point;        // of the island at hand
+  bool tentative_ = false;                              // one that may fail
+  IterationMemory iterations_;                          // the companion's, after the step
   AndersonAcceleration anderson_;
   ImplicitSolver implicit_;
   bool stale_ = false;  // the matrix is to be made anew

@@ -238,6 +238,9 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
   statistics.sweeps += report_.sweeps;
+  companion.iterations.swap(iterations_);
+  ++statistics.steps_by_iteration[static_cast<std::size_t>(report_.iteration)];
+  statistics.fallbacks += report_.fallbacks;
   statistics.most_sweeps = std::max(statistics.most_sweeps, report_.sweeps);
   statistics.largest_contraction = std::max(statistics.largest_contraction, report_.contraction);
   for (const ContactRecord& contact : report_.contacts) {

@@ -40,7 +40,7 @@ void TimeStepper::find_contacts(Index island, const State& state) {
   }
   response_.resize(trial_.v.size());
   free_.resize(trial_.v.size());
-  if (options_.iteration == Iteration::linearly_implicit || jointed(island)) {
+  if (iteration_ == Iteration::linearly_implicit || jointed(island)) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together, those of all blocks
     const Island& all = assembly_->islands()[island];
     std::fill_n(block_clusters_.begin(), all.blocks.size(), Range{0, 1});
@@ -122,7 +122,7 @@ void TimeStepper::settle_contacts(Index island, const State& state, const Compan
   const Range blocks = assembly_->islands()[island].blocks;
   std::fill_n(settled_.begin(), blocks.size(), std::uint8_t{untouched});
   if (clusters_in_use_ == 0 || blocks.size() < small_part) return;
-  if (options_.iteration != Iteration::fixed_point) return;
+  if (iteration_ != Iteration::fixed_point) return;
   const auto block_at = [&](Index index) -> const Block& { return assembly_->blocks()[index]; };
   const auto sweep_at = [&](Index index) {
     const Index part = index - blocks.begin;

@@ -125,7 +125,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     if (!clusters_[i].changed_modes()) continue;
     for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(finder_.name(contact.key));
   }
-  const bool implicit = options_.iteration == Iteration::linearly_implicit;
+  const bool implicit = iteration_ == Iteration::linearly_implicit;
   if (!std::isfinite(judge.change())) {
     if (implicit) {
       demand_finite_loads(island, state.view(), state, step);
@@ -142,9 +142,10 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   failure.residual = judge.change();
   evaluate_positions(*assembly_, island, state.view(), evaluation_);
   const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
-  std::string message = place(state, step) + "the " + std::string(to_string(options_.iteration)) +
+  std::string message = place(state, step) + "the " + std::string(to_string(iteration_)) +
                         " iteration does not contract after " + std::to_string(judge.sweeps()) +
                         " sweeps (last change " + to_text(judge.change()) + " m)";
+  if (automatic()) message += ", nor do the Anderson and the linearly implicit iteration";
   if (rating.worst.valid()) {
     failure.parts.push_back(assembly_->system().name(rating.worst));
     failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
@@ -160,7 +161,7 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
   }
   if (rating.island_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
-    if (!implicit) message += ", as would the linearly implicit iteration";
+    if (!implicit && !automatic()) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the force elements contract (rate " +
@@ -195,7 +196,7 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   message += to_string(cluster.report().outcome);
   if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
   message += ", residual " + to_text(cluster.report().residual);
-  message += write_failure(options_.failure_directory, failure, message);
+  if (!tentative_) message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));
 }
 

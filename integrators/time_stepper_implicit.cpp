@@ -10,7 +10,7 @@ namespace carom {
 
 void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
   const Range v = assembly_->islands()[island].v;
-  if (options_.iteration == Iteration::fixed_point) {
+  if (iteration_ == Iteration::fixed_point) {
     if (assembly_->islands().size() == 1) {
       evaluation_.force.swap(evaluated_);
       return;
@@ -18,7 +18,7 @@ void TimeStepper::improve_guess(Index island, const FixedPointJudge& judge) {
     for_blocks(island, [this](const Block& block, Index) { improve_guess(block); });
     return;
   }
-  if (options_.iteration == Iteration::anderson) {
+  if (iteration_ == Iteration::anderson) {
     const auto part = [&](std::vector<double>& numbers) {
       return std::span<double>(numbers.data() + v.begin, v.size());
     };
@@ -61,15 +61,12 @@ void TimeStepper::linearise(Index island, const StateView& at, const Evaluation&
                             const State& state, double step) {
   std::optional<ImplicitSolver::Border> joints;
   if (jointed(island)) joints.emplace(ImplicitSolver::Border{joints_[island].end, joints_[island].mean});
-  const auto outcome =
-      implicit_.factor(*assembly_, island, at, evaluation, step, joints ? &*joints : nullptr);
+  const auto outcome = implicit_.factor(*assembly_, island, at, evaluation, step, joints ? &*joints : nullptr,
+                                        clusters_in_use_ > 0);
   if (outcome == ImplicitSolver::Outcome::singular) {
     fail_linearisation(island, state, step, "is singular");
   }
   if (clusters_in_use_ == 0) return;
-  if (outcome != ImplicitSolver::Outcome::definite) {
-    fail_linearisation(island, state, step, "is not definite while bodies touch");
-  }
   if (jointed(island)) return;  // coupled anew by every sweep
   clusters_.front().couple(assembly_->islands()[island].v, [this](double* x) { implicit_.solve(x); });
 }

@@ -20,6 +20,8 @@ std::string_view to_string(Iteration iteration) {
       return "Anderson";
     case Iteration::linearly_implicit:
       return "linearly implicit";
+    case Iteration::automatic:
+      return "automatic";
   }
   return "unknown";
 }

@@ -5,6 +5,7 @@
 
 #include <carom/core/export.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,10 +34,18 @@ enum class Iteration : std::uint8_t {
   /// Newton's method with the derivatives of the elements, kept while it contracts well: a sparse linear
   /// problem in every sweep, with the rows of the joints. For elements that are too stiff for the others.
   /// Allocates.
-  linearly_implicit
+  linearly_implicit,
+  /// The fixed-point iteration; within a step, for a component in which it fails, Anderson's, then the
+  /// linearly implicit one. After three such steps in a row its steps begin with the one that solved the
+  /// last, and every 32 steps with the fixed-point iteration again. StepReport::iteration is the one that
+  /// solved a step.
+  automatic
 };
 
-/// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit".
+/// Number of iterations that can end a step: all but `automatic`, which stands behind them.
+inline constexpr std::size_t iteration_count = 3;
+
+/// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit", "automatic".
 [[nodiscard]] CAROM_API std::string_view to_string(ForceRule rule);
 [[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);  ///< likewise
 
@@ -60,7 +69,7 @@ struct TimeStepping {
   /// The iteration ends when another sweep would change positions, and h times velocities, by less than this
   /// (angles times the radius of gyration). At 0 it goes on until the change no longer decreases [m].
   double tolerance = 1e-12;
-  int max_sweeps = 200;  ///< sweeps after which the iteration is given up, >= 2
+  int max_sweeps = 200;  ///< sweeps after which an iteration is given up, >= 2
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger only, never on the motion [m/s].
@@ -69,7 +78,9 @@ struct TimeStepping {
   bool refuse_energy_gain = false;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements
-  Iteration iteration = Iteration::fixed_point;   ///< solution of the step
+  /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does
+  /// the step.
+  Iteration iteration = Iteration::automatic;
   /// Move bodies out of obstacles at the end of each step, by the smallest displacement in the mass norm:
   /// contacts that took part in the step end with gaps >= 0 up to rounding. A contact that closes within the
   /// step is detected at its end and takes part in the next. Bodies with joints move along their joints. The

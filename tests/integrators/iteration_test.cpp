@@ -127,7 +127,7 @@ TEST(Iteration, AndersonNeedsFewerSweeps) {
 
 TEST(Iteration, AndersonAloneConvergesWhereSweepsGrow) {
   // 1.3 for the contraction of plain sweeps.
-  const TimeStepping plain{.step = 1e-3};
+  const TimeStepping plain{.step = 1e-3, .iteration = Iteration::fixed_point};
   TimeStepping other = plain;
   other.iteration = Iteration::anderson;
   Simulation refused(pair(2.6e6), plain);
@@ -142,7 +142,7 @@ constexpr double stiff_step = 1e-2;
 constexpr double stiff = 1e8;
 
 TEST(Iteration, StiffPairIsRefusedByPlainSweepsByName) {
-  Simulation simulation(pair(stiff), TimeStepping{.step = stiff_step});
+  Simulation simulation(pair(stiff), TimeStepping{.step = stiff_step, .iteration = Iteration::fixed_point});
   const std::vector<double> before = simulation.state().q;
   try {
     simulation.step();
