@@ -6,6 +6,7 @@
 #include <carom/integrators/force_directions.h>
 #include <carom/integrators/mode_takeover.h>
 #include <carom/integrators/progress_bar.h>
+#include <carom/integrators/run_news.h>
 #include <carom/integrators/simulation.h>
 #include <carom/integrators/step_controller.h>
 #include <carom/integrators/time_resolution.h>
@@ -17,6 +18,7 @@
 #include <iostream>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace carom {
@@ -119,9 +121,7 @@ struct Simulation::Impl {
   void rethrow(const std::vector<std::exception_ptr>& thrown);
   void advance(double limit);
   void advance_keeping_findings(double limit);
-  void write_findings();
-  void write_news();
-  void write_event_news(std::size_t told);
+  void write_to_log(std::size_t told);
   [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
     return std::make_unique<Model>(std::move(system), mode, stop);
   }
@@ -180,10 +180,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
     advance_keeping_findings(std::min(limit, next_due()));
   }
   try {
-    const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
-    write_findings();
-    write_news();
-    write_event_news(told);
+    write_to_log(told);
   } catch (...) {
     thrown.push_back(std::current_exception());
   }
@@ -202,17 +199,7 @@ void Simulation::Impl::call_actions(Simulation& simulation, std::vector<std::exc
 void Simulation::Impl::rethrow(const std::vector<std::exception_ptr>& thrown) {
   if (thrown.empty()) return;
   const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
-  for (std::size_t i = 1; i < thrown.size() && log.enabled(LogLevel::error); ++i) {
-    std::string what = "an unknown exception";
-    try {
-      std::rethrow_exception(thrown[i]);
-    } catch (const std::exception& error) {
-      what = error.what();
-    } catch (...) {  // it has no text
-    }
-    log.write(LogLevel::error,
-              "t = " + to_text(state.time) + " s: one more observer or action threw: " + what);
-  }
+  write_exceptions(log, state.time, std::span(thrown).subspan(1));
   std::rethrow_exception(thrown.front());
 }
 
@@ -256,51 +243,16 @@ void Simulation::Impl::advance_keeping_findings(double limit) {
   advance(limit);
 }
 
-/// Once for every model, as soon as there is a sink.
-void Simulation::Impl::write_findings() {
-  if (findings_written || !log.enabled(LogLevel::warning)) return;
-  findings_written = true;
-  for (const ModelFinding& finding : report.findings) {
-    log.write(LogLevel::warning, std::string(to_string(finding.kind)) + ": " + finding.text);
+/// Findings once for every model, as soon as there is a sink.
+void Simulation::Impl::write_to_log(std::size_t told) {
+  const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
+  if (!findings_written && log.enabled(LogLevel::warning)) {
+    findings_written = true;
+    write_findings(log, report.findings);
   }
-}
-
-void Simulation::Impl::write_news() {
-  if (!log.enabled(LogLevel::warning)) return;
-  const std::string when = "t = " + to_text(report.time) + " s: ";
-  const double impact_gain = report.energy_gain - report.lasting_gain;
-  if (impact_gain > 0.0) {
-    log.write(LogLevel::warning, when + "impact adds " + to_text(impact_gain) + " J");
-  }
-  for (const ContactRecord& contact : report.contacts) {
-    if (contact.outcome != Outcome::several_solutions) continue;
-    log.write(LogLevel::warning, when + "contact of " + model->machines.finder().name(contact.key) +
-                                     " has several solutions; the one with the smallest impulse was taken");
-  }
-}
-
-void Simulation::Impl::write_event_news(std::size_t told) {
-  for (; told < events.size(); ++told) {
-    const EventRecord& event = events[told];
-    const auto write = [&](LogLevel level, const std::string& what) {
-      if (!log.enabled(level)) return;
-      log.write(level, "t = " + to_text(event.time) + " s: contact of " +
-                           model->machines.finder().name(event.contact) + ": " + what);
-    };
-    const auto state_of = [&] {
-      return "W_nn - s mu W_nt = " + to_text(event.stiffness) +
-             " 1/kg, normal acceleration without contact " + to_text(event.free_acceleration) + " m/s^2";
-    };
-    if (event.kind == EventKind::impact_without_collision) {
-      write(LogLevel::warning,
-            "no force keeps it (" + state_of() + "); an impact without collision was made");
-    } else if (event.kind == EventKind::several_accelerations) {
-      write(LogLevel::warning, "several accelerations are possible (" + state_of() + "); it is " +
-                                   std::string(to_string(event.mode)) + " now");
-    } else if (event.kind == EventKind::accumulation) {
-      write(LogLevel::info, "closed, impacts slower than the capture speed");
-    }
-  }
+  const ContactFinder& finder = model->machines.finder();
+  write_step_news(log, report, finder);
+  write_event_news(log, std::span(events).subspan(told), finder);
 }
 
 Simulation::Simulation(System system, Mode mode)

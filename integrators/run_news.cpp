@@ -1,0 +1,64 @@
+#include <carom/integrators/run_news.h>
+
+#include <string>
+
+namespace carom {
+
+void write_findings(Log& log, std::span<const ModelFinding> findings) {
+  for (const ModelFinding& finding : findings) {
+    log.write(LogLevel::warning, std::string(to_string(finding.kind)) + ": " + finding.text);
+  }
+}
+
+void write_step_news(Log& log, const StepReport& report, const ContactFinder& finder) {
+  if (!log.enabled(LogLevel::warning)) return;
+  const std::string when = "t = " + to_text(report.time) + " s: ";
+  const double impact_gain = report.energy_gain - report.lasting_gain;
+  if (impact_gain > 0.0) {
+    log.write(LogLevel::warning, when + "impact adds " + to_text(impact_gain) + " J");
+  }
+  for (const ContactRecord& contact : report.contacts) {
+    if (contact.outcome != Outcome::several_solutions) continue;
+    log.write(LogLevel::warning, when + "contact of " + finder.name(contact.key) +
+                                     " has several solutions; the one with the smallest impulse was taken");
+  }
+}
+
+void write_event_news(Log& log, std::span<const EventRecord> events, const ContactFinder& finder) {
+  for (const EventRecord& event : events) {
+    const auto write = [&](LogLevel level, const std::string& what) {
+      if (!log.enabled(level)) return;
+      log.write(level,
+                "t = " + to_text(event.time) + " s: contact of " + finder.name(event.contact) + ": " + what);
+    };
+    const auto state_of = [&] {
+      return "W_nn - s mu W_nt = " + to_text(event.stiffness) +
+             " 1/kg, normal acceleration without contact " + to_text(event.free_acceleration) + " m/s^2";
+    };
+    if (event.kind == EventKind::impact_without_collision) {
+      write(LogLevel::warning,
+            "no force keeps it (" + state_of() + "); an impact without collision was made");
+    } else if (event.kind == EventKind::several_accelerations) {
+      write(LogLevel::warning, "several accelerations are possible (" + state_of() + "); it is " +
+                                   std::string(to_string(event.mode)) + " now");
+    } else if (event.kind == EventKind::accumulation) {
+      write(LogLevel::info, "closed, impacts slower than the capture speed");
+    }
+  }
+}
+
+void write_exceptions(Log& log, double time, std::span<const std::exception_ptr> thrown) {
+  if (!log.enabled(LogLevel::error)) return;
+  for (const std::exception_ptr& exception : thrown) {
+    std::string what = "an unknown exception";
+    try {
+      std::rethrow_exception(exception);
+    } catch (const std::exception& error) {
+      what = error.what();
+    } catch (...) {  // it has no text
+    }
+    log.write(LogLevel::error, "t = " + to_text(time) + " s: one more observer or action threw: " + what);
+  }
+}
+
+}  // namespace carom
