@@ -210,6 +210,7 @@ void IslandDriver::take_step() {
     }
     if (!watch(flow_->end(), flow_->state().data(), end_)) fail_loads();
     work_->looks.forget();
+    work_->guard_looks.forget();
     landed_at_ = never;
     next_ = find_event();
     if (stands_still(next_) && find_jam()) {

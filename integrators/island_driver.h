@@ -18,6 +18,7 @@
 #include <carom/integrators/island_motion.h>
 #include <carom/integrators/mode_decision.h>
 #include <carom/integrators/step_looks.h>
+#include <carom/integrators/step_path.h>
 #include <carom/integrators/step_polynomial.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/work_limits.h>
@@ -50,7 +51,8 @@ struct CAROM_API DriverWorkspace {
   std::vector<Candidate> candidates;  // of one body
   std::vector<ForceMargin> margins;
   std::vector<double> y, free;
-  StepLooks looks;  // into the step at hand
+  StepLooks looks;        // into the step at hand,
+  StepLooks guard_looks;  // of guards along its path
 };
 
 /// What left the energy of islands, and what is to be told, since it was last emptied.
@@ -99,9 +101,11 @@ private:
     std::vector<StepPolynomial::End> gaps;  // by pair
     std::vector<double> bends;              // by pair: bound of the sixth derivative by turning [m/s^6]
     StepLook seen;                          // all else
+    PathEnd path;                           // where there are guards
     std::vector<double> noises;             // rounding of the margins
   };
   class Looker;
+  class PathLooker;
 
   // A sticking contact whose friction is exhausted, and the friction then.
   struct Break {
@@ -123,6 +127,7 @@ private:
   void sample(double time);
   void foretell_gaps(Found& found);
   void foretell_forces(StepLooker& looker, Found& found);
+  void foretell_guards(StepLooker& looker, Found& found);
   [[nodiscard]] double level(std::size_t pair) const;
   [[nodiscard]] double slip_level(std::size_t closed) const;
   [[nodiscard]] double force_level(std::size_t body) const;

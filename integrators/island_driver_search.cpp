@@ -57,6 +57,12 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
     finite = finite && std::isfinite(out.gaps[i].second);
   }
   out.seen.time = time;
+  if (motion_.guards().count() != 0) {
+    const auto first = work.acceleration.begin() + assembly_->islands()[motion_.island()].v.begin;
+    out.path.time = time;
+    out.path.y.assign(y, y + motion_.size());
+    out.path.acceleration.assign(first, first + assembly_->islands()[motion_.island()].v.size());
+  }
   see(out.seen);
   for (const StepPolynomial::End& slip : out.seen.slips) finite = finite && std::isfinite(slip.first);
   out.noises.clear();
@@ -133,11 +139,7 @@ IslandDriver::Found IslandDriver::foretell() {
   if (end_.seen.margins.empty() && end_.seen.guards.empty()) return found;
   Looker looker(*this);
   foretell_forces(looker, found);
-  if (end_.seen.guards.empty()) return found;
-  const double until = found.guard == Guard::nothing ? never : found.time;
-  const GuardSearch::Passage passage =
-      guards_.first(motion_.guards(), start_.seen, end_.seen, work_->looks, looker, guard_noise(), until);
-  if (passage.time < until) found = {passage.time, Guard::kink, passage.guard, passage.sign};
+  if (!end_.seen.guards.empty()) foretell_guards(looker, found);
   return found;
 }
 
@@ -221,9 +223,6 @@ double IslandDriver::force_level(std::size_t body) const {
   return std::clamp(start_.seen.margins[body], -magnified_rounding * start_.noises[body], 0.0);
 }
 
-/// Guards nearer to zero than this have not passed it: what a step may be wrong by, and rounding.
-double IslandDriver::guard_noise() const { return std::max(gap_noise_, options_.absolute_tolerance); }
-
 /// What the quantity of an event is in the state of the workspace, and when it counts as zero.
 IslandDriver::Rest IslandDriver::rest_of(const Found& rough) {
   const MotionWorkspace& work = work_->motion;
@@ -303,37 +302,6 @@ IslandDriver::Found IslandDriver::locate(const Found& rough) {
   if (of_force && f_low > large && f_high < -large) return {low, Guard::jam, rough.which};
   // Nothing there: go on from where it was foretold, for behind it others may have been.
   return below ? Found{high, rough.guard, rough.which, rough.sign} : Found{foretold, Guard::restart, 0};
-}
-
-/// True of a step whose stages passed over what an element does: it is entered and left between two of them,
-/// so that the error of the step seems small. A step that ends at the event then leads elsewhere.
-bool IslandDriver::leaps_over_guards(const Found& found) {
-  constexpr double noticeable = 100.0;  // tolerances: interpolation is less exact than steps are
-  constexpr double shortest = 1e-9;     // of the scale of time: what is left is rounding
-  const double length = found.time - flow_->begin();
-  if (end_.seen.guards.empty() || found.guard == Guard::nothing || found.guard == Guard::jam) return false;
-  if (length <= shortest * std::max(1.0, std::abs(found.time))) return false;
-  if (options_.method == FlowMethod::one_step) {
-    // Its samples are such steps themselves: only the error of the shorter step tells.
-    if (found.time == flow_->end()) return false;
-    flow_->start(time_, y_, length);
-    flow_->advance(length);
-    return flow_->end() < found.time - 2.0 * epsilon * std::max(1.0, std::abs(found.time));
-  }
-  if (landed_at_ != found.time) {
-    landed_.resize(motion_.size());
-    flow_->land(found.time, landed_);
-    landed_at_ = found.time;
-  }
-  work_->y.resize(motion_.size());
-  flow_->sample(found.time, work_->y);
-  const std::span<const double> absolute = motion_.absolute_tolerances();
-  for (std::size_t i = 0; i < landed_.size(); ++i) {
-    const double size = std::max(std::abs(landed_[i]), std::abs(work_->y[i]));
-    const double allowed = noticeable * (options_.relative_tolerance * size + absolute[i]);
-    if (!(std::abs(landed_[i] - work_->y[i]) <= allowed)) return true;
-  }
-  return false;
 }
 
 }  // namespace carom

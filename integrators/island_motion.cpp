@@ -295,6 +295,16 @@ double IslandMotion::total_kinetic_energy() const {
   return sum;
 }
 
+void IslandMotion::read_guards(double time, const double* y, const double* acceleration,
+                               std::vector<GuardMotion>& out) {
+  MotionWorkspace& work = *work_;
+  scatter({y, size_}, work.trial);
+  work.trial.time = time;
+  evaluate_positions(*assembly_, island_, work.trial.view(), work.evaluation);
+  std::copy_n(acceleration, v_size_, work.acceleration.begin() + assembly_->islands()[island_].v.begin);
+  read_guards(out);
+}
+
 double IslandMotion::kinetic_energy(Index body) const {
   const auto of_body = [&](Index one) {
     const BodySlot slot = assembly_->layout()->bodies()[one];

@@ -136,6 +136,12 @@ public:
   void contact(std::size_t pair, Contact& out) const;
   /// Guards of the island's elements.
   [[nodiscard]] const IslandGuards& guards() const { return guards_; }
+  /// True if guards can be looked at along a path of coordinates (step_path.h).
+  [[nodiscard]] bool guards_follow_path() const {
+    return guards_.count() != 0 && guards_.all_have_motion() && has_jacobian();
+  }
+  /// Writes guards at y with accelerations of the island's bodies, without loads.
+  void read_guards(double time, const double* y, const double* acceleration, std::vector<GuardMotion>& out);
   /// Writes them in the workspace's state, with derivatives; accelerations are those of the last evaluate().
   void read_guards(std::vector<GuardMotion>& out);
   /// Where laws of the island's elements and drivers and of obstacles jump, in ascending order of times.
