@@ -222,7 +222,7 @@ void IslandDriver::take_step() {
     if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
     anew = next_.guard == Guard::jam || leaps_over_guards(next_);
     if (anew && next_.guard != Guard::jam) {
-      flow_->start(time_, y_, std::min(next_.time - time_, 0.5 * (flow_->end() - time_)));
+      flow_->start(time_, y_, 0.5 * (std::min(next_.time, flow_->end()) - time_));
     }
   } while (anew);
   const bool at_break =

@@ -43,30 +43,44 @@ void IslandDriver::foretell_guards(StepLooker& looker, Found& found) {
   if (passage.time < until) found = {passage.time, Guard::kink, passage.guard, passage.sign};
 }
 
-/// True of a step whose stages passed over what an element does: it is entered and left between two of them,
-/// so that the error of the step seems small. A step that ends at the event then leads elsewhere.
+/// True of a step whose stages passed over what an element does, so that its error seems small: the element
+/// is entered and left between two of them, or the one stage that meets it has no weight. Up to the event no
+/// guard changes its sign, so that the loads halfway, along the path, show whether they were followed; and a
+/// step that ends at the event shows whether it may be landed on.
 bool IslandDriver::leaps_over_guards(const Found& found) {
-  constexpr double noticeable = 100.0;  // tolerances: interpolation is less exact than steps are
+  constexpr double noticeable = 100.0;  // tolerances: the path is less exact than steps are
   constexpr double shortest = 1e-9;     // of the scale of time: what is left is rounding
-  const double length = found.time - flow_->begin();
-  if (found.guard == Guard::nothing || found.guard == Guard::jam || !motion_.has_jacobian()) return false;
-  if (end_.seen.guards.empty()) return false;
-  if (length <= shortest * std::max(1.0, std::abs(found.time))) return false;
+  const double begin = flow_->begin();
+  const double end = found.guard == Guard::nothing ? flow_->end() : found.time, length = end - begin;
+  if (end_.seen.guards.empty() || found.guard == Guard::jam || !motion_.has_jacobian()) return false;
+  if (length <= shortest * std::max(1.0, std::abs(end))) return false;
+  const std::size_t count = motion_.v_begin();
+  const std::span<const double> absolute = motion_.absolute_tolerances();
+  std::vector<double>& y = work_->y;
+  std::vector<double>& acceleration = work_->free;
+  y.resize(motion_.size());
+  acceleration.resize(count);
+  const auto allowed = [&](std::size_t i) {
+    return noticeable * (options_.relative_tolerance * std::abs(y[i]) + absolute[i]);
+  };
+  follow_path(start_.path, end_.path, count, begin + 0.5 * length, y, acceleration.data());
+  motion_.evaluate(begin + 0.5 * length, y.data(), true);
+  const double* const followed =
+      work_->motion.acceleration.data() + assembly_->islands()[motion_.island()].v.begin;
+  for (std::size_t i = 0; i < count; ++i) {
+    // An acceleration that is missing like a parabola displaces by length^2/12.
+    if (!(std::abs(followed[i] - acceleration[i]) * length * length / 12.0 <= allowed(i))) return true;
+  }
+  if (found.guard == Guard::nothing) return false;
   if (landed_at_ != found.time) {
     landed_.resize(motion_.size());
     flow_->land(found.time, landed_);
     landed_at_ = found.time;
   }
-  const std::size_t count = motion_.v_begin();
-  work_->y.resize(motion_.size());
-  work_->free.resize(count);
-  follow_path(start_.path, end_.path, count, found.time, work_->y, work_->free.data());
-  const std::span<const double> absolute = motion_.absolute_tolerances();
+  follow_path(start_.path, end_.path, count, found.time, y, acceleration.data());
   for (std::size_t i = 0; i < count; ++i) {
-    const double size = std::max(std::abs(landed_[i]), std::abs(work_->y[i]));
-    const double allowed = noticeable * (options_.relative_tolerance * size + absolute[i]);
-    const double of_rate = length * (landed_[count + i] - work_->y[count + i]);
-    if (!(std::abs(landed_[i] - work_->y[i]) + std::abs(of_rate) <= allowed)) return true;
+    const double of_rate = length * (landed_[count + i] - y[count + i]);
+    if (!(std::abs(landed_[i] - y[i]) + std::abs(of_rate) <= allowed(i))) return true;
   }
   return false;
 }
