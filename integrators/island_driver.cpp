@@ -220,9 +220,10 @@ void IslandDriver::take_step() {
     // Forces that were infinite within the step: nearer to there they are seen to grow.
     constexpr double nearer = 0.25;
     if (next_.guard == Guard::jam) flow_->start(time_, y_, nearer * (next_.time - time_));
-    anew = next_.guard == Guard::jam || leaps_over_guards(next_);
-    if (anew && next_.guard != Guard::jam) {
-      flow_->start(time_, y_, 0.5 * (std::min(next_.time, flow_->end()) - time_));
+    anew = next_.guard == Guard::jam;
+    if (!anew && (next_.guard == Guard::leap || lands_off_path(next_))) {
+      flow_->start(time_, y_, 0.5 * (next_.time - time_));
+      anew = true;
     }
   } while (anew);
   const bool at_break =

@@ -88,8 +88,8 @@ public:
 
 private:
   // What is found: nothing, an end of a gap, of a force, of slipping; a kink of loads; a break of a law;
-  // forces without bound; or that the flow is to start anew.
-  enum class Guard : std::uint8_t { nothing, gap, force, slip, kink, law, jam, restart };
+  // forces without bound; that the flow is to start anew; or that the step passed over loads.
+  enum class Guard : std::uint8_t { nothing, gap, force, slip, kink, law, jam, restart, leap };
   struct Found {
     double time;
     Guard guard = Guard::nothing;
@@ -139,7 +139,9 @@ private:
   };
   [[nodiscard]] Rest rest_of(const Found& rough);
   [[nodiscard]] Found locate(const Found& rough);
-  [[nodiscard]] bool leaps_over_guards(const Found& found);
+  [[nodiscard]] bool leaps_over_loads(double until);
+  [[nodiscard]] bool lands_off_path(const Found& found);
+  [[nodiscard]] double allowed_off_path(std::size_t i, double coordinate) const;
   [[nodiscard]] bool stands_still(const Found& found) const;
   void go_to_event(DriverNews& news);
   void accept_step(DriverNews& news);

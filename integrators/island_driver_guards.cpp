@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace carom {
 
@@ -43,46 +42,61 @@ void IslandDriver::foretell_guards(StepLooker& looker, Found& found) {
   if (passage.time < until) found = {passage.time, Guard::kink, passage.guard, passage.sign};
 }
 
+namespace {
+
+constexpr double noticeable = 100.0;  // tolerances: the path is less exact than steps are
+constexpr double shortest = 1e-9;     // steps against the scale of time: what is left is rounding
+
+}  // namespace
+
 /// True of a step whose stages passed over what an element does, so that its error seems small: the element
-/// is entered and left between two of them, or the one stage that meets it has no weight. Up to the event no
-/// guard changes its sign, so that the loads halfway, along the path, show whether they were followed; and a
-/// step that ends at the event shows whether it may be landed on.
-bool IslandDriver::leaps_over_guards(const Found& found) {
-  constexpr double noticeable = 100.0;  // tolerances: the path is less exact than steps are
-  constexpr double shortest = 1e-9;     // of the scale of time: what is left is rounding
-  const double begin = flow_->begin();
-  const double end = found.guard == Guard::nothing ? flow_->end() : found.time, length = end - begin;
-  if (end_.seen.guards.empty() || found.guard == Guard::jam || !motion_.has_jacobian()) return false;
-  if (length <= shortest * std::max(1.0, std::abs(end))) return false;
+/// is entered and left between two of them, or the one stage that meets it has no weight. Up to the first
+/// event no guard changes its sign, so that the loads halfway, along the path, show whether they were
+/// followed.
+bool IslandDriver::leaps_over_loads(double until) {
+  const double begin = flow_->begin(), length = until - begin;
+  if (!motion_.has_jacobian() || length <= shortest * std::max(1.0, std::abs(until))) return false;
   const std::size_t count = motion_.v_begin();
-  const std::span<const double> absolute = motion_.absolute_tolerances();
   std::vector<double>& y = work_->y;
-  std::vector<double>& acceleration = work_->free;
   y.resize(motion_.size());
-  acceleration.resize(count);
-  const auto allowed = [&](std::size_t i) {
-    return noticeable * (options_.relative_tolerance * std::abs(y[i]) + absolute[i]);
-  };
-  follow_path(start_.path, end_.path, count, begin + 0.5 * length, y, acceleration.data());
+  work_->free.resize(count);
+  follow_path(start_.path, end_.path, count, begin + 0.5 * length, y, work_->free.data());
   motion_.evaluate(begin + 0.5 * length, y.data(), true);
   const double* const followed =
       work_->motion.acceleration.data() + assembly_->islands()[motion_.island()].v.begin;
   for (std::size_t i = 0; i < count; ++i) {
     // An acceleration that is missing like a parabola displaces by length^2/12.
-    if (!(std::abs(followed[i] - acceleration[i]) * length * length / 12.0 <= allowed(i))) return true;
+    const double off = std::abs(followed[i] - work_->free[i]) * length * length / 12.0;
+    if (!(off <= allowed_off_path(i, y[i]))) return true;
   }
-  if (found.guard == Guard::nothing) return false;
+  return false;
+}
+
+/// True if a step that ends at the event leads elsewhere than the path: it may not be landed on.
+bool IslandDriver::lands_off_path(const Found& found) {
+  const double length = found.time - flow_->begin();
+  if (found.guard == Guard::nothing || found.guard == Guard::jam || end_.seen.guards.empty()) return false;
+  if (!motion_.has_jacobian() || length <= shortest * std::max(1.0, std::abs(found.time))) return false;
   if (landed_at_ != found.time) {
     landed_.resize(motion_.size());
     flow_->land(found.time, landed_);
     landed_at_ = found.time;
   }
-  follow_path(start_.path, end_.path, count, found.time, y, acceleration.data());
+  const std::size_t count = motion_.v_begin();
+  std::vector<double>& y = work_->y;
+  y.resize(motion_.size());
+  work_->free.resize(count);
+  follow_path(start_.path, end_.path, count, found.time, y, work_->free.data());
   for (std::size_t i = 0; i < count; ++i) {
     const double of_rate = length * (landed_[count + i] - y[count + i]);
-    if (!(std::abs(landed_[i] - y[i]) + std::abs(of_rate) <= allowed(i))) return true;
+    if (!(std::abs(landed_[i] - y[i]) + std::abs(of_rate) <= allowed_off_path(i, y[i]))) return true;
   }
   return false;
+}
+
+/// How far off the path a coordinate may be.
+double IslandDriver::allowed_off_path(std::size_t i, double coordinate) const {
+  return noticeable * (options_.relative_tolerance * std::abs(coordinate) + motion_.absolute_tolerances()[i]);
 }
 
 }  // namespace carom

@@ -106,6 +106,7 @@ IslandDriver::Found IslandDriver::find_event() {
   forces_passed_.assign(end_.seen.margins.size(), 0);
   for (;;) {
     const Found rough = foretell();
+    if (!end_.seen.guards.empty() && leaps_over_loads(rough.time)) return {rough.time, Guard::leap, 0};
     if (rough.guard == Guard::nothing) return rough;
     const Found found = locate(rough);
     if (found.guard != Guard::restart) return found;
