@@ -56,9 +56,9 @@ void check_options(const TimeStepping& options) {
   if (options.force_rule > ForceRule::energy_momentum) {
     refuse("force_rule", static_cast<double>(options.force_rule), "trapezoidal (0) or energy_momentum (1)");
   }
-  if (options.iteration > Iteration::linearly_implicit) {
+  if (options.iteration > Iteration::automatic) {
     refuse("iteration", static_cast<double>(options.iteration),
-           "one of Iteration, fixed_point (0) to linearly_implicit (2)");
+           "one of Iteration, fixed_point (0) to automatic (3)");
   }
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
   if (options.threads < 1) refuse("threads", options.threads, "at least 1");

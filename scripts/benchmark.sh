@@ -3,11 +3,12 @@
 # minutes; the machine should have nothing else to do. With CAROM_MILLION in the environment the net of a million
 # particles runs for its whole second too, which takes ten minutes more.
 #   scripts/benchmark.sh               all
-#   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, flow, joint
+#   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, flow, joint,
+#                                      description
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-programs=(net impact tables chain event flow joint)
+programs=(net impact tables chain event flow joint description)
 for name in "$@"; do
   if [[ " ${programs[*]} " != *" $name "* ]]; then
     echo "usage: $0 [${programs[*]}]" >&2

@@ -12,8 +12,9 @@ import sys
 from pathlib import Path
 
 SIZES = [10, 30, 100, 300, 1000]
+WHEELS = [500, 4000]
 TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "seconds", "per_unknown")
+         "eigen_per_rod", "per_wheel", "seconds", "per_unknown")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -255,6 +256,14 @@ def joint_aims_table(joint):
     return table(["figure", "aim", "measured"], rows)
 
 
+def description_table(description):
+    rows = []
+    for kind in ("driver", "motor", "stop", "friction", "shape", "spring"):
+        few, many = (1e6 * description[f"describe_{kind}/{count}"]["per_wheel"] for count in WHEELS)
+        rows.append([kind, figure(few), figure(many), f"{many / few:.2f}"])
+    return table(["µs per wheel", *(f"{count:,} wheels" for count in WHEELS), "ratio"], rows)
+
+
 def stiff_table(flow):
     rows = []
     for key, sizes, title in (("net_bdf", STIFF_NETS, "net of {0} × {0} particles, `bdf`"),
@@ -292,6 +301,7 @@ def main():
     event_context, event = load(folder, "event")
     flow_context, flow = load(folder, "flow")
     joint_context, joint = load(folder, "joint")
+    description_context, description = load(folder, "description")
     parts = {}
     if net:
         parts |= {"machine": machine(context, compiler, "the net", idle=0.5), "net": net_table(net), "second": second_table(net)}
@@ -311,6 +321,9 @@ def main():
     if joint:
         parts |= {"joint_machine": machine(joint_context, compiler, "the joints"), "joint": joint_table(joint),
                   "joint_aims": joint_aims_table(joint)}
+    if description:
+        parts |= {"description_machine": machine(description_context, compiler, "the descriptions"),
+                  "description": description_table(description)}
     text = page.read_text()
     for name, part in parts.items():
         text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
