@@ -139,6 +139,7 @@ private:
   };
   [[nodiscard]] Rest rest_of(const Found& rough);
   [[nodiscard]] Found locate(const Found& rough);
+  [[nodiscard]] Found first_of(const Found& rough, const Found& found);
   [[nodiscard]] bool leaps_over_loads(double until);
   [[nodiscard]] bool lands_off_path(const Found& found);
   [[nodiscard]] double allowed_off_path(std::size_t i, double coordinate) const;

@@ -109,7 +109,7 @@ IslandDriver::Found IslandDriver::find_event() {
     if (!end_.seen.guards.empty() && leaps_over_loads(rough.time)) return {rough.time, Guard::leap, 0};
     if (rough.guard == Guard::nothing) return rough;
     const Found found = locate(rough);
-    if (found.guard != Guard::restart) return found;
+    if (found.guard != Guard::restart) return first_of(rough, found);
     // A false alarm of a force at the very start: within such a step p = W_nn - s mu W_nt passes zero
     // together with the load, and the flow does not know the force in between.
     if (rough.guard == Guard::force && !(found.time > flow_->begin()) && !find_jam()) {
@@ -124,6 +124,19 @@ IslandDriver::Found IslandDriver::find_event() {
     if (!opens) return found;
     passed_over_[rough.which] = 1;
   }
+}
+
+/// Gaps are foretold to rounding, other quantities to a part of a step: one that is located later than it was
+/// foretold may lie behind the closing of a gap.
+IslandDriver::Found IslandDriver::first_of(const Found& rough, const Found& found) {
+  constexpr double as_foretold = 1e-9;  // of the step
+  const double length = flow_->end() - flow_->begin();
+  if (rough.guard == Guard::gap || found.time - rough.time <= as_foretold * length) return found;
+  Found gap = found;
+  foretell_gaps(gap);
+  if (gap.guard != Guard::gap) return found;
+  const Found closing = locate(gap);
+  return closing.guard == Guard::gap && closing.time < found.time ? closing : found;
 }
 
 /// True of a false alarm from which nothing is gained by going on anew.
@@ -155,6 +168,7 @@ void IslandDriver::foretell_gaps(Found& found) {
     FallRule rule;
     rule.raise = gap_noise_ - level(i);
     rule.fine = fine;
+    rule.clear_falls = false;  // of several gaps the first is wanted
     rule.measured = moving || !motion_.flies_freely();
     rule.least_depth = moving ? least_of_moving : 0;
     const double bend = std::max(start_.bends[i], end_.bends[i]);

@@ -261,19 +261,25 @@ TEST(MovingHalfPlane, DoesNotLookAcrossBreaks) {
   // A table that starts at t = 1 with 2 m/s.
   System system;
   system.add(Particle{.mass = 1.0});
-  system.add(HalfPlane{.normal = {0.0, 1.0},
-                       .motion = {.displacement =
-                                      [](double t) { return Vec<2>(0.0, t < 1.0 ? 0.0 : 2.0 * (t - 1.0)); },
-                                  .breaks = {1.0}}},
-             law, "table");
-  system.add(HalfPlane{.normal = {1.0, 0.0},
-                       .motion = {.angle = [](double t) { return t; }, .breaks = {-1.0, 0.5, 1.0}}},
-             law);
+  const ObstacleId table = system.add(
+      HalfPlane{
+          .normal = {0.0, 1.0},
+          .motion = {.displacement = [](double t) { return Vec<2>(0.0, t < 1.0 ? 0.0 : 2.0 * (t - 1.0)); },
+                     .breaks = {1.0}}},
+      law, "table");
+  const ObstacleId drum =
+      system.add(HalfPlane{.normal = {1.0, 0.0},
+                           .motion = {.angle = [](double t) { return t; }, .breaks = {-1.0, 0.5, 1.0}}},
+                 law);
   const ObstacleKind& kind = *system.obstacle_kinds().entries()[0].kind;
   EXPECT_EQ(kind.place(0, std::nextafter(1.0, 0.0)).velocity[1], 0.0);
   EXPECT_NEAR(kind.place(0, 1.0).velocity[1], 2.0, 1e-11);
   const Assembly assembly(system);
-  EXPECT_EQ(ContactFinder(assembly).breaks(), (std::vector<double>{-1.0, 0.5, 1.0}));
+  const std::vector<Discontinuity> expected{{.time = 1.0, .obstacle = table},
+                                            {.time = -1.0, .obstacle = drum},
+                                            {.time = 0.5, .obstacle = drum},
+                                            {.time = 1.0, .obstacle = drum}};
+  EXPECT_EQ(ContactFinder(assembly).breaks(), expected);
 }
 
 TEST(MovingHalfPlane, ImpossibleMotionsAreRefusedByName) {

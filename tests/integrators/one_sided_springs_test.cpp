@@ -272,7 +272,7 @@ TEST(OneSidedSprings, RandomScenesAgreeInBothModes) { compare_all(0, 6, 0.5); }
 
 // Steps whose interpolation, or a stage without weight, was alone in meeting the spring of a scene.
 TEST(OneSidedSprings, StepsThatLeapOverSpringsAreMadeAnew) {
-  for (const std::uint64_t seed : {555, 9855}) compare_all(seed, seed + 1, 0.5);
+  for (const std::uint64_t seed : {std::uint64_t{555}, std::uint64_t{9855}}) compare_all(seed, seed + 1, 0.5);
 }
 
 // A share of the seeds; all of them with CAROM_ALL_SEEDS=1, which takes some ten minutes.
