@@ -72,7 +72,8 @@ struct TimeStepping {
   int max_sweeps = 200;  ///< sweeps after which an iteration is given up, >= 2
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
-  /// on terms of the energy ledger only, never on the motion [m/s].
+  /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
+  /// restitution of the contact; on nothing else of the motion [m/s].
   double capture_speed = 1e-2;
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;

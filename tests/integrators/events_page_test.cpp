@@ -92,8 +92,8 @@ TEST(EventsPage, NamesEveryOptionAndMethod) {
     return count;
   };
   EXPECT_EQ(expect_all("integrators/event_driven.h", "struct EventDriven {",
-                       std::regex(R"(\n  (?:double|bool|FlowMethod|std::string) (\w+))")),
-            11);
+                       std::regex(R"(\n  (?:double|bool|FlowMethod|std::int64_t|std::string) (\w+))")),
+            14);
   EXPECT_EQ(expect_all("integrators/flow.h", "enum class FlowMethod", std::regex(R"(\n  (\w+),? +///<)")), 4);
 }
 

@@ -88,7 +88,7 @@ TEST(JointFriction, RefusesWhatCannotBe) {
   System other;
   EXPECT_MODEL_ERROR(other.add(JointFriction{.joint = wheel.pin, .bound = 1.0}), "a joint of this system");
   const JointId friction = system.add(JointFriction{.joint = wheel.pin, .bound = 1.0}, "rubbing");
-  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = 1.0}), "in which", "rubbing",
+  EXPECT_MODEL_ERROR(system.add(JointFriction{.joint = wheel.pin, .bound = 1.0}), "which has", "rubbing",
                      "a joint without friction");
   EXPECT_MODEL_ERROR(system.remove(wheel.pin), "rubbing");
   EXPECT_MODEL_ERROR(system.add(Stop{.joint = friction, .lower = 0.0}), "a joint with a coordinate");
