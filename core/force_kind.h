@@ -138,8 +138,8 @@ public:
 
   /// The first of a range of elements whose force has a size but no direction: it acts along the line between
   /// two ends that stand at one place, but for rounding, and does not vanish there. No motion follows from
-  /// such a state. elements.end if there is none.
-  /// \param fastest ends that part or pass faster than this [m/s] give the line by themselves; infinity: none
+  /// such a state. elements.end if there is none. Ends that part or pass faster than the last argument [m/s]
+  /// give the line by themselves; infinity: none do.
   [[nodiscard]] virtual Index first_without_direction(const EvaluationContext& /*at*/, Range elements,
                                                       double /*fastest*/) const {
     return elements.end;
@@ -153,7 +153,8 @@ public:
   /// True if guard_motion() is overridden: no change of sign within a step is missed then, however long the
   /// step. Otherwise guards are known by values alone, and EventDriven::longest_step bounds the steps.
   [[nodiscard]] virtual bool has_guard_motion() const { return false; }
-  /// Writes guards() with their derivatives along the motion. \param acceleration of all velocity coordinates
+  /// Writes guards() with their derivatives along the motion; the second argument are the accelerations of
+  /// all velocity coordinates.
   virtual void guard_motion(const EvaluationContext& /*at*/, const double* /*acceleration*/,
                             Range /*elements*/, GuardMotion* /*out*/) const {}
   /// Appends the times [s], ascending, at which the law of an element jumps or has a kink.
