@@ -15,7 +15,7 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --docs) packages+=(doxygen) ;;
-    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev git doxygen) ;;
+    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen) ;;
     *)
       echo "usage: $0 [--docs | --checks]" >&2
       exit 2
