@@ -12,7 +12,8 @@ void ContactFinder::remember(std::span<const std::pair<ContactKey, ContactMode>>
   out.start(step);
   const Layout& layout = *assembly_->layout();
   const Index token = assembly_->system().token();
-  for (const auto& [key, mode] : contacts) {
+  for (const auto& entry : contacts) {
+    const ContactKey& key = entry.first;
     if (key.of.owner != FeatureKey::Owner::body) {
       out.add(key);
       continue;
