@@ -31,7 +31,7 @@ namespace {
 std::string joint_name(const System& system, const FeatureKey& key) {
   const JointKind* const kind = system.joint_kinds().kind_ever(key.serial);
   if (kind == nullptr) refuse("of", key);
-  const std::string name = system.name(JointId{key.serial, system.token()});
+  std::string name = system.name(JointId{key.serial, system.token()});
   if (kind->rubs()) return name;
   if (key.feature >= kind->limits()) refuse("of", key);
   return name + " (" + std::string(kind->limit_label(key.feature)) + ")";

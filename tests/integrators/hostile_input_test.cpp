@@ -287,7 +287,7 @@ TEST(HostileInput, PolygonsWithoutAnArea) {
 
 TEST(HostileInput, MassWithoutInertia) {
   System system;
-  EXPECT_MODEL_ERROR(system.add(RigidBody{.mass = 1.0}, "plate"),
+  EXPECT_MODEL_ERROR(system.add(RigidBody{.mass = {1.0}}, "plate"),
                      "rigid body 'plate': moment of inertia is nan kg m^2, it is missing",
                      "disc(), rod(), box()");
 }
