@@ -1,6 +1,7 @@
 // Iteration::automatic: a step that the fixed-point iteration cannot end is ended by another one, and told.
 
 #include "tests/energy/ledger_check.h"
+#include "tests/integrators/contrary.h"
 #include "tests/integrators/same_run.h"
 #include "tests/integrators/stiff_scenes.h"
 #include "tests/integrators/throws.h"
@@ -22,6 +23,7 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::bits_of;
+using carom_test::Contrary;
 using carom_test::ledger_closes;
 using carom_test::StiffScene;
 
@@ -165,17 +167,6 @@ TEST(IterationFallback, ComponentsFallBackByThemselves) {
     EXPECT_EQ(together.state().q[i], alone.state().q[i]);
   }
 }
-
-/// Pushes down what leaves and up what does not: steps have no end.
-struct Contrary {
-  static constexpr Role role = Role::force;
-  static constexpr int dimension = 2;
-  BodyId body;
-  std::vector<BodyId> bodies() const { return {body}; }
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    out.external(body, Vec<2>(0.0, at.velocity(body)[1] > 0.01 ? -150.0 : 50.0));
-  }
-};
 
 TEST(IterationFallback, OnlyWhatNoneSolvesIsAnErrorAndNamesAll) {
   System system;

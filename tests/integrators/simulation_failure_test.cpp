@@ -1,6 +1,7 @@
 // What fails in a run is named, and leaves it at its last good state.
 
 #include "tests/energy/ledger_check.h"
+#include "tests/integrators/contrary.h"
 #include "tests/integrators/pair_scene.h"
 #include "tests/integrators/same_run.h"
 #include "tests/integrators/throws.h"
@@ -22,6 +23,7 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::bits_of;
+using carom_test::Contrary;
 using carom_test::ledger_closes;
 using carom_test::pair_scene;
 
@@ -70,17 +72,6 @@ struct Thrower {
   std::vector<BodyId> bodies() const { return {body}; }
   void loads(const ElementView<2>& at, ElementLoads<2>&) const {
     if (at.time() > 0.1) throw std::runtime_error("out of range");
-  }
-};
-
-/// Pushes down what leaves and up what does not: a jump.
-struct Contrary {
-  static constexpr Role role = Role::force;
-  static constexpr int dimension = 2;
-  BodyId body;
-  std::vector<BodyId> bodies() const { return {body}; }
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    out.external(body, Vec<2>(0.0, at.velocity(body)[1] > 0.01 ? -150.0 : 50.0));
   }
 };
 
