@@ -177,7 +177,7 @@ private:
                           const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
   // Whether an open contact lasts. `turning`: bound on its drift by turning.
   [[nodiscard]] static bool lasts(const Query& query, const ContactKey& key, double gap, double turning);
-  // What the motion of the obstacle adds to that bound.
+  // Share of the obstacle's motion in that bound.
   [[nodiscard]] static double turning_of(const BodySlot& body, const Vec<2>& arm, const StateView& state,
                                          const ObstacleMotion& motion, double above);
   // Friction where it depends on the speed of sliding.

@@ -22,7 +22,7 @@ struct GuardMotion {
   double sixth = 0.0;
 };
 
-/// What an element sees of the motion: positions, velocities and accelerations of ends.
+/// The motion at an element: positions, velocities and accelerations of its ends.
 template <int D>
 class ElementMotion : public ElementView<D> {
 public:

@@ -31,7 +31,7 @@ double norm(const std::array<double, 3>& a) { return std::sqrt(a[0] * a[0] + a[1
 
 double whole_turns_off(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
-/// What two points say of the motion between them, of the place or of the angle.
+/// The motion between two points of a law, of the place or of the angle.
 struct Change {
   double moved = 0.0;      // |x1 - x0|
   double missed = 0.0;     // |x1 - x0 - h (v0 + v1)/2|

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a check of a model finds: descriptions that are possible, but probably mistakes.
+/// Findings of a check of a model: descriptions that are possible, but probably mistakes.
 
 #include <carom/core/export.h>
 

@@ -116,7 +116,7 @@ public:
   /// this system.
   [[nodiscard]] bool has_orientation(BodyId id) const;
 
-  /// What may be a mistake: laws of contact that cannot act, parts that can touch nothing, and the like
+  /// Probable mistakes: laws of contact that cannot act, parts that can touch nothing, and the like
   /// (core/model_finding.h). Empty if nothing was found. A Simulation calls it; StepReport::findings.
   [[nodiscard]] std::vector<ModelFinding> check() const;
 

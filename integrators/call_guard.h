@@ -24,7 +24,7 @@ public:
     action,    ///< of every()
     change     ///< the function given to edit()
   };
-  /// What a call needs.
+  /// Requirement of a call.
   enum class Need : std::uint8_t {
     outside,    ///< steps: nobody in between
     no_reader,  ///< changes of state, model or mode: from outside, or by actions

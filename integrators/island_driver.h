@@ -132,7 +132,7 @@ private:
   [[nodiscard]] double slip_level(std::size_t closed) const;
   [[nodiscard]] double force_level(std::size_t body) const;
   [[nodiscard]] double guard_noise() const;
-  // What a landing leaves of the quantity of an event.
+  // Remainder of the quantity of an event after a landing.
   struct Rest {
     double value, rate, noise;
     bool has_rate;

@@ -27,7 +27,7 @@ bool IslandDriver::settle(DriverNews& news) {
   return changed;
 }
 
-/// What has stopped slipping stands, and with it what can only move with it.
+/// Contacts that have just stopped slipping are projected as sticking, with all that can only move with them.
 void IslandDriver::settle_stopped(DriverNews& news) {
   ContactMode& mode = motion_.closed().list()[next_.which].mode;
   const ContactMode before = std::exchange(mode, ContactMode::stick);

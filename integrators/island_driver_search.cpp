@@ -238,7 +238,7 @@ double IslandDriver::force_level(std::size_t body) const {
   return std::clamp(start_.seen.margins[body], -magnified_rounding * start_.noises[body], 0.0);
 }
 
-/// What the quantity of an event is in the state of the workspace, and when it counts as zero.
+/// The quantity of an event in the state of the workspace, and the size below which it counts as zero.
 IslandDriver::Rest IslandDriver::rest_of(const Found& rough) {
   const MotionWorkspace& work = work_->motion;
   const double* const velocity = work.trial.v.data();

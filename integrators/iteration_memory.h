@@ -20,7 +20,7 @@ public:
   /// From then on it is tried again in every step of this number.
   static constexpr int retry_interval = 32;
 
-  /// What is remembered of an island.
+  /// Memory of one island.
   struct Entry {
     Index island = none;                        ///< place in the assembly
     Iteration solved = Iteration::fixed_point;  ///< by which its last step was ended

@@ -13,7 +13,7 @@
 
 namespace carom {
 
-/// What is watched, at one time.
+/// Watched quantities at one time.
 struct StepLook {
   double time = 0.0;                       ///< [s]
   std::vector<StepPolynomial::End> slips;  ///< sliding velocities and their rates, by closed contact

@@ -78,7 +78,7 @@ struct StepReport {
   /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
   std::vector<JointImpulse> joint_impulses;
-  /// What System::check() found in the model, at the start or the last edit; the same in every step.
+  /// Findings of System::check() in the model, at the start or the last edit; the same in every step.
   std::vector<ModelFinding> findings;
 };
 
