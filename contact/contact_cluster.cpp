@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace carom {
 
 namespace {
 
-// Two solutions whose velocities agree to this part of the largest given one have one velocity.
-constexpr double same_velocity = 1e-9;
-
 // The modes are known and, if they are right, linear: one step solves them, another takes the rounding.
 constexpr int newton_steps = 2;
-
-constexpr std::string_view kept = "modes of the last sweep";
 
 // Whether a problem has the form of one planar contact, so that only its numbers need to be filled in.
 bool is_one_planar_contact(const ContactProblem& problem) {
@@ -140,6 +136,27 @@ void ContactCluster::couple(IslandJoints& joints) {
   couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
 }
 
+void ContactCluster::couple_again(const std::function<void(const double* x, double* p)>& mass,
+                                  const std::function<void(double*)>& solve) {
+  const std::size_t size = coupled_range_.size(), rows = impulse_.size();
+  loads_.resize(coupled_.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    double* const response = coupled_.data() + row * size;
+    mass(response, loads_.data() + row * size);
+    std::copy_n(loads_.data() + row * size, size, response);
+    solve(response);
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double* const load = loads_.data() + row * size;
+    for (std::size_t column = 0; column <= row; ++column) {
+      const double w = std::inner_product(load, load + size, coupled_.data() + column * size, 0.0);
+      problem_.w(static_cast<int>(row), static_cast<int>(column)) = w;
+      problem_.w(static_cast<int>(column), static_cast<int>(row)) = w;
+    }
+  }
+  problem_.group();
+}
+
 void ContactCluster::apply_coupled(double* velocity, double scale) const {
   for (std::size_t row = 0; row < impulse_.size(); ++row) {
     const double* const response = coupled_.data() + row * coupled_range_.size();
@@ -203,49 +220,36 @@ void ContactCluster::set_velocity(const double* velocity) {
 }
 
 const ContactReport& ContactCluster::solve(SolverChain& chain) {
-  if (solved_) {
+  changed_modes_ = false;
+  const bool again = solved_ && report_.usable();
+  solved_ = true;
+  // One contact is solved faster than looked at.
+  if (again && problem_.groups().size() > 1 && keep_modes()) return report_;
+  if (again) {
     kept_impulse_.assign(impulse_.begin(), impulse_.end());
     kept_modes_.assign(modes_.begin(), modes_.end());
   }
   report_ = chain.solve(problem_, impulse_);
   modes_.assign(chain.modes().begin(), chain.modes().end());
-  changed_modes_ = solved_ && modes_ != kept_modes_;
-  if (changed_modes_) keep_modes();
-  solved_ = true;
+  changed_modes_ = again && modes_ != kept_modes_;
   return report_;
 }
 
-void ContactCluster::keep_modes() {
+/// Solves with the modes of the answer before; false if they are not those of a solution.
+bool ContactCluster::keep_modes() {
+  kept_impulse_.assign(impulse_.begin(), impulse_.end());
   const Residual found = polish_.improve(problem_, kept_impulse_, newton_steps);
-  if (!(found.value <= accepted_residual)) return;
+  if (!(found.value <= accepted_residual)) return false;
   kept_xi_.resize(kept_impulse_.size());
   problem_.velocities(kept_impulse_, kept_xi_);
-  for (std::size_t group = 0; group < kept_modes_.size(); ++group) {
-    if (contact_mode(problem_, problem_.groups()[group], kept_impulse_, kept_xi_) != kept_modes_[group])
-      return;
+  for (std::size_t group = 0; group < modes_.size(); ++group) {
+    const ContactMode mode = contact_mode(problem_, problem_.groups()[group], kept_impulse_, kept_xi_);
+    if (mode != modes_[group]) return false;
   }
-  xi_.resize(impulse_.size());
-  problem_.velocities(impulse_, xi_);
-  double difference = 0.0, size = 0.0;
-  for (std::size_t row = 0; row < xi_.size(); ++row) {
-    difference = std::max(difference, std::abs(xi_[row] - kept_xi_[row]));
-    size = std::max(size, std::abs(problem_.vector()[row]));
-  }
-  const bool known =
-      report_.outcome == Outcome::several_solutions || report_.outcome == Outcome::forces_not_unique;
-  if (report_.usable() && !known) {
-    report_.outcome =
-        difference > same_velocity * size ? Outcome::several_solutions : Outcome::forces_not_unique;
-  } else if (!report_.usable()) {
-    report_.outcome = Outcome::solved;
-  }
+  impulse_.swap(kept_impulse_);
   report_.residual = found.value;
   report_.worst_group = found.group;
-  report_.solver = kept;
-  report_.reason = {};
-  std::copy(kept_impulse_.begin(), kept_impulse_.end(), impulse_.begin());
-  modes_.assign(kept_modes_.begin(), kept_modes_.end());
-  changed_modes_ = false;
+  return true;
 }
 
 void ContactCluster::set_impulses(std::span<const double> impulses) {

@@ -32,6 +32,10 @@ public:
   void couple(Range v, const std::function<void(double*)>& solve);
   /// Likewise where joints bind the bodies, which must have been located.
   void couple(IslandJoints& joints);
+  /// Likewise for impulses that act with the answer of the joints, C P, C = K H^T from couple(joints):
+  /// W = C^T M A^-1 M C. \param mass p = M x
+  void couple_again(const std::function<void(const double* x, double* p)>& mass,
+                    const std::function<void(double*)>& solve);
   /// Takes note of another Contact::pressed of friction in a joint.
   void press(std::size_t contact);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
@@ -41,9 +45,10 @@ public:
   void set_free_velocity(const double* velocity_free);
   /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
   void set_velocity(const double* velocity);
-  /// Solves. The report says whether impulses() may be used. Where the problem has several solutions, solving
-  /// again since build() keeps to the modes of the answer before as long as they are one of them: an
-  /// iteration around it could not settle if it jumped between them.
+  /// Solves. The report says whether impulses() may be used. Solving several contacts again since build()
+  /// keeps to the modes of the answer before as long as they are those of a solution: an iteration around it
+  /// could not settle if it jumped between several, and the solvers are spared. Only they can tell that there
+  /// are several solutions; the report keeps to their word.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
   /// Replaces the answer, and its modes, by another solution of the problem.
   void set_impulses(std::span<const double> impulses);
@@ -78,7 +83,7 @@ public:
   [[nodiscard]] int first_row(std::size_t contact) const { return first_row_[contact]; }
 
 private:
-  void keep_modes();
+  [[nodiscard]] bool keep_modes();
 
   std::span<const Contact> contacts_;
   ContactProblem problem_;
@@ -88,6 +93,7 @@ private:
   std::vector<double> response_;  // M^-1 H^T, one row of max_columns numbers per contact row
   Range coupled_range_;
   std::vector<double> coupled_;  // A^-1 H^T, one row over coupled_range_ per contact row
+  std::vector<double> loads_;    // likewise, M C
   std::vector<ContactMode> modes_;
   ContactReport report_;
   NewtonPolish polish_;

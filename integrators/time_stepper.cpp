@@ -5,14 +5,6 @@
 
 namespace carom {
 
-namespace {
-
-// Bounds of friction in joints that follow from forces change no more than by this part: answers of contact
-// problems are certified to 1e-12.
-constexpr double settled_pressure = 1e-12;
-
-}  // namespace
-
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_(options),
@@ -135,7 +127,7 @@ void TimeStepper::advance_island(Index island, const State& state, const Compani
 
   book_couplings(island, state, step);
   if (with_joints) book_joints(island, state, step);
-  book_contacts(state, step);
+  book_contacts(island, state, step);
   if (options_.project_gaps) project(island, state, companion, step);
   rate(island, state, step, contraction);
   report_.iteration = std::max(report_.iteration, iteration_);
@@ -163,7 +155,6 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
 
   const std::vector<int>& before = history_->sweeps;
   const int expected = before.size() == sweeps_.size() ? before[island] : 1;
-  bool confirming = false;
   for (;;) {
     if (stop_ != nullptr) stop_->check();
     SweepsMade made = sweep_on(island, state, companion, step, expected, judge);
@@ -179,13 +170,6 @@ bool TimeStepper::iterate(Index island, const State& state, const Companion& com
                                               : judge.judge_ahead(change.change, change.size);
     // Its first is that from t_j: small or not, it says nothing of the guess.
     if (implicit && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
-    // Bounds of friction that the last sweep has changed are seen by the next one only.
-    const bool changed = with_joints && joints_[island].pressure_change > settled_pressure;
-    if (verdict == Verdict::go_on) confirming = false;
-    if (verdict == Verdict::converged && changed && !confirming) {
-      confirming = true;
-      verdict = judge.sweeps() < options_.max_sweeps ? Verdict::go_on : Verdict::failed;
-    }
     if (verdict == Verdict::failed) return false;
     if (verdict == Verdict::converged || made == SweepsMade::one_too_many) {
       sweeps_[island] = judge.sweeps() - (made == SweepsMade::one_too_many ? 1 : 0);

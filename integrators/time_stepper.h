@@ -15,17 +15,17 @@
 /// Under the rule `energy_momentum` the mean (F_j + F_{j+1})/2 is replaced by the elements' own mean loads of
 /// the step, which are guessed and repeated in the same way.
 ///
-/// Bodies with joints (docs/method.md, section 8): with the rows G of the joints, Gm halfway and G1 at the
-/// end,
+/// Bodies with joints (docs/method.md, section 8): with the rows G of the joints, G0 at the start, Gm halfway
+/// and G1 at the end,
 ///
-///                v_{j+1} = v_free + M^-1 Gm^T L + K H^T P,   K = M^-1 - M^-1 Gm^T (Gm M^-1 Gm^T)^-1 Gm M^-1
+///                v_{j+1} = v_free + M^-1 Gm^T L + K H^T P,   K = M^-1 - M^-1 G0^T (G0 M^-1 G0^T)^-1 G0 M^-1
 ///                q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
 /// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0.
 ///
-/// Friction in joints is a row of the contact problem with |P| <= h times its bound. Its force acts halfway,
-/// against the rate that the coordinate has at the end.
+/// Friction in joints is a row of the contact problem with |P| <= h times its bound. Without contacts its
+/// force acts halfway, against the rate that the coordinate has at the end (time_stepper_joint_contacts.cpp).
 
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/contact_finder.h>
@@ -43,6 +43,7 @@
 #include <carom/integrators/gap_projection.h>
 #include <carom/integrators/implicit_solver.h>
 #include <carom/integrators/prescribed_joints.h>
+#include <carom/integrators/pressed_contacts.h>
 #include <carom/integrators/step_report.h>
 #include <carom/integrators/stop_request.h>
 #include <carom/integrators/time_stepping.h>
@@ -132,8 +133,9 @@ private:
   [[nodiscard]] bool settle_joints(Index island, const State& state, const Companion& companion, double step);
   void choose_reactions(Index island, const State& state, double step);
   void solve_joint_contacts(Index island, const State& state, double step);
+  static void allow_at_start(JointWork& work, double* velocity);
+  [[nodiscard]] bool strikes() const;
   void place_rubbing(Index island);
-  void press_rubbing(Index island, double step);
   void add_contacts_to_joints(Index island);
   void return_to_joints(Index island, const State& state, double step);
   /// Brings rows to a configuration; a motion that is not finite there fails the step.
@@ -193,7 +195,7 @@ private:
     double scale = 0.0;   // sum of what its parts are made of [J]
     bool impact = false;  // something closed faster than the capture speed
   };
-  void book_contacts(const State& state, double step);
+  void book_contacts(Index island, const State& state, double step);
   void record(const ContactCluster& cluster, std::size_t contact);
   void book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum);
   void book_gain(const ContactCluster& cluster, const ContactWork& work, const State& state, double step);
@@ -298,19 +300,22 @@ private:
     Reactions reactions = Reactions::halfway;
     double magnified = 1.0;  // rounding, near a singular position
     bool near_singular = false;
-    IslandJoints end, mean;          // rows at the end; of the reactions, with factors where bodies touch
-    CrossedJoints crossed;           // factors of both
-    std::vector<double> start_rate;  // of the rows at the start, where they depend on time
-    std::vector<double> impulse;     // L
-    std::vector<double> total;       // L, and what contact adds
-    JointPressure pressure;          // of friction in them
-    double pressure_change = 0.0;    // by the last sweep, relative
-    std::vector<double> left;        // of the constraints
+    IslandJoints end, mean;       // rows at the end; of the reactions
+    CrossedJoints crossed;        // factors of both
+    IslandJoints start;           // rows at the start, where bodies touch or rows depend on time
+    bool struck = false;          // bodies touch, or are at a stop
+    std::vector<double> impulse;  // L
+    std::vector<double> total;    // L, and what contact adds
+    JointPressure pressure;       // of friction in them
+    PressedSolver pressed;
+    std::vector<double> left;  // of the constraints
   };
   std::vector<JointWork> joints_;  // by island; empty without joints
   // Over all velocities or coordinates, sized if there are joints: changes of velocity by joints, by contact;
   // displacements back onto the joints; scratch; the iterate before.
   std::vector<double> reaction_, struck_, displacement_, scratch_, before_q_, before_v_;
+  std::vector<double> allowed_;    // v_{j+1} as contact of bodies with joints sees it
+  const double* after_ = nullptr;  // v_{j+1} as contact at hand sees it
   std::vector<double> lengths_;
 
   EnergyFlows flows_;

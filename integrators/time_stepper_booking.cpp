@@ -115,7 +115,14 @@ void TimeStepper::hold_velocities(Index island) {
   stored_[StoredEnergy::kinetic] += after - before;
 }
 
-void TimeStepper::book_contacts(const State& state, double step) {
+void TimeStepper::book_contacts(Index island, const State& state, double step) {
+  after_ = trial_.v.data();
+  if (jointed(island) && joints_[island].struck) {
+    const Range v = assembly_->islands()[island].v;
+    std::copy(trial_.v.begin() + v.begin, trial_.v.begin() + v.end, allowed_.begin() + v.begin);
+    allow_at_start(joints_[island], allowed_.data());
+    after_ = allowed_.data();
+  }
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     const ContactCluster& cluster = clusters_[i];
     ContactWork work;
@@ -175,13 +182,15 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
   }
 }
 
-/// Friction in a joint; the velocities halfway are at hand.
+/// Friction in a joint, along its row at the start or halfway; the velocities halfway are at hand.
 void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
   const Contact& at = cluster.contacts()[contact];
   const auto place = static_cast<std::size_t>(cluster.first_row(contact) + 1);
   JointReaction reaction;
   const double moment = cluster.impulses()[place];
-  const double mean_rate = at.times(1, middle_.v.data());
+  const double mean_rate = after_ == trial_.v.data()
+                               ? at.times(1, middle_.v.data())
+                               : 0.5 * (cluster.before()[place] + at.velocity_after(1, after_));
   reaction.moment = moment;
   flows_[EnergyFlow::joint_friction] -= moment * mean_rate;
   sum.gain += moment * mean_rate;
@@ -206,7 +215,7 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
     const auto direction = static_cast<std::size_t>(row);
     const auto place = static_cast<std::size_t>(cluster.first_row(contact) + row);
     entry.velocity_before[direction] = cluster.before()[place];
-    entry.velocity_after[direction] = at.velocity_after(row, trial_.v.data());
+    entry.velocity_after[direction] = at.velocity_after(row, after_);
     entry.impulse[direction] = cluster.impulses()[place];
     entry.work[direction] =
         0.5 * entry.impulse[direction] * (entry.velocity_before[direction] + entry.velocity_after[direction]);

@@ -193,9 +193,13 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
     if (swept_) demand_finite_loads(island, trial_.view(), state, step);
   }
   std::string message = place(state, step) + "contact problem of " + listed(failure.parts) + ": ";
-  message += to_string(cluster.report().outcome);
-  if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
-  message += ", residual " + to_text(cluster.report().residual);
+  if (cluster.report().usable()) {
+    message += "friction in joints and the forces that bound it do not settle";
+  } else {
+    message += to_string(cluster.report().outcome);
+    if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
+    message += ", residual " + to_text(cluster.report().residual);
+  }
   if (!tentative_) message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));
 }

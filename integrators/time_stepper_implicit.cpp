@@ -117,8 +117,16 @@ void TimeStepper::guess_implicit(Index island, const State& state, double step) 
   implicit_.solve(update_.data() + v.begin, work.left.data());
   if (clusters_in_use_ > 0) {
     ContactCluster& cluster = clusters_.front();
-    cluster.couple(v, [this](double* x) { implicit_.solve(x); });
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial_.v[i] + update_[i];
+    const auto solve = [this](double* x) { implicit_.solve(x); };
+    if (work.struck) {
+      cluster.couple(work.start);
+      cluster.couple_again(
+          [this, v](const double* x, double* p) { implicit_.apply_mass(x - v.begin, p - v.begin); }, solve);
+      allow_at_start(work, scratch_.data());
+    } else {
+      cluster.couple(v, solve);
+    }
     cluster.set_velocity(scratch_.data());
     cluster.apply_coupled(update_.data(), -1.0);
     if (!cluster.solve(chains_.front()).usable()) fail_contact(island, cluster, state, step);

@@ -27,7 +27,8 @@ void TimeStepper::prepare_joints() {
     joints_.resize(islands);
     JointWork& work = joints_[island];
     work.end = IslandJoints(assembly, island);
-    work.mean = work.end;
+    work.end.factors().reveal_rank(true);
+    work.start = work.mean = work.end;
     work.impulse.resize(work.end.size());
     work.total.resize(work.end.size());
     work.left.resize(work.end.size());
@@ -36,7 +37,7 @@ void TimeStepper::prepare_joints() {
   if (joints_.empty()) return;
   const std::size_t size = assembly.layout()->v_size();
   for (std::vector<double>* const numbers :
-       {&response_, &reaction_, &struck_, &free_, &displacement_, &scratch_, &before_v_}) {
+       {&response_, &reaction_, &struck_, &free_, &displacement_, &scratch_, &before_v_, &allowed_}) {
     numbers->resize(size);
   }
   before_q_.resize(assembly.layout()->q_size());
@@ -58,11 +59,13 @@ void TimeStepper::start_joints(Index island, const State& state, double step) {
   std::copy(state.v.begin() + v.begin, state.v.begin() + v.end, trial_.v.begin() + v.begin);
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = step * state.v[i];
   move(island, scratch_, trial_);
-  if (!work.end.depends_on_time()) return;
+  work.struck = strikes();
+  if (!work.struck && !work.start.depends_on_time()) return;
   evaluate_positions(*assembly_, island, state.view(), start_);
-  place_rows(work.end, view_of(state, start_), state, step);
-  work.start_rate.resize(work.end.size());
-  for (std::size_t row = 0; row < work.end.size(); ++row) work.start_rate[row] = work.end.rate(row);
+  place_rows(work.start, view_of(state, start_), state, step);
+  if (!work.struck) return;
+  work.start.factor();
+  clusters_.front().couple(work.start);
 }
 
 void TimeStepper::sweep_joints(Index island, const State& state, const Companion& companion, double step) {
@@ -76,7 +79,7 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   // Choosing factors the rows at the end.
   if (!swept_) choose_reactions(island, state, step);
   if (swept_ || work.reactions == Reactions::crossed) factor_joints(work);
-  if (clusters_in_use_ > 0) work.mean.factor();
+  if (clusters_in_use_ > 0 && !work.struck) work.mean.factor();
 
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
@@ -84,7 +87,10 @@ void TimeStepper::sweep_joints(Index island, const State& state, const Companion
   work.end.apply_inverse_mass(free_.data());
   for (Index i = v.begin; i < v.end; ++i) free_[i] += static_cast<double>(companion.rounding[i]) + state.v[i];
   correct_joint_impulses(island);
-  if (clusters_in_use_ > 0) solve_joint_contacts(island, state, step);
+  if (clusters_in_use_ > 0) {
+    solve_joint_contacts(island, state, step);
+    correct_joint_impulses(island);  // for what contact changed
+  }
   for (Index i = v.begin; i < v.end; ++i) response_[i] = reaction_[i] + struck_[i];
   sweep(island, state, companion, step);
   return_to_joints(island, state, step);
@@ -114,62 +120,6 @@ void TimeStepper::correct_joint_impulses(Index island) {
   for (std::size_t row = 0; row < work.left.size(); ++row) work.impulse[row] += work.left[row];
   work.mean.add_transposed(work.impulse.data(), reaction_.data());
   work.end.apply_inverse_mass(reaction_.data());
-}
-
-/// Contacts against bodies that the joints make answer together.
-void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
-  ContactCluster& cluster = clusters_.front();
-  place_rubbing(island);
-  const Range v = assembly_->islands()[island].v;
-  cluster.couple(joints_[island].mean);
-  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
-  cluster.set_free_velocity(scratch_.data());
-  if (!cluster.solve(chains_.front()).usable()) fail_contact(island, cluster, state, step);
-  clear(struck_, v);
-  cluster.apply_coupled(struck_.data());
-  press_rubbing(island, step);
-}
-
-/// Bounds of friction in joints by the forces that the sweep led to.
-void TimeStepper::press_rubbing(Index island, double step) {
-  JointWork& work = joints_[island];
-  work.pressure_change = 0.0;
-  if (work.pressure.empty()) return;
-  add_contacts_to_joints(island);
-  work.pressure.take(work.total.data(), step);
-  const JointView halfway = view_of(middle_, middle_evaluation_);
-  for (Contact& contact : contacts_) {
-    const double change = work.pressure.press(contact, halfway);
-    work.pressure_change = std::max(work.pressure_change, change);
-  }
-}
-
-/// Friction in joints acts halfway, against the rates that coordinates have at the end.
-void TimeStepper::place_rubbing(Index island) {
-  const Range v = assembly_->islands()[island].v;
-  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Contact& contact = contacts_[c];
-    if (!contact.rubs()) continue;
-    const JointView halfway = view_of(middle_, middle_evaluation_);
-    finder_.place_rubbing(view_of(trial_, evaluation_), contact);
-    const double at_end = contact.times(1, scratch_.data());
-    finder_.place_rubbing(halfway, contact);
-    contact.obstacle_velocity_after[1] = contact.times(1, scratch_.data()) - at_end;
-    clusters_.front().press(c);
-  }
-}
-
-/// Impulses of the joints, with those by which they answer to contact.
-void TimeStepper::add_contacts_to_joints(Index island) {
-  JointWork& work = joints_[island];
-  const Range v = assembly_->islands()[island].v;
-  work.total = work.impulse;
-  clear(scratch_, v);
-  clusters_.front().add_loads(1.0, scratch_.data());
-  work.mean.apply_inverse_mass(scratch_.data());
-  work.mean.hold(JointLevel::change, scratch_.data(), work.left.data());
-  for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before, with
@@ -294,12 +244,13 @@ void TimeStepper::book_joints(Index island, const State& state, double step) {
   if (clusters_in_use_ > 0) add_contacts_to_joints(island);
   place_middle(island, state, step);
   work.mean.residuals(JointLevel::change, middle_.v.data(), work.left.data());
-  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step.
+  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
+  // along the rows at the start have none.
   for (std::size_t row = 0; row < work.total.size(); ++row) {
     double rate = 0.0;
-    if (!work.start_rate.empty()) rate = 0.5 * (work.start_rate[row] + work.end.rate(row));
+    if (work.start.depends_on_time()) rate = 0.5 * (work.start.rate(row) + work.end.rate(row));
     flows_[EnergyFlow::external] -= work.total[row] * rate;
-    coupling_work_.add(work.total[row] * (work.left[row] + rate));
+    coupling_work_.add((work.struck ? work.impulse : work.total)[row] * (work.left[row] + rate));
   }
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.

@@ -246,12 +246,12 @@ TEST(IterationFallback, StiffScenesRunOn) {
   EXPECT_GE(findings.failed_alone, 3);
 }
 
-// Seen: of 100 scenes 44 end with the fixed point alone, 10 with all iterations: contact of bodies whose
-// stiff springs turn far within a step, and joints whose contact changes between modes from sweep to sweep.
+// Seen: of 400 scenes 28 end with all iterations: bodies on stiff springs that turn far within a step (of
+// h^2 k/m from 40 on, to 1e4).
 TEST(IterationFallbackLong, StiffScenesRunOn) {
   const int count = carom_test::all_seeds() ? 400 : 50;
   const Findings findings = run_scenes(10, 10 + static_cast<std::uint64_t>(count), 1.0);
-  EXPECT_LE(findings.failed, count / 6);
+  EXPECT_LE(findings.failed, count / 10);
   EXPECT_GE(findings.failed_alone, count / 3);
 }
 

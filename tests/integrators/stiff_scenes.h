@@ -47,6 +47,7 @@ public:
 
   [[nodiscard]] const carom::System& system() const { return system_; }
   [[nodiscard]] const carom::TimeStepping& options() const { return options_; }
+  [[nodiscard]] bool has_springs() const { return has_springs_; }
 
 private:
   void add_ground() {
@@ -71,6 +72,7 @@ private:
   }
   void spring(const carom::End<2>& from, const carom::End<2>& to, double stiff, double damped,
               double length) {
+    has_springs_ = true;
     system_.add(carom::planar::SpringDamper{
         .from = from, .to = to, .stiffness = stiff, .damping = damped, .free_length = length});
   }
@@ -199,6 +201,7 @@ private:
   Random random_;
   carom::System system_;
   carom::TimeStepping options_;
+  bool has_springs_ = false;
 };
 
 }  // namespace carom_test
