@@ -202,7 +202,7 @@ BENCHMARK_CAPTURE(bounce, adams, FlowMethod::adams)->Unit(benchmark::kMicrosecon
 BENCHMARK_CAPTURE(bounce, bdf, FlowMethod::bdf)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(bounce, one_step, FlowMethod::one_step)->Unit(benchmark::kMicrosecond);
 
-// Balls side by side, dropped from 0.02 to 0.1 m: 3 s, in which their impacts pile up and they lie still.
+// Balls side by side, dropped from 0.02 to 0.1 m: 3 s, in which their impacts accumulate and they lie still.
 System balls(int count) {
   System system;
   system.add(Gravity{{0.0, -gravity}});

@@ -60,7 +60,8 @@ Page bouncing_ball() {
   page.title = "Bouncing ball";
   page.source = "closed form, `impacts_planar.json`";
   page.text =
-      "A particle falls 1 m on a floor, e_n = 0.8. Its impacts pile up at √(2 h0/g) (1 + e)/(1 − e) = 4.0637 "
+      "A particle falls 1 m on a floor, e_n = 0.8. Its impacts accumulate (Zeno) at √(2 h0/g) (1 + e)/(1 − "
+      "e) = 4.0637 "
       "s, after which it rests.";
   page.figures = {{"bouncing_ball",
                    "Height over time, and its last tenth of a second before rest, where the steps of 1 ms no "
@@ -79,7 +80,7 @@ Page bouncing_ball() {
   const double cost = clock.seconds();
   page.rows.push_back(row(tight(), "time of impact [s]", times, cost));
   page.rows.push_back(row(tight(), "speed after impact [m/s]", speeds, cost));
-  page.rows.push_back(row(tight(), "time at which the impacts pile up [s]",
+  page.rows.push_back(row(tight(), "time at which the impacts accumulate [s]",
                           events_of(simulation, EventKind::accumulation).at(0).accumulation_time,
                           of(data, "zeno_time"), cost));
   page.curves = {path("ball_stepping", TimeStepping{.step = 1e-3}, 5e-3, 0.0, 4.5),

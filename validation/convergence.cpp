@@ -114,7 +114,8 @@ Page convergence() {
       "Time stepping is of order 2 where nothing is hit and of order 1, in the mean, across impacts, where "
       "single errors scatter over a decade or two. The event-driven mode reaches many more digits at the "
       "same cost; the bar's flight is a parabola, which it follows to rounding at any tolerance. Time "
-      "stepping keeps its place where contacts are many or impacts pile up: its cost does not depend on what "
+      "stepping keeps its place where contacts are many or impacts accumulate: its cost does not depend on "
+      "what "
       "happens.";
   return page;
 }
