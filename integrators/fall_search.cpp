@@ -64,7 +64,7 @@ double FallSearch::between(const QuantityLook& from, const QuantityLook& to, int
     half = middle(from, to);
     error += of_middle * std::abs(polynomial.value(0.5) - half.at.value);
   }
-  if (deep && polynomial.lowered(error).raised(rule_.raise).first_fall() == never) return never;
+  if (deep && !polynomial.lowered(error).raised(rule_.raise).falls()) return never;
   const bool small = error <= rule_.fine || !std::isfinite(error);
   if ((deep && (small || falls_clearly(polynomial, error))) || depth == rule_.deepest) {
     const double tau = polynomial.raised(rule_.raise).first_fall();
@@ -81,7 +81,7 @@ double FallSearch::within(const Five& looks, int depth) {
   for (std::size_t i = 0; i < f.size(); ++i) f[i] = looks[i].at.value;
   const StepPolynomial polynomial = StepPolynomial::through(f);
   const double error = of_fourth_difference * std::abs(f[0] - 4.0 * f[1] + 6.0 * f[2] - 4.0 * f[3] + f[4]);
-  if (polynomial.lowered(error).raised(rule_.raise).first_fall() == never) return never;
+  if (!polynomial.lowered(error).raised(rule_.raise).falls()) return never;
   const bool small = error <= rule_.fine || !std::isfinite(error);
   if (small || falls_clearly(polynomial, error) || depth == rule_.deepest) {
     const double tau = polynomial.raised(rule_.raise).first_fall();

@@ -15,6 +15,81 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Halvings after which two roots count as one that only touches.
 constexpr int most_halvings = 30;
 
+using Coefficients = std::array<double, 7>;
+
+/// The value by de Casteljau's scheme. The compiler knows the degree and keeps all numbers in registers.
+template <std::size_t degree>
+double value_of(const std::array<double, degree + 1>& b, double tau) {
+  if constexpr (degree == 0) {
+    return b[0];
+  } else {
+    std::array<double, degree> next;
+    for (std::size_t i = 0; i < degree; ++i) next[i] = b[i] + tau * (b[i + 1] - b[i]);
+    return value_of<degree - 1>(next, tau);
+  }
+}
+
+/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
+/// keeps it, until the root no longer moves.
+template <std::size_t degree>
+double lone_root(const Coefficients& coefficients) {
+  constexpr int most_steps = 60;
+  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
+  std::array<double, degree + 1> b;
+  std::copy_n(coefficients.begin(), degree + 1, b.begin());
+  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[degree], root = high;
+  int side = 0;
+  for (int i = 0; i < most_steps; ++i) {
+    double next = low + (high - low) * f_low / (f_low - f_high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double moved = std::abs(next - root);
+    root = next;
+    if (moved <= still || high - low <= still) break;
+    const double f = value_of<degree>(b, root);
+    if (f >= 0.0) {
+      low = root;
+      f_low = f;
+      if (side == 1) f_high *= 0.5;
+      side = 1;
+    } else {
+      high = root;
+      f_high = f;
+      if (side == -1) f_low *= 0.5;
+      side = -1;
+    }
+  }
+  return root;
+}
+
+/// The first fall between two times, infinity if there is none. \param root_of root of coefficients that fall
+/// through zero once
+template <class RootOf>
+double fall_within(const Coefficients& b, int degree, double from, double to, int depth,
+                   const RootOf& root_of) {
+  int changes = 0;
+  bool positive = true, any = false;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {
+    const bool is_positive = b[i] >= 0.0;
+    any = any || !is_positive;
+    if (i > 0 && is_positive != positive) ++changes;
+    positive = is_positive;
+  }
+  if (!any) return never;
+  if (changes == 1) return from + (to - from) * root_of(b);
+  if (depth == most_halvings) return never;
+  Coefficients left{}, right = b;
+  left[0] = right[0];
+  for (int level = 1; level <= degree; ++level) {
+    for (std::size_t i = 0; i + static_cast<std::size_t>(level) <= static_cast<std::size_t>(degree); ++i) {
+      right[i] = 0.5 * (right[i] + right[i + 1]);
+    }
+    left[static_cast<std::size_t>(level)] = right[0];
+  }
+  const double middle = 0.5 * (from + to);
+  const double first = fall_within(left, degree, from, middle, depth + 1, root_of);
+  return first < never ? first : fall_within(right, degree, middle, to, depth + 1, root_of);
+}
+
 }  // namespace
 
 StepPolynomial StepPolynomial::cubic(const End& start, const End& end) {
@@ -48,8 +123,12 @@ StepPolynomial StepPolynomial::through(std::span<const double, 5> f) {
   return p;
 }
 
-double StepPolynomial::at(const Coefficients& b, double tau) const {
-  Coefficients work = b;
+double StepPolynomial::least() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
+
+double StepPolynomial::most() const { return *std::max_element(b_.begin(), b_.begin() + degree_ + 1); }
+
+double StepPolynomial::value(double tau) const {
+  Coefficients work = b_;
   for (int level = degree_; level > 0; --level) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(level); ++i) {
       work[i] += tau * (work[i + 1] - work[i]);
@@ -57,12 +136,6 @@ double StepPolynomial::at(const Coefficients& b, double tau) const {
   }
   return work[0];
 }
-
-double StepPolynomial::least() const { return *std::min_element(b_.begin(), b_.begin() + degree_ + 1); }
-
-double StepPolynomial::most() const { return *std::max_element(b_.begin(), b_.begin() + degree_ + 1); }
-
-double StepPolynomial::value(double tau) const { return at(b_, tau); }
 
 StepPolynomial StepPolynomial::raised(double constant) const {
   StepPolynomial p = *this;
@@ -101,63 +174,23 @@ StepPolynomial StepPolynomial::lowered(double error) const {
 
 double StepPolynomial::first_fall() const {
   if (!(b_[0] >= 0.0)) return 0.0;
-  return fall_within(b_, 0.0, 1.0, 0);
+  return fall_within(b_, degree_, 0.0, 1.0, 0, [this](const Coefficients& b) {
+    switch (degree_) {
+      case 3:
+        return lone_root<3>(b);
+      case 4:
+        return lone_root<4>(b);
+      case 5:
+        return lone_root<5>(b);
+      default:
+        return lone_root<most_degree>(b);
+    }
+  });
 }
 
-/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
-/// keeps it, until the root no longer moves.
-double StepPolynomial::lone_root(const Coefficients& b) const {
-  constexpr int most_steps = 60;
-  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
-  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[static_cast<std::size_t>(degree_)], root = high;
-  int side = 0;
-  for (int i = 0; i < most_steps; ++i) {
-    double next = low + (high - low) * f_low / (f_low - f_high);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double moved = std::abs(next - root);
-    root = next;
-    if (moved <= still || high - low <= still) break;
-    const double f = at(b, root);
-    if (f >= 0.0) {
-      low = root;
-      f_low = f;
-      if (side == 1) f_high *= 0.5;
-      side = 1;
-    } else {
-      high = root;
-      f_high = f;
-      if (side == -1) f_low *= 0.5;
-      side = -1;
-    }
-  }
-  return root;
-}
-
-double StepPolynomial::fall_within(const Coefficients& b, double from, double to, int depth) const {
-  int changes = 0;
-  bool positive = true, any = false;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i) {
-    const bool is_positive = b[i] >= 0.0;
-    any = any || !is_positive;
-    if (i > 0 && is_positive != positive) ++changes;
-    positive = is_positive;
-  }
-  if (!any) return never;
-  if (changes == 1) {
-    return from + (to - from) * lone_root(b);
-  }
-  if (depth == most_halvings) return never;
-  Coefficients left{}, right = b;
-  left[0] = right[0];
-  for (int level = 1; level <= degree_; ++level) {
-    for (std::size_t i = 0; i + static_cast<std::size_t>(level) <= static_cast<std::size_t>(degree_); ++i) {
-      right[i] = 0.5 * (right[i] + right[i + 1]);
-    }
-    left[static_cast<std::size_t>(level)] = right[0];
-  }
-  const double middle = 0.5 * (from + to);
-  const double first = fall_within(left, from, middle, depth + 1);
-  return first < never ? first : fall_within(right, middle, to, depth + 1);
+bool StepPolynomial::falls() const {
+  if (!(b_[0] >= 0.0)) return true;
+  return fall_within(b_, degree_, 0.0, 1.0, 0, [](const Coefficients&) { return 0.0; }) < never;
 }
 
 }  // namespace carom

@@ -40,16 +40,14 @@ public:
   [[nodiscard]] StepPolynomial lowered(double error) const;
   /// The first tau at which it falls below zero, infinity if it does not; 0 if it starts there.
   [[nodiscard]] double first_fall() const;
+  /// True if there is such a tau; costs much less than finding it.
+  [[nodiscard]] bool falls() const;
 
 private:
   static constexpr int most_degree = 6;
-  using Coefficients = std::array<double, most_degree + 1>;
-  [[nodiscard]] double fall_within(const Coefficients& b, double from, double to, int depth) const;
-  [[nodiscard]] double lone_root(const Coefficients& b) const;
   [[nodiscard]] StepPolynomial elevated() const;
-  [[nodiscard]] double at(const Coefficients& b, double tau) const;
 
-  Coefficients b_{};
+  std::array<double, most_degree + 1> b_{};
   int degree_ = 0;
 };
 

@@ -184,6 +184,9 @@ TEST(StepPolynomial, RandomOnesAgainstDenseSampling) {
     }
     const double noise = 200.0 * eps * p.size();
     const double fall = p.quintic().first_fall();
+    for (const StepPolynomial& known : {p.quintic(), p.cubic(), p.through(), p.quintic().lowered(0.1)}) {
+      EXPECT_EQ(known.falls(), known.first_fall() < never) << n;
+    }
     constexpr int samples = 2000;
     for (int i = 0; i <= samples; ++i) {
       const double tau = static_cast<double>(i) / samples;
