@@ -213,12 +213,6 @@ void ContactFinder::add(const BodySlot& body, const Feature& feature, const Quer
                         std::vector<Contact>& out) const {
   const Vec<D> off = arm<D>(body, feature, query.evaluation);
   const Vec<D> centre = Eigen::Map<const Vec<D>>(query.state.q + body.q) + off;
-  double turning = 0.0;  // bound on the centripetal acceleration
-  if constexpr (Space<D>::has_orientation) {
-    if (query.lasting != nullptr && body.rotation != none) {
-      turning = Space<D>::centripetal(query.state.v + body.v + D, off).template lpNorm<1>();
-    }
-  }
   for (Index o = 0; o < obstacles_.size(); ++o) {
     const Obstacle& obstacle = obstacles_[o];
     const ObstacleMotion* const motion =
@@ -229,7 +223,12 @@ void ContactFinder::add(const BodySlot& body, const Feature& feature, const Quer
     const bool touches = distance <= query.margin;
     if (!touches) {
       if (query.lasting == nullptr) continue;
-      double rate = turning;
+      double rate = 0.0;  // first a bound on the centripetal acceleration
+      if constexpr (Space<D>::has_orientation) {
+        if (body.rotation != none) {
+          rate = Space<D>::centripetal(query.state.v + body.v + D, off).template lpNorm<1>();
+        }
+      }
       if constexpr (D == 2) {
         if (motion != nullptr) rate += turning_of(body, off, query.state, *motion, gap.distance);
       }

@@ -8,26 +8,15 @@ namespace {
 
 // Contacts come in the order of the step before, in which they mostly are in order.
 template <class T>
-void put_in_order(std::vector<T>& items) {
+void sort_if_needed(std::vector<T>& items) {
   if (!std::is_sorted(items.begin(), items.end())) std::sort(items.begin(), items.end());
 }
 
 }  // namespace
 
-void LastingContacts::start(double step) {
-  step_ = step;
-  keys_.clear();
-  centres_.clear();
-}
-
-void LastingContacts::add(const ContactKey& key, Index centre) {
-  keys_.push_back(key);
-  if (centre != none) centres_.push_back(centre);
-}
-
-void LastingContacts::finish() {
-  put_in_order(keys_);
-  put_in_order(centres_);
+void LastingContacts::put_in_order() {
+  sort_if_needed(keys_);
+  sort_if_needed(centres_);
 }
 
 bool LastingContacts::contains(const ContactKey& key) const {

@@ -27,11 +27,20 @@ public:
   static constexpr double most_opening = 8.0;
 
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
-  void start(double step);
+  void start(double step) {
+    step_ = step;
+    keys_.clear();
+    centres_.clear();
+  }
   /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
-  void add(const ContactKey& key, Index centre = none);
+  void add(const ContactKey& key, Index centre = none) {
+    keys_.push_back(key);
+    if (centre != none) centres_.push_back(centre);
+  }
   /// Makes the contacts ready to be looked up.
-  void finish();
+  void finish() {
+    if (keys_.size() > 1) put_in_order();
+  }
 
   /// True if there are none.
   [[nodiscard]] bool empty() const { return keys_.empty(); }
@@ -45,6 +54,8 @@ public:
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
 
 private:
+  void put_in_order();
+
   double step_ = 0.0;
   std::vector<ContactKey> keys_;  // ascending
   std::vector<Index> centres_;    // likewise

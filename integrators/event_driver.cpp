@@ -85,7 +85,9 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   std::vector<ContactRecord> contacts = std::move(report.contacts);
   contacts.clear();
   std::vector<JointImpulse> joints = std::move(report.joint_impulses);
+  std::vector<ModelFinding> findings = std::move(report.findings);
   report = {};
+  report.findings = std::move(findings);
   report.contacts = std::move(contacts);
   report.joint_impulses = std::move(joints);
   report.joint_impulses.assign(news_.joint_impulses.begin(), news_.joint_impulses.end());
@@ -106,7 +108,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
 
 void EventDriver::demand_continuous_laws(double from, double to) {
   try {
-    prescribed_.demand_continuous(from, to);
+    if (!prescribed_.empty()) prescribed_.demand_continuous(from, to);
     if (!finder_.has_moving_obstacles()) return;
     if (places_after_.time() == from) std::swap(places_, places_after_);
     finder_.place(from, places_);

@@ -17,6 +17,8 @@ public:
   /// \param assembly must outlive it
   explicit PrescribedJoints(const Assembly& assembly);
 
+  /// True if there are none.
+  [[nodiscard]] bool empty() const { return laws_.empty(); }
   /// Demands that no prescribed coordinate jumps between two times [s]. Throws SolverError naming the joint,
   /// the time, and by how much it jumps (core/law_jump.h).
   void demand_continuous(double from, double to);

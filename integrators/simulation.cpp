@@ -120,7 +120,6 @@ struct Simulation::Impl {
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
   void rethrow(const std::vector<std::exception_ptr>& thrown);
   void advance(double limit);
-  void advance_keeping_findings(double limit);
   void write_to_log(std::size_t told);
   [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
     return std::make_unique<Model>(std::move(system), mode, stop);
@@ -177,7 +176,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
   {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
-    advance_keeping_findings(std::min(limit, next_due()));
+    advance(std::min(limit, next_due()));
   }
   try {
     write_to_log(told);
@@ -186,10 +185,11 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
   }
   callbacks.call_observers(simulation, guard, thrown);
   call_actions(simulation, thrown);
-  rethrow(thrown);
+  if (!thrown.empty()) rethrow(thrown);
 }
 
 void Simulation::Impl::call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown) {
+  if (companion.rhythms.empty()) return;
   const double close = closeness();
   callbacks.call_actions(simulation, companion.rhythms, guard, thrown,
                          [&](const Rhythm& rhythm) { return rhythm.due() <= state.time + close; });
@@ -229,22 +229,9 @@ void Simulation::Impl::advance(double limit) {
   }
 }
 
-/// Steps make their reports anew; findings are of the model.
-void Simulation::Impl::advance_keeping_findings(double limit) {
-  struct Keep {
-    explicit Keep(StepReport& of) : report(of), findings(std::move(of.findings)) {}
-    ~Keep() { report.findings = std::move(findings); }
-    Keep(const Keep&) = delete;
-    Keep& operator=(const Keep&) = delete;
-
-    StepReport& report;
-    std::vector<ModelFinding> findings;
-  } keep(report);
-  advance(limit);
-}
-
 /// Findings once for every model, as soon as there is a sink.
 void Simulation::Impl::write_to_log(std::size_t told) {
+  if (!log.enabled(LogLevel::error)) return;  // the highest level of a line
   const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
   if (!findings_written && log.enabled(LogLevel::warning)) {
     findings_written = true;

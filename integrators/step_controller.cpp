@@ -129,6 +129,7 @@ double StepController::error(double step) const {
 }
 
 void StepController::merge(StepReport& report) {
+  first_.findings.swap(report.findings);
   std::swap(report, first_);
   report.time = second_.time;
   report.iteration = std::max(report.iteration, second_.iteration);

@@ -97,9 +97,11 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 }
 
 void TimeStepper::place_obstacles(const State& state, double step, double end_time) {
+  const bool moving = finder_.has_moving_obstacles();
+  if (!moving && prescribed_.empty()) return;
   try {
     prescribed_.demand_continuous(state.time, end_time);
-    if (!finder_.has_moving_obstacles()) return;
+    if (!moving) return;
     if (places_after_.time() == state.time) std::swap(places_, places_after_);
     finder_.place(state.time, places_);
     finder_.place(end_time, places_after_);
@@ -112,7 +114,7 @@ void TimeStepper::place_obstacles(const State& state, double step, double end_ti
 void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
   if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
-  if (automatic()) set_iteration(Iteration::fixed_point);
+  if (automatic()) iteration_ = Iteration::fixed_point;
   tentative_ = false;
   if (automatic() && needed_sweeps_[island] != Sweeps::unneeded) {
     iterate_somehow(island, state, companion, step, judge);

@@ -161,6 +161,7 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
   // Rounding of the sum of works; a gain above it is real.
   constexpr double rounding = 1e-13;
   double scale = work.scale;
+  if (!(work.gain > rounding * scale)) return;
   if (!work.impact) {
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the obstacles.
@@ -274,6 +275,7 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
     ++statistics.lasting_gains;
     statistics.lasting_gained += report_.lasting_gain;
   }
+  report_.findings.swap(report.findings);
   std::swap(report, report_);
 }
 
