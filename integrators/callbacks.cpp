@@ -43,7 +43,6 @@ bool Callbacks::remove(const CallbackId& id, std::vector<Rhythm>& rhythms) {
 
 void Callbacks::call_observers(const Simulation& simulation, CallGuard& guard,
                                std::vector<std::exception_ptr>& thrown) {
-  if (observers_.empty()) return;
   const CallGuard::Scope scope(guard, CallGuard::Caller::observer);
   last_observer_ = observers_.size();
   for (next_observer_ = 0; next_observer_ < last_observer_;) {

@@ -85,6 +85,7 @@ void IslandDriver::start(const State& state, const ContactModes& present) {
 }
 
 void IslandDriver::go_to(double target, DriverNews& news) {
+  bool within_reach = false;
   for (;;) {
     work_->motion.limit.restart();
     if (!in_phase_) begin_phase(news);
@@ -96,7 +97,8 @@ void IslandDriver::go_to(double target, DriverNews& news) {
     }
     borrow_flow();
     if (!pending_) {
-      demand_time(target);
+      if (!within_reach) demand_time(target);
+      within_reach = true;
       count_step();
       take_step();
     }

@@ -82,16 +82,17 @@ bool IslandDriver::watch(double time, const double* y, Watch& out) {
 /// Reads off the workspace, which holds an evaluation, what is watched beside gaps.
 void IslandDriver::see(StepLook& out) {
   const MotionWorkspace& work = work_->motion;
-  out.slips.clear();
-  for (const ClosedContact& closed : motion_.closed().list()) {
-    const double sign = closed.slip_sign();
-    out.slips.push_back({sign * closed.at.velocity(1, work.trial.v.data()),
-                         sign * closed.at.acceleration(1, work.acceleration.data()), 0.0});
+  const auto& closed = motion_.closed().list();
+  out.slips.resize(closed.size());
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    const double sign = closed[i].slip_sign();
+    out.slips[i] = {sign * closed[i].at.velocity(1, work.trial.v.data()),
+                    sign * closed[i].at.acceleration(1, work.acceleration.data()), 0.0};
   }
   motion_.closed().margins(work_->margins);
-  out.margins.clear();
-  for (const ForceMargin& margin : work_->margins) out.margins.push_back(margin.margin);
-  motion_.read_guards(out.guards);
+  out.margins.resize(work_->margins.size());
+  for (std::size_t i = 0; i < out.margins.size(); ++i) out.margins[i] = work_->margins[i].margin;
+  if (motion_.guards().count() != 0) motion_.read_guards(out.guards);
 }
 
 /// Brings the workspace to a time within the flow's last step.

@@ -135,6 +135,7 @@ struct Simulation::Impl {
   std::vector<EventRecord> events;
   Callbacks callbacks;
   Log log;
+  bool observed = false;  // observe() was called
   bool findings_written = false;
   bool progress = false;
 };
@@ -183,7 +184,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
   } catch (...) {
     thrown.push_back(std::current_exception());
   }
-  callbacks.call_observers(simulation, guard, thrown);
+  if (observed) callbacks.call_observers(simulation, guard, thrown);
   call_actions(simulation, thrown);
   if (!thrown.empty()) rethrow(thrown);
 }
@@ -276,6 +277,7 @@ void Simulation::run_until(double time) {
 CallbackId Simulation::observe(Observer observer) {
   impl_->guard.demand("observe", CallGuard::Need::no_step);
   if (!observer) throw ModelError("observe: observer is empty; allowed: a function");
+  impl_->observed = true;
   return impl_->callbacks.add_observer(std::move(observer));
 }
 

@@ -76,7 +76,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.energy_gain = report_.lasting_gain = 0.0;
   report_.projected = 0.0;
   report_.control = {};
-  place_obstacles(state, step, end_time);
+  if (finder_.has_moving_obstacles() || !prescribed_.empty()) place_obstacles(state, step, end_time);
   start_loads(state, companion);
   remember_contacts(companion, step);
   for (SolverChain& chain : chains_) {
@@ -97,11 +97,9 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 }
 
 void TimeStepper::place_obstacles(const State& state, double step, double end_time) {
-  const bool moving = finder_.has_moving_obstacles();
-  if (!moving && prescribed_.empty()) return;
   try {
     prescribed_.demand_continuous(state.time, end_time);
-    if (!moving) return;
+    if (!finder_.has_moving_obstacles()) return;
     if (places_after_.time() == state.time) std::swap(places_, places_after_);
     finder_.place(state.time, places_);
     finder_.place(end_time, places_after_);

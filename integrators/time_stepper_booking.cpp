@@ -161,7 +161,8 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
   // Rounding of the sum of works; a gain above it is real.
   constexpr double rounding = 1e-13;
   double scale = work.scale;
-  if (!(work.gain > rounding * scale)) return;
+  const auto is_rounding = [&] { return !(work.gain > rounding * scale); };
+  if (is_rounding()) return;
   if (!work.impact) {
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the obstacles.
@@ -171,10 +172,10 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
         const auto row = static_cast<std::size_t>(cluster.first_row(c) + i);
         const double size = std::abs(cluster.problem().vector()[row]) + contact.speed(i, trial_.v.data());
         scale += std::abs(cluster.impulses()[row]) * size;
+        if (is_rounding()) return;  // the scale only grows
       }
     }
   }
-  if (!(work.gain > rounding * scale)) return;
   report_.energy_gain += work.gain;
   if (!work.impact) {
     report_.lasting_gain += work.gain;
