@@ -172,7 +172,7 @@ bool ClosedContacts::add_reactions(const Assembly& assembly, double* acceleratio
       unknown_[i] = -at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
     }
     solved = solve() && solved;
-    if (least_ && rank_ < n) take_least();
+    if (least_ && rank_ < n) take_least(first, last);
     for (std::size_t k = 0; k < rank_; ++k) {
       pivots_.push_back({rows_[row_order_[k]], rows_[column_order_[k]]});
     }
@@ -215,66 +215,8 @@ void ClosedContacts::spread(std::size_t first, std::size_t last) {
   }
 }
 
-/// Makes the margin of a group largest over all its vectors [from, to) at once. With x along the vectors,
-/// lines a_i + s_i x over the margins, and t = the least of them, the linear program
-///
-///     largest t' >= 0,   a_i + s_i (x+ - x-) >= t' + a_least,   t' + a_least <= bound,   x+, x- >= 0
-///
-/// as a complementarity problem. What wedges has no largest margin: `bound` is one that is large enough.
-bool ClosedContacts::share_out(std::size_t from, std::size_t to) {
-  const std::size_t first = spreads_[from].first, last = spreads_[from].last;
-  const int vectors = static_cast<int>(to - from), top = 2 * vectors;
-  int lines = 0;
-  double least = std::numeric_limits<double>::infinity(), size = 0.0;
-  for (std::size_t i = first; i < last; ++i) {
-    const ClosedContact& c = contacts_[i];
-    lines += (c.at.rubs() ? 0 : 1) + (c.sticks() ? 2 : 0);
-    size += std::abs(c.normal) + std::abs(c.tangential);
-    if (!c.at.rubs()) least = std::min(least, c.normal);
-    if (c.sticks()) least = std::min(least, c.friction * c.normal - std::abs(c.tangential));
-  }
-  if (!(size > 0.0) || !std::isfinite(size)) return false;
-  lcp_.reset(top + 1 + lines + 1);
-  int row = top + 1;
-  const auto line = [&](double at, const auto& slope) {
-    lcp_.q[static_cast<std::size_t>(row)] = at - least;
-    for (int k = 0; k < vectors; ++k) {
-      const double s = slope(null_.data() + spreads_[from + static_cast<std::size_t>(k)].vector);
-      lcp_.at(row, k) = s;
-      lcp_.at(row, vectors + k) = -s;
-      lcp_.at(k, row) = -s;
-      lcp_.at(vectors + k, row) = s;
-    }
-    lcp_.at(row, top) = -1.0;
-    lcp_.at(top, row) = 1.0;
-    ++row;
-  };
-  for (std::size_t i = first; i < last; ++i) {
-    const ClosedContact& c = contacts_[i];
-    const std::size_t at = 2 * (i - first);
-    if (!c.at.rubs()) line(c.normal, [&](const double* vector) { return vector[at]; });
-    if (!c.sticks()) continue;
-    for (const double side : {-1.0, 1.0}) {
-      line(c.friction * c.normal + side * c.tangential,
-           [&](const double* vector) { return c.friction * vector[at] + side * vector[at + 1]; });
-    }
-  }
-  line(size, [](const double*) { return 0.0; });
-  lcp_.q[static_cast<std::size_t>(top)] = -1.0;
-  work_.assign(static_cast<std::size_t>(lcp_.size), 0.0);
-  if (lemke_.solve(lcp_, work_).status != LcpStatus::solved) return false;
-  for (int k = 0; k < vectors; ++k) {
-    const double shift = work_[static_cast<std::size_t>(k)] - work_[static_cast<std::size_t>(vectors + k)];
-    const double* const vector = null_.data() + spreads_[from + static_cast<std::size_t>(k)].vector;
-    for (std::size_t i = first; i < last; ++i) {
-      contacts_[i].normal += shift * vector[2 * (i - first)];
-      contacts_[i].tangential += shift * vector[2 * (i - first) + 1];
-    }
-  }
-  return true;
-}
-
 void ClosedContacts::margins(std::vector<ForceMargin>& out) {
+  for (ClosedContact& contact : contacts_) contact.sets_margin = true;
   std::vector<Line>& lines = lines_;
   const auto collect = [&](std::size_t first, std::size_t last, const double* vector) {
     lines.clear();

@@ -14,6 +14,7 @@
 #include <carom/contact/contact_finder.h>
 #include <carom/contact/contact_mode.h>
 #include <carom/contact/lcp.h>
+#include <carom/contact/least_distance.h>
 #include <carom/contact/lemke.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -33,6 +34,8 @@ struct ClosedContact {
   double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
   double normal = 0.0;                    ///< force; of friction in a joint Contact::pressed [N]
   double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
+  /// False where forces were shared out and it is at its end by chance: others set the margin.
+  bool sets_margin = true;
 
   /// True if the tangent is a constraint.
   [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
@@ -68,8 +71,8 @@ class CAROM_API ClosedContacts {
 public:
   /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
   void bind(const Assembly& assembly, IslandJoints& joints);
-  /// Of forces that are not unique the least in the sense of least squares, in place of any: for those who
-  /// depend on them, since they are continuous.
+  /// Of forces that are not unique the least in the sense of least squares that the law of contact allows, in
+  /// place of any: for those who depend on them, since they are continuous, also where modes change.
   void ask_least() { least_ = true; }
 
   /// The contacts.
@@ -103,7 +106,9 @@ private:
   void rub(std::size_t first, std::size_t last, double* acceleration);
   bool solve();
   void find_null_vector(std::size_t free);
-  void take_least();
+  void take_least(std::size_t first, std::size_t last);
+  void collect_lines(std::size_t first, std::size_t last);
+  void take_allowed(std::size_t first, std::size_t last);
   void spread(std::size_t first, std::size_t last);
   bool share_out(std::size_t from, std::size_t to);
 
@@ -124,7 +129,9 @@ private:
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;
   bool least_ = false;
-  std::vector<double> orthonormal_;  // null vectors, of take_least()
+  std::vector<double> orthonormal_;        // null vectors, of take_least()
+  std::vector<double> lines_at_, slopes_;  // margins without them and their slopes, line by line
+  LeastDistance least_distance_;
   std::vector<ContactPivot> pivots_;
   std::vector<double> null_;  // null vectors of the systems last solved, by group
   struct Spread {

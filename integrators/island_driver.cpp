@@ -270,10 +270,11 @@ void IslandDriver::go_to_event(DriverNews& news) {
     const double noise = 4.0 * std::max(start_.noises[next_.which], end_.noises[next_.which]);
     for (std::size_t i = at.first; i < at.last; ++i) {
       const ClosedContact& c = closed[i];
+      if (!c.sets_margin) continue;
       if (!c.at.rubs() && c.normal <= at.margin + noise && c.normal <= noise) {
         lifting_.push_back(c.pair);
       } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
-        breaking_.push_back({c.pair, c.tangential});
+        breaking_.push_back({c.pair, c.tangential, motion_.bears_any() ? noise : 0.0});
       }
     }
   }

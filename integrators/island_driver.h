@@ -111,6 +111,7 @@ private:
   struct Break {
     ContactPair pair;
     double push;
+    double noise;  // of it
   };
 
   // Smooth phases.

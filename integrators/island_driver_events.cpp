@@ -145,6 +145,7 @@ void IslandDriver::collect_candidates(std::size_t first, std::size_t last) {
     if (breaking != breaking_.end()) {
       candidate.breaks = true;
       candidate.push = breaking->push;
+      candidate.noise = breaking->noise;
     }
     candidate.lifts = std::find(lifting_.begin(), lifting_.end(), candidate.pair) != lifting_.end();
   }

@@ -89,7 +89,7 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
   cluster.build(*assembly_, touching, velocity);
   motion_.couple(cluster);
   cluster.set_free_velocity(velocity);
-  const bool solved = motion_.solve(cluster, touching, JointLevel::change, work_->chain);
+  const bool solved = motion_.solve(cluster, touching, work_->chain);
   // Slower than the capture speed all that touches closes anyway.
   if (!solved && captured) cluster.forget_impulses();
   if (!solved && !captured) {

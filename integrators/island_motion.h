@@ -15,6 +15,7 @@
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
 #include <carom/core/island_joints.h>
+#include <carom/integrators/bound_iteration.h>
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
 #include <carom/integrators/island_guards.h>
@@ -119,10 +120,16 @@ public:
   void couple(ContactCluster& cluster);
   /// True if the bound of friction in a joint follows from forces.
   [[nodiscard]] bool bears(const Contact& contact) const { return pressure_.bears(contact); }
-  /// Solves a problem that was coupled, of accelerations, or of changes of velocity by an impact. Bounds of
-  /// friction in joints that follow from forces are found by repetition; it is not solved where they do not
-  /// settle. \param contacts those of the problem
-  bool solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level, SolverChain& chain);
+  /// True if that of any in the island does.
+  [[nodiscard]] bool bears_any() const { return !pressure_.empty(); }
+  /// Solves the problem of an impact that was coupled. Bounds of friction in joints that follow from impulses
+  /// are found by repetition; it is not solved where they do not settle. \param contacts those of the problem
+  bool solve(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain);
+  /// Forces of closed contacts in place of those at hand, as the flow finds them, with bounds of friction in
+  /// joints as they are; then the bounds that follow, their largest relative change, and the margins of the
+  /// forces. The workspace holds an evaluation without reactions. False where there are no forces.
+  bool update_bounds(std::vector<ClosedContact>& contacts, std::vector<ForceMargin>& margins,
+                     BoundIteration& iteration, double& change);
   /// Adds what the impulses of a problem that was coupled do to the velocities.
   void apply(const ContactCluster& cluster, double* velocity) const;
   /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
@@ -155,9 +162,9 @@ public:
 
 private:
   bool add_pressed_reactions();
+  bool press_once(BoundIteration& iteration, double& change);
   [[nodiscard]] double largest_load() const;
-  bool settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
-                     SolverChain& chain, bool least);
+  bool settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain, bool least);
   // Parts of the Jacobian: changes of a contact's load, its forces as they are, and of the accelerations
   // along its rows, those of the bodies as they are.
   struct ContactChange {

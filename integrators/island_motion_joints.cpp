@@ -46,25 +46,15 @@ std::vector<double> least_impulses(const ContactProblem& problem, std::span<cons
 bool IslandMotion::add_pressed_reactions() {
   MotionWorkspace& work = *work_;
   const Range v = assembly_->islands()[island_].v;
-  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
   work.free.resize(work.acceleration.size());
   std::copy(work.acceleration.begin() + v.begin, work.acceleration.begin() + v.end,
             work.free.begin() + v.begin);
-  const double size = largest_load();
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
     std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
-    if (!closed_.add_reactions(*assembly_, work.acceleration.data())) return false;
-    const std::span<const double> multipliers = joint_multipliers();
-    pressure_.take(multipliers.data(), 1.0, size);
     double change = 0.0;
     iteration.begin();
-    for (ClosedContact& contact : closed_.list()) {
-      if (!pressure_.bears(contact.at)) continue;
-      const double before = contact.at.pressed;
-      change = std::max(change, pressure_.press(contact.at, at));
-      iteration.add(before, contact.at.pressed);
-    }
+    if (!press_once(iteration, change)) return false;
     if (iteration.settled(change)) return true;
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
@@ -75,6 +65,36 @@ bool IslandMotion::add_pressed_reactions() {
   return false;
 }
 
+/// Forces of contacts at given bounds of friction in joints, and the bounds that follow from them.
+bool IslandMotion::press_once(BoundIteration& iteration, double& change) {
+  if (!closed_.add_reactions(*assembly_, work_->acceleration.data())) return false;
+  const JointView at{work_->trial.view(), work_->evaluation.rotation.data()};
+  const std::span<const double> multipliers = joint_multipliers();
+  pressure_.take(multipliers.data(), 1.0, largest_load());
+  for (ClosedContact& contact : closed_.list()) {
+    if (!pressure_.bears(contact.at)) continue;
+    const double before = contact.at.pressed;
+    change = std::max(change, pressure_.press(contact.at, at));
+    iteration.add(before, contact.at.pressed);
+  }
+  return true;
+}
+
+bool IslandMotion::update_bounds(std::vector<ClosedContact>& contacts, std::vector<ForceMargin>& margins,
+                                 BoundIteration& iteration, double& change) {
+  MotionWorkspace& work = *work_;
+  const Range v = assembly_->islands()[island_].v;
+  work.free.resize(work.acceleration.size());
+  std::copy(work.acceleration.begin() + v.begin, work.acceleration.begin() + v.end,
+            work.free.begin() + v.begin);
+  closed_.list().swap(contacts);
+  const bool found = press_once(iteration, change);
+  std::copy(work.free.begin() + v.begin, work.free.begin() + v.end, work.acceleration.begin() + v.begin);
+  closed_.margins(margins);
+  closed_.list().swap(contacts);
+  return found;
+}
+
 /// Loads without reactions: forces small against them are rounding.
 double IslandMotion::largest_load() const {
   const Range v = assembly_->islands()[island_].v;
@@ -83,27 +103,24 @@ double IslandMotion::largest_load() const {
   return largest;
 }
 
-bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
-                         SolverChain& chain) {
+bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain) {
   if (pressure_.empty()) return cluster.solve(chain).usable();
   // Of answers that are not unique one may follow another for ever.
-  return settle_bounds(cluster, contacts, level, chain, false) ||
-         (cluster.report().usable() && settle_bounds(cluster, contacts, level, chain, true));
+  return settle_bounds(cluster, contacts, chain, false) ||
+         (cluster.report().usable() && settle_bounds(cluster, contacts, chain, true));
 }
 
-bool IslandMotion::settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, JointLevel level,
-                                 SolverChain& chain, bool least) {
+bool IslandMotion::settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain,
+                                 bool least) {
   MotionWorkspace& work = *work_;
   const Range v = assembly_->islands()[island_].v;
   const JointView at{work.trial.view(), work.evaluation.rotation.data()};
-  const bool impact = level == JointLevel::change;
   std::vector<double>& answer = work.of_velocity;
   work.multipliers.resize(joints_.size());
-  const double size = impact ? 0.0 : largest_load();
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
     if (!cluster.solve(chain).usable()) return false;
-    for (Index k = v.begin; k < v.end; ++k) answer[k] = impact ? 0.0 : work.momentum[k];
+    std::fill(answer.begin() + v.begin, answer.begin() + v.end, 0.0);
     if (least) {
       const std::vector<double> found(cluster.impulses().begin(), cluster.impulses().end());
       cluster.set_impulses(least_impulses(cluster.problem(), found));
@@ -113,8 +130,8 @@ bool IslandMotion::settle_bounds(ContactCluster& cluster, std::span<Contact> con
       cluster.add_loads(1.0, answer.data());
     }
     joints_.apply_inverse_mass(answer.data());
-    joints_.hold(level, answer.data(), work.multipliers.data());
-    pressure_.take(work.multipliers.data(), impact ? 0.0 : 1.0, size);
+    joints_.hold(JointLevel::change, answer.data(), work.multipliers.data());
+    pressure_.take(work.multipliers.data(), 0.0);
     double change = 0.0;
     iteration.begin();
     for (std::size_t c = 0; c < contacts.size(); ++c) {

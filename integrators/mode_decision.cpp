@@ -70,14 +70,17 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
     if (sign != 0.0 && contacts_[c].rows > 1) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
-  const bool solved = motion.solve(cluster_, contacts_, JointLevel::acceleration, chain);
+  const bool presses = std::any_of(contacts_.begin(), contacts_.end(),
+                                   [&](const Contact& contact) { return motion.bears(contact); });
+  const bool solved =
+      presses ? settle_bounds(motion, candidates, acceleration, chain) : cluster_.solve(chain).usable();
   const ContactReport& report = cluster_.report();
   if (!solved || report.outcome == Outcome::no_solution) {
     name_culprit(candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
   Decision decision = Decision::made;
-  read_modes(candidates, cluster_.impulses());
+  if (!presses) read_modes(candidates, cluster_.impulses());
   if (report.outcome == Outcome::several_solutions) {
     name_culprit(candidates);
     keep_present(candidates);
@@ -116,6 +119,12 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
   bool changed = false;
   double size = 0.0, farthest = 0.0;
   for (const double b : cluster_.problem().vector()) size = std::max(size, std::abs(b));
+  // Accelerations by friction that is exhausted to within its rounding only.
+  double stiffest = 0.0, exhausted = 0.0;
+  for (int row = 0; row < cluster_.problem().rows(); ++row) {
+    stiffest = std::max(stiffest, cluster_.problem().w(row, row));
+  }
+  for (const Candidate& candidate : candidates) exhausted += candidate.noise * stiffest;
   Slide* astray = nullptr;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
@@ -130,7 +139,8 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
       slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
       changed = true;
     } else if (candidate.slip == 0.0 && !candidate.slippery && !slide.back &&
-               candidate.mode != ContactMode::open && slide.sign * rate(1) < -no_acceleration * size) {
+               candidate.mode != ContactMode::open &&
+               slide.sign * rate(1) < -std::max(no_acceleration * size, exhausted)) {
       // One at a time: it may be what takes the others along.
       if (astray != nullptr && std::abs(rate(1)) <= farthest) continue;
       astray = &slide;

@@ -29,7 +29,8 @@ struct Candidate {
   bool breaks = false;    ///< its friction is exhausted: it slips against `push`, unless that cannot be
   bool slippery = false;  ///< without friction
   bool lifts = false;     ///< its force has come to an end: it opens, unless that cannot be
-  double push = 0.0;      ///< the friction force that was exhausted [N]
+  double push = 0.0;      ///< the friction force that was exhausted [N],
+  double noise = 0.0;     ///< to this much
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
@@ -66,6 +67,11 @@ private:
   bool keep_present(std::span<Candidate> candidates);
   void take(std::span<Candidate> candidates, std::size_t solution);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
+  // Bounds of friction that follow from forces (mode_decision_bounds.cpp):
+  bool settle_bounds(IslandMotion& motion, std::span<Candidate> candidates, const double* acceleration,
+                     SolverChain& chain);
+  void complete_modes(IslandMotion& motion, std::span<Candidate> candidates);
+  void list_closed(std::span<const Candidate> candidates);
 
   ContactCluster cluster_;
   SolutionList solutions_;
@@ -73,6 +79,8 @@ private:
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::vector<Slide> slides_;
   std::vector<double> zero_, acceleration_;
+  std::vector<ClosedContact> closed_;  // those that stay, in the order of contacts_
+  std::vector<ForceMargin> margins_;
 };
 
 }  // namespace carom

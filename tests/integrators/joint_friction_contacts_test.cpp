@@ -100,24 +100,31 @@ TEST(JointFrictionWithContacts, RandomBars) {
   }
 }
 
+// They chattered between modes until event_limit ended them, where the forces by which modes were decided
+// were not those of the flow.
+TEST(JointFrictionWithContacts, ModesAreDecidedByTheForcesOfTheFlow) {
+  struct Bars {
+    std::uint64_t seed;
+    int count;
+    double slope, coefficient;
+  };
+  for (const Bars& bars : {Bars{1108, 3, 0.01455722373406293, 0.0014882935531297906},
+                           Bars{1765, 4, 0.4395724110236499, 0.01927255757135608},
+                           Bars{1004, 4, 0.015478762048043104, 0.02161083628590272},
+                           Bars{1055, 4, 0.3133866057156747, 0.06619674309968117}}) {
+    expect_run(PinnedBars(bars.seed, bars.count, bars.slope, bars.coefficient), 2.0);
+  }
+}
+
 TEST(JointFrictionWithContactsLong, RandomBars) {
-  // None grinds on without end. About one in 200 chatters between modes until event_limit ends it, where the
-  // forces by which modes are decided are not those of the flow.
   Random random(11);
   const std::uint64_t count = carom_test::all_seeds() ? 1000 : 200;
-  std::string errors;
-  std::uint64_t ended = 0;
   for (std::uint64_t seed = 1000; seed < 1000 + count; ++seed) {
     const int bars = 2 + static_cast<int>(random.below(3));
     const double slope = random.uniform(-0.3, 0.5);
     const double coefficient = std::pow(10.0, random.uniform(-3.0, -1.3));
-    const std::string error = run_to(PinnedBars(seed, bars, slope, coefficient), 2.0);
-    if (error.empty()) continue;
-    ++ended;
-    errors += error + '\n';
-    EXPECT_NE(error.find("event_limit"), std::string::npos) << error;
+    expect_run(PinnedBars(seed, bars, slope, coefficient), 2.0);
   }
-  EXPECT_LE(ended, count / 100) << errors;
 }
 
 /// Largest distance of the bars' centres in the two modes.
