@@ -5,8 +5,30 @@
 #include <carom/integrators/time_resolution.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace carom {
+
+namespace {
+
+/// Names of the joints that almost follow from others where joints were last evaluated: near a singular
+/// position, which the motion passes within some 0.01 rad; empty elsewhere.
+std::vector<std::string> nearly_singular(const IslandJoints& joints, const System& system) {
+  constexpr double near_pivot = 1e-4;  // the square of an angle
+  std::vector<std::string> names;
+  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+    for (Index row = joints.first_row(joint); row < joints.first_row(joint + 1); ++row) {
+      const double pivot = joints.factors().pivot(row);
+      if (!(pivot > dependent_pivot && pivot < near_pivot)) continue;
+      names.push_back(system.name(joints.joint(row)));
+      break;
+    }
+  }
+  return names;
+}
+
+}  // namespace
 
 void IslandDriver::advance(double target, DriverNews& news) {
   try {
@@ -31,6 +53,8 @@ void IslandDriver::count_step() {
   const std::string what =
       "more than " + to_text(options_.step_limit) + " steps of the integrator per second (step_limit)";
   motion_.evaluate(time_, y_.data(), true);
+  std::vector<std::string> singular = nearly_singular(motion_.joints(), assembly_->system());
+  if (!singular.empty()) fail(what + "; near a singular position of the joints", std::move(singular));
   const MotionWorkspace& work = work_->motion;
   const CouplingRating rating = rate_couplings(*assembly_, motion_.island(), work.trial.view(),
                                                work.evaluation, 1.0 / options_.step_limit);

@@ -88,16 +88,25 @@ void expect_passage(const ParallelCranks& cranks, FlowMethod method, const std::
   EXPECT_NEAR(simulation.state().angle(crank) - angle, cranks.spin * cranks.end, 16.0 * of_steps) << name;
 }
 
-// Open: the steps of adams and bdf shrink to nothing before the position, and the run ends at step_limit.
-bool is_open(std::uint64_t seed, FlowMethod method) {
+/// Steps of adams and bdf shrink to nothing before the position: an error that names the joints.
+bool stops_before(std::uint64_t seed, FlowMethod method) {
   return seed == 27 && (method == FlowMethod::adams || method == FlowMethod::bdf);
+}
+
+void expect_named(const ParallelCranks& cranks, FlowMethod method) {
+  Simulation simulation(cranks.linkage.scene.system, options(method, 1e-9, cranks.end));
+  EXPECT_THROWS(SolverError, simulation.run_until(cranks.end), "step_limit",
+                "near a singular position of the joints", "revolute joint 'pin");
 }
 
 void expect_passages(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t seed = first; seed < last; ++seed) {
     const ParallelCranks cranks(seed);
     for (const FlowMethod method : methods) {
-      if (is_open(seed, method)) continue;
+      if (stops_before(seed, method)) {
+        expect_named(cranks, method);
+        continue;
+      }
       const std::string name = "cranks " + std::to_string(seed) + " by " + label(method);
       try {
         expect_passage(cranks, method, name);
