@@ -19,6 +19,7 @@
 #include <carom/integrators/event_driven.h>
 #include <carom/integrators/flow.h>
 #include <carom/integrators/island_guards.h>
+#include <carom/integrators/pressed_contacts.h>
 #include <carom/integrators/work_limits.h>
 
 #include <array>
@@ -39,6 +40,7 @@ struct CAROM_API MotionWorkspace {
   std::vector<double> acceleration;           ///< with the reactions of closed contacts, if asked for
   std::vector<double> of_position, of_velocity, momentum;  ///< corrections; momentum: loads without reactions
   std::vector<double> multipliers;                         ///< of joints
+  PressedSolver pressed;                                   ///< of impacts with friction in joints
   std::vector<double> free;                                ///< accelerations without contacts
   std::vector<double> lengths;                             ///< Assembly::length_scales()
   std::vector<double> z_rates;
@@ -164,7 +166,6 @@ private:
   bool add_pressed_reactions();
   bool press_once(BoundIteration& iteration, double& change);
   [[nodiscard]] double largest_load() const;
-  bool settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain, bool least);
   // Parts of the Jacobian: changes of a contact's load, its forces as they are, and of the accelerations
   // along its rows, those of the bodies as they are.
   struct ContactChange {

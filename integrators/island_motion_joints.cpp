@@ -1,46 +1,13 @@
 // Problem: what joints add to the motion of an island: their reactions, friction in them, jumps of what
 // drives them.
 
-#include <carom/contact/rank_revealing_qr.h>
 #include <carom/integrators/bound_iteration.h>
 #include <carom/integrators/island_motion.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace carom {
-
-namespace {
-
-/// Impulses of least norm that change velocities as those of a problem's answer do: without their part along
-/// the null vectors of W. Of an answer that is not unique solvers find any, these are always the same.
-std::vector<double> least_impulses(const ContactProblem& problem, std::span<const double> impulses) {
-  constexpr double dependent = 1e-11;  // pivots of W below this part of the largest are rounding
-  const auto n = static_cast<std::size_t>(problem.rows());
-  RankRevealingQr factors;
-  factors.factor(problem.matrix(), n, n, dependent);
-  std::vector<double> least(impulses.begin(), impulses.end());
-  std::vector<std::vector<double>> null;
-  const auto remove_part = [](const std::vector<double>& along, std::vector<double>& from) {
-    const double part = std::inner_product(from.begin(), from.end(), along.begin(), 0.0);
-    for (std::size_t i = 0; i < from.size(); ++i) from[i] -= part * along[i];
-  };
-  for (std::size_t index = 0; index + factors.rank() < n; ++index) {
-    std::vector<double> vector(n);
-    factors.null_vector(index, vector);
-    for (int pass = 0; pass < 2; ++pass) {  // the second for what rounding left
-      for (const std::vector<double>& other : null) remove_part(other, vector);
-    }
-    const double length = std::sqrt(std::inner_product(vector.begin(), vector.end(), vector.begin(), 0.0));
-    for (double& number : vector) number /= length;
-    null.push_back(std::move(vector));
-  }
-  for (const std::vector<double>& vector : null) remove_part(vector, least);
-  return least;
-}
-
-}  // namespace
 
 /// Forces of contacts, with friction in joints bound by the forces that follow.
 bool IslandMotion::add_pressed_reactions() {
@@ -104,53 +71,25 @@ double IslandMotion::largest_load() const {
 }
 
 bool IslandMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain) {
-  if (pressure_.empty()) return cluster.solve(chain).usable();
-  // Of answers that are not unique one may follow another for ever.
-  return settle_bounds(cluster, contacts, chain, false) ||
-         (cluster.report().usable() && settle_bounds(cluster, contacts, chain, true));
-}
-
-bool IslandMotion::settle_bounds(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain,
-                                 bool least) {
   MotionWorkspace& work = *work_;
-  const Range v = assembly_->islands()[island_].v;
-  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
-  std::vector<double>& answer = work.of_velocity;
   work.multipliers.resize(joints_.size());
-  BoundIteration iteration;
-  for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
-    if (!cluster.solve(chain).usable()) return false;
-    std::fill(answer.begin() + v.begin, answer.begin() + v.end, 0.0);
-    if (least) {
-      const std::vector<double> found(cluster.impulses().begin(), cluster.impulses().end());
-      cluster.set_impulses(least_impulses(cluster.problem(), found));
-      cluster.add_loads(1.0, answer.data());
-      cluster.set_impulses(found);
-    } else {
-      cluster.add_loads(1.0, answer.data());
-    }
-    joints_.apply_inverse_mass(answer.data());
-    joints_.hold(JointLevel::change, answer.data(), work.multipliers.data());
-    pressure_.take(work.multipliers.data(), 0.0);
-    double change = 0.0;
-    iteration.begin();
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-      if (!pressure_.bears(contacts[c])) continue;
-      const double before = contacts[c].pressed;
-      change = std::max(change, pressure_.press(contacts[c], at));
-      iteration.add(before, contacts[c].pressed);
-      cluster.press(c);
-    }
-    if (iteration.settled(change)) return true;
-    if (!iteration.accelerates()) continue;
-    std::size_t bound = 0;
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-      if (!pressure_.bears(contacts[c])) continue;
-      contacts[c].pressed = iteration.guess(bound++);
-      cluster.press(c);
-    }
-  }
-  return false;
+  // Little is captured, so that nothing is allocated.
+  const auto multipliers = [this, &cluster] {
+    MotionWorkspace& at = *work_;
+    const Range v = assembly_->islands()[island_].v;
+    std::fill(at.of_velocity.begin() + v.begin, at.of_velocity.begin() + v.end, 0.0);
+    cluster.add_loads(1.0, at.of_velocity.data());
+    joints_.apply_inverse_mass(at.of_velocity.data());
+    joints_.hold(JointLevel::change, at.of_velocity.data(), at.multipliers.data());
+    return static_cast<const double*>(at.multipliers.data());
+  };
+  return work.pressed.solve({.cluster = cluster,
+                             .contacts = contacts,
+                             .pressure = pressure_,
+                             .at = {work.trial.view(), work.evaluation.rotation.data()},
+                             .duration = 0.0,
+                             .multipliers = multipliers},
+                            chain);
 }
 
 std::span<const double> IslandMotion::joint_multipliers() {
