@@ -18,26 +18,26 @@ constexpr int most_halvings = 30;
 using Coefficients = std::array<double, 7>;
 
 /// The value by de Casteljau's scheme. The compiler knows the degree and keeps all numbers in registers.
-template <std::size_t degree>
-double value_of(const std::array<double, degree + 1>& b, double tau) {
-  if constexpr (degree == 0) {
+template <std::size_t Degree>
+double value_of(const std::array<double, Degree + 1>& b, double tau) {
+  if constexpr (Degree == 0) {
     return b[0];
   } else {
-    std::array<double, degree> next;
-    for (std::size_t i = 0; i < degree; ++i) next[i] = b[i] + tau * (b[i + 1] - b[i]);
-    return value_of<degree - 1>(next, tau);
+    std::array<double, Degree> next;
+    for (std::size_t i = 0; i < Degree; ++i) next[i] = b[i] + tau * (b[i + 1] - b[i]);
+    return value_of<Degree - 1>(next, tau);
   }
 }
 
 /// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
 /// keeps it, until the root no longer moves.
-template <std::size_t degree>
+template <std::size_t Degree>
 double lone_root(const Coefficients& coefficients) {
   constexpr int most_steps = 60;
   constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
-  std::array<double, degree + 1> b;
-  std::copy_n(coefficients.begin(), degree + 1, b.begin());
-  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[degree], root = high;
+  std::array<double, Degree + 1> b;
+  std::copy_n(coefficients.begin(), Degree + 1, b.begin());
+  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[Degree], root = high;
   int side = 0;
   for (int i = 0; i < most_steps; ++i) {
     double next = low + (high - low) * f_low / (f_low - f_high);
@@ -45,7 +45,7 @@ double lone_root(const Coefficients& coefficients) {
     const double moved = std::abs(next - root);
     root = next;
     if (moved <= still || high - low <= still) break;
-    const double f = value_of<degree>(b, root);
+    const double f = value_of<Degree>(b, root);
     if (f >= 0.0) {
       low = root;
       f_low = f;
