@@ -274,7 +274,7 @@ void IslandDriver::go_to_event(DriverNews& news) {
       if (!c.at.rubs() && c.normal <= at.margin + noise && c.normal <= noise) {
         lifting_.push_back(c.pair);
       } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
-        breaking_.push_back({c.pair, c.tangential, motion_.bears_any() ? noise : 0.0});
+        breaking_.push_back({c.pair, c.tangential, noise});
       }
     }
   }

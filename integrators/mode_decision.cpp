@@ -70,8 +70,9 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
     if (sign != 0.0 && contacts_[c].rows > 1) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
-  const bool presses = std::any_of(contacts_.begin(), contacts_.end(),
-                                   [&](const Contact& contact) { return motion.bears(contact); });
+  const bool presses =
+      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(),
+                                        [&](const Contact& contact) { return motion.bears(contact); });
   const bool solved =
       presses ? settle_bounds(motion, candidates, acceleration, chain) : cluster_.solve(chain).usable();
   const ContactReport& report = cluster_.report();
