@@ -43,7 +43,6 @@ private:
   void take_forces(const PressedContacts& problem);
 
   RankRevealingQr factors_;
-  std::size_t rows_ = 0;
   std::vector<double> null_;  // of W, orthonormal vectors one behind the other
   std::vector<double> vector_, found_, least_;
 };
