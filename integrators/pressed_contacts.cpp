@@ -1,3 +1,4 @@
+#include <carom/contact/least_distance.h>
 #include <carom/integrators/bound_iteration.h>
 #include <carom/integrators/pressed_contacts.h>
 
@@ -19,16 +20,104 @@ void remove_parts(const std::vector<double>& null, std::vector<double>& from) {
   }
 }
 
+/// Directions in which the law leaves impulses free at velocities xi, one behind the other: normal impulses
+/// where nothing parts, with the friction of slip; friction that sticks, in joints too.
+std::vector<double> free_directions(const ContactProblem& problem, std::span<const double> xi) {
+  constexpr double same = 1e-10;  // against the largest velocity: no velocity
+  const std::size_t n = xi.size();
+  double size = 0.0;
+  for (const double b : problem.vector()) size = std::max(size, std::abs(b));
+  std::vector<double> free;
+  const auto add = [&](std::size_t row) {
+    free.resize(free.size() + n, 0.0);
+    double* const direction = free.data() + free.size() - n;
+    direction[row] = 1.0;
+    return direction;
+  };
+  for (const RowGroup& group : problem.groups()) {
+    const auto first = static_cast<std::size_t>(group.first);
+    if (std::abs(xi[first]) > same * size) continue;
+    double* direction = add(first);
+    std::vector<std::size_t> sticking;
+    for (std::size_t row = first + 1; row < first + static_cast<std::size_t>(group.size); ++row) {
+      const RowSet& set = problem.sets()[row];
+      if (set.kind == SetKind::proportional) {
+        direction[row] = set.coefficient;
+      } else if (std::abs(xi[row]) <= same * size) {
+        if (set.coefficient > 0.0) sticking.push_back(row);
+      } else if (set.kind == SetKind::bounded_interval) {
+        direction[row] = xi[row] > 0.0 ? -set.coefficient : set.coefficient;
+      }
+    }
+    for (const std::size_t row : sticking) add(row);
+  }
+  return free;
+}
+
+/// Moves impulses along null vectors by the least that brings them into their sets.
+void allow(const ContactProblem& problem, const std::vector<double>& null, std::vector<double>& impulses) {
+  constexpr double rounding = 1e-13;  // of impulses, against the largest
+  const std::size_t n = impulses.size(), count = null.size() / n;
+  double size = 0.0;
+  for (const double impulse : impulses) size = std::max(size, std::abs(impulse));
+  std::vector<double> at, slopes;
+  const auto line = [&](double offset, std::size_t row, double factor, std::size_t other,
+                        double other_factor) {
+    at.push_back(offset + factor * impulses[row] + other_factor * impulses[other]);
+    for (std::size_t k = 0; k < count; ++k) {
+      slopes.push_back(factor * null[k * n + row] + other_factor * null[k * n + other]);
+    }
+  };
+  for (std::size_t row = 0; row < n; ++row) {
+    const RowSet& set = problem.sets()[row];
+    if (set.kind == SetKind::half_line) line(0.0, row, 1.0, row, 0.0);
+    for (const double side : {-1.0, 1.0}) {
+      if (set.kind == SetKind::bounded_interval) {
+        line(0.0, row, side, static_cast<std::size_t>(set.bound), set.coefficient);
+      } else if (set.kind == SetKind::interval) {
+        line(side > 0.0 ? -set.lower : set.upper, row, side, row, 0.0);
+      }
+    }
+  }
+  if (std::all_of(at.begin(), at.end(), [&](double value) { return value >= -rounding * size; })) return;
+  std::vector<double> x(count, 0.0);
+  LeastDistance nearest;
+  // Where rounding leaves no point, the one that satisfies most is as good.
+  static_cast<void>(nearest.solve(at, slopes, rounding * size, x));
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < n; ++i) impulses[i] += x[k] * null[k * n + i];
+  }
+}
+
 }  // namespace
 
+/// Changes of the answer `found_` that the law leaves free and that move nothing, orthonormal.
 void PressedSolver::find_null_space(const ContactProblem& problem) {
-  constexpr double dependent = 1e-11;  // pivots of W below this part of the largest are rounding
+  constexpr double dependent = 1e-11;  // pivots below this part of the largest are rounding
   const auto n = static_cast<std::size_t>(problem.rows());
-  factors_.factor(problem.matrix(), n, n, dependent);
   null_.clear();
-  vector_.resize(n);
-  for (std::size_t index = 0; index + factors_.rank() < n; ++index) {
-    factors_.null_vector(index, vector_);
+  std::vector<double> xi(n);
+  problem.velocities(found_, xi);
+  const std::vector<double> free = free_directions(problem, xi);
+  const std::size_t count = free.size() / n;
+  if (count == 0) return;
+  std::vector<double> moved(n * count, 0.0);  // W times the directions
+  for (std::size_t row = 0; row < n; ++row) {
+    for (std::size_t k = 0; k < count; ++k) {
+      moved[row * count + k] =
+          std::inner_product(free.begin() + static_cast<std::ptrdiff_t>(k * n),
+                             free.begin() + static_cast<std::ptrdiff_t>((k + 1) * n),
+                             problem.matrix().begin() + static_cast<std::ptrdiff_t>(row * n), 0.0);
+    }
+  }
+  factors_.factor(moved, n, count, dependent);
+  std::vector<double> parts(count);
+  for (std::size_t index = 0; index + factors_.rank() < count; ++index) {
+    factors_.null_vector(index, parts);
+    vector_.assign(n, 0.0);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < n; ++i) vector_[i] += parts[k] * free[k * n + i];
+    }
     for (int pass = 0; pass < 2; ++pass) remove_parts(null_, vector_);  // the second for what rounding left
     const double length = std::sqrt(std::inner_product(vector_.begin(), vector_.end(), vector_.begin(), 0.0));
     for (double& number : vector_) number /= length;
@@ -38,13 +127,15 @@ void PressedSolver::find_null_space(const ContactProblem& problem) {
 
 void PressedSolver::take_forces(const PressedContacts& problem) {
   ContactCluster& cluster = problem.cluster;
+  found_.assign(cluster.impulses().begin(), cluster.impulses().end());
+  find_null_space(cluster.problem());
   if (null_.empty()) {
     problem.pressure.take(problem.multipliers(), problem.duration, problem.size);
     return;
   }
-  found_.assign(cluster.impulses().begin(), cluster.impulses().end());
   least_ = found_;
   remove_parts(null_, least_);
+  allow(cluster.problem(), null_, least_);
   cluster.set_impulses(least_);
   problem.pressure.take(problem.multipliers(), problem.duration, problem.size);
   cluster.set_impulses(found_);
@@ -52,7 +143,6 @@ void PressedSolver::take_forces(const PressedContacts& problem) {
 
 bool PressedSolver::solve(const PressedContacts& problem, SolverChain& chain) {
   if (problem.pressure.empty()) return problem.cluster.solve(chain).usable();
-  find_null_space(problem.cluster.problem());
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
     if (!problem.cluster.solve(chain).usable()) return false;
