@@ -134,6 +134,25 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
 void ContactCluster::couple(IslandJoints& joints) {
   // Joints count velocities from the first of all. Little is captured, so that nothing is allocated.
   couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
+  // A row that the joints hold fast (of a corner at a pin to the ground) is left without any response, in
+  // place of one by rounding, against which impulses would be as large as its inverse: nothing acts along it.
+  constexpr double held = 1e-13;  // of the response without joints: rounding
+  constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+  const int rows = problem_.rows();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    for (int i = contact.begin_row(); i < contact.rows; ++i) {
+      const int row = first_row_[c] + i;
+      const double* const response = response_.data() + static_cast<std::size_t>(row) * stride;
+      double alone = 0.0;
+      for (int k = 0; k < contact.columns; ++k) alone += contact.row(i)[k] * response[k];
+      if (problem_.w(row, row) > held * alone) continue;
+      for (int other = 0; other < rows; ++other) problem_.w(row, other) = problem_.w(other, row) = 0.0;
+      std::fill_n(coupled_.begin() +
+                      static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * coupled_range_.size()),
+                  coupled_range_.size(), 0.0);
+    }
+  }
 }
 
 void ContactCluster::couple_again(const std::function<void(const double* x, double* p)>& mass,
@@ -205,6 +224,14 @@ void ContactCluster::set_free_velocity(const double* velocity_free) {
     }
     if (contacts_[c].allowed_approach > 0.0) {
       b[static_cast<std::size_t>(first_row_[c])] += contacts_[c].allowed_approach;
+    }
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+      // Of what joints hold fast, against what moves around it, or has moved before [m/s].
+      constexpr double rounding = 1e-9, least = 1e-10;
+      const int row = first_row_[c] + i;
+      double& number = b[static_cast<std::size_t>(row)];
+      if (problem_.w(row, row) != 0.0) continue;
+      if (std::abs(number) <= rounding * contacts_[c].speed(i, velocity_free) + least) number = 0.0;
     }
   }
 }

@@ -51,6 +51,8 @@ void ModeDecision::complete_modes(IslandMotion& motion, std::span<Candidate> can
       }
     }
     if (contact.rubs() || candidates[i].mode != ContactMode::open) continue;
+    const int normal = cluster_.first_row(c);
+    if (cluster_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
     if (contact.acceleration(0, acceleration_.data()) > no_acceleration * size) continue;
     const double along = contact.rows > 1 ? contact.acceleration(1, acceleration_.data()) : 0.0;
     double sign = slides_[i].sign;
