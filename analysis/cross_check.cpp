@@ -14,7 +14,10 @@ namespace carom {
 
 namespace {
 
-[[noreturn]] void refuse(const char* option, const std::string& value, const char* allowed) {
+// Numbers of runs that somebody may wait for.
+constexpr int most_steps = 100'000;
+
+[[noreturn]] void refuse(const char* option, const std::string& value, const std::string& allowed) {
   throw ModelError(std::string("cross check: ") + option + " is " + value + "; allowed: " + allowed);
 }
 
@@ -30,7 +33,9 @@ void check(const CrossCheckOptions& options) {
       refuse("a step", to_text(step), "> 0 s and not lost in the rounding of the end");
     }
   }
-  if (options.probes < 0) refuse("probes", std::to_string(options.probes), "at least 0");
+  if (options.probes < 0 || options.probes > most_steps) {
+    refuse("probes", std::to_string(options.probes), "0 to " + std::to_string(most_steps));
+  }
   if (options.time_stepping.control) refuse("time_stepping.control", "given", "steps of fixed length");
 }
 
@@ -112,7 +117,9 @@ std::vector<double> spread_steps(double largest, double smallest, int count) {
     refuse("the range of steps", to_text(smallest) + " to " + to_text(largest),
            "0 < smallest < largest, in s");
   }
-  if (count < 2) refuse("the number of steps", std::to_string(count), "at least 2");
+  if (count < 2 || count > most_steps) {
+    refuse("the number of steps", std::to_string(count), "2 to " + std::to_string(most_steps));
+  }
   constexpr double golden = 0.6180339887498949;
   std::vector<double> steps;
   steps.reserve(static_cast<std::size_t>(count));

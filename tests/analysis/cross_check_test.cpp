@@ -142,6 +142,9 @@ TEST(CrossCheck, RefusesWhatCannotBe) {
   options.time_stepping.control.reset();
   options.probes = -1;
   EXPECT_MODEL_ERROR(run(), "probes is -1");
+  options.probes = 2'000'000'000;
+  EXPECT_MODEL_ERROR(run(), "probes is 2000000000; allowed: 0 to 100000");
+  EXPECT_MODEL_ERROR((void)spread_steps(1.0, 0.1, 2'000'000'000), "number of steps is 2000000000");
   options.probes = 0;
   options.end = std::nan("");
   EXPECT_MODEL_ERROR(run(), "end is nan");
