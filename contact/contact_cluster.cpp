@@ -136,21 +136,24 @@ void ContactCluster::couple(IslandJoints& joints) {
   couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
   // A row that the joints hold fast (of a corner at a pin to the ground) is left without any response, in
   // place of one by rounding, against which impulses would be as large as its inverse: nothing acts along it.
-  constexpr double held = 1e-13;  // of the response without joints: rounding
+  constexpr double held = 1e-12;  // of the response without joints: rounding
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+  const auto largest = [](const double* numbers, std::size_t count) {
+    double size = 0.0;
+    for (std::size_t k = 0; k < count; ++k) size = std::max(size, std::abs(numbers[k]));
+    return size;
+  };
   const int rows = problem_.rows();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& contact = contacts_[c];
-    for (int i = contact.begin_row(); i < contact.rows; ++i) {
+    const auto columns = static_cast<std::size_t>(contacts_[c].columns);
+    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
       const int row = first_row_[c] + i;
-      const double* const response = response_.data() + static_cast<std::size_t>(row) * stride;
-      double alone = 0.0;
-      for (int k = 0; k < contact.columns; ++k) alone += contact.row(i)[k] * response[k];
-      if (problem_.w(row, row) > held * alone) continue;
+      const auto at = static_cast<std::size_t>(row);
+      double* const coupled = coupled_.data() + at * coupled_range_.size();
+      const double alone = largest(response_.data() + at * stride, columns);
+      if (largest(coupled, coupled_range_.size()) > held * alone) continue;
       for (int other = 0; other < rows; ++other) problem_.w(row, other) = problem_.w(other, row) = 0.0;
-      std::fill_n(coupled_.begin() +
-                      static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * coupled_range_.size()),
-                  coupled_range_.size(), 0.0);
+      std::fill_n(coupled, coupled_range_.size(), 0.0);
     }
   }
 }
@@ -250,8 +253,9 @@ const ContactReport& ContactCluster::solve(SolverChain& chain) {
   changed_modes_ = false;
   const bool again = solved_ && report_.usable();
   solved_ = true;
-  // One contact is solved faster than looked at.
-  if (again && problem_.groups().size() > 1 && keep_modes()) return report_;
+  // One contact is solved faster than looked at, and asked for its modes where they change only.
+  const bool several = problem_.groups().size() > 1;
+  if (again && several && keep_modes()) return report_;
   if (again) {
     kept_impulse_.assign(impulse_.begin(), impulse_.end());
     kept_modes_.assign(modes_.begin(), modes_.end());
@@ -259,6 +263,17 @@ const ContactReport& ContactCluster::solve(SolverChain& chain) {
   report_ = chain.solve(problem_, impulse_);
   modes_.assign(chain.modes().begin(), chain.modes().end());
   changed_modes_ = again && modes_ != kept_modes_;
+  if (!changed_modes_ || several) return report_;
+  xi_ = impulse_;
+  impulse_ = kept_impulse_;
+  modes_.swap(kept_modes_);
+  if (keep_modes()) {
+    if (report_.usable()) report_.outcome = Outcome::several_solutions;
+    changed_modes_ = false;
+  } else {
+    impulse_ = xi_;
+    modes_.swap(kept_modes_);
+  }
   return report_;
 }
 

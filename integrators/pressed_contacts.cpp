@@ -11,6 +11,9 @@ namespace carom {
 
 namespace {
 
+// Repetitions after which forces of least norm are taken; most models settle within ten.
+constexpr int patience = 60;
+
 /// Takes from `from` its parts along orthonormal vectors, one behind the other in `null`.
 void remove_parts(const std::vector<double>& null, std::vector<double>& from) {
   const std::size_t n = from.size();
@@ -125,10 +128,13 @@ void PressedSolver::find_null_space(const ContactProblem& problem) {
   }
 }
 
-void PressedSolver::take_forces(const PressedContacts& problem) {
+void PressedSolver::take_forces(const PressedContacts& problem, bool least) {
   ContactCluster& cluster = problem.cluster;
-  found_.assign(cluster.impulses().begin(), cluster.impulses().end());
-  find_null_space(cluster.problem());
+  null_.clear();
+  if (least) {
+    found_.assign(cluster.impulses().begin(), cluster.impulses().end());
+    find_null_space(cluster.problem());
+  }
   if (null_.empty()) {
     problem.pressure.take(problem.multipliers(), problem.duration, problem.size);
     return;
@@ -143,10 +149,17 @@ void PressedSolver::take_forces(const PressedContacts& problem) {
 
 bool PressedSolver::solve(const PressedContacts& problem, SolverChain& chain) {
   if (problem.pressure.empty()) return problem.cluster.solve(chain).usable();
+  // Of answers that are not unique one may follow another for ever.
+  return settle(problem, chain, patience, false) ||
+         (problem.cluster.report().usable() &&
+          settle(problem, chain, BoundIteration::most_repetitions, true));
+}
+
+bool PressedSolver::settle(const PressedContacts& problem, SolverChain& chain, int repetitions, bool least) {
   BoundIteration iteration;
-  for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
+  for (int i = 0; i < repetitions; ++i) {
     if (!problem.cluster.solve(chain).usable()) return false;
-    take_forces(problem);
+    take_forces(problem, least);
     double change = 0.0;
     iteration.begin();
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {

@@ -40,7 +40,8 @@ public:
 
 private:
   void find_null_space(const ContactProblem& problem);
-  void take_forces(const PressedContacts& problem);
+  void take_forces(const PressedContacts& problem, bool least);
+  [[nodiscard]] bool settle(const PressedContacts& problem, SolverChain& chain, int repetitions, bool least);
 
   RankRevealingQr factors_;
   std::vector<double> null_;  // of W, orthonormal vectors one behind the other

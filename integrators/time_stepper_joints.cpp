@@ -27,7 +27,6 @@ void TimeStepper::prepare_joints() {
     joints_.resize(islands);
     JointWork& work = joints_[island];
     work.end = IslandJoints(assembly, island);
-    work.end.factors().reveal_rank(true);
     work.start = work.mean = work.end;
     work.impulse.resize(work.end.size());
     work.total.resize(work.end.size());
