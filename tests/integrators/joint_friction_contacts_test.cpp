@@ -116,8 +116,8 @@ TEST(JointFrictionWithContacts, ModesAreDecidedByTheForcesOfTheFlow) {
   }
 }
 
-// Of 300 one ends where bounds and forces do not settle: four bars with 4.6 cm in a heap. None ends at
-// event_limit.
+// Of 300 none ends with an error; seed 1073 (four bars with 4.6 cm in a heap) is near the place where bounds
+// and forces do not settle. None ends at event_limit.
 TEST(JointFrictionWithContactsLong, RandomBars) {
   Random random(11);
   const std::uint64_t count = carom_test::all_seeds() ? 1000 : 200;
