@@ -6,7 +6,6 @@
 
 #include <array>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +40,8 @@ void ContactFinder::place(double time, ObstaclePlaces& places) const {
 
 void ContactFinder::demand_continuous(const ObstaclePlaces& before, const ObstaclePlaces& after) const {
   const auto point_of = [](const ObstacleMotion& motion, double time) {
-    return LawPoint{time, motion.point, motion.velocity, motion.angle, motion.spin};
+    return LawPoint{time,        motion.point,          motion.velocity,  motion.angle,
+                    motion.spin, motion.velocity_given, motion.spin_given};
   };
   for (const Obstacle& obstacle : obstacles_) {
     if (obstacle.moving == none) continue;
@@ -49,11 +49,15 @@ void ContactFinder::demand_continuous(const ObstaclePlaces& before, const Obstac
                    to = point_of(after.motions_[obstacle.moving], after.time_);
     if (looks_smooth(from, to)) continue;
     auto law = [&](double time) { return point_of(obstacle.kind->place(obstacle.slot, time), time); };
-    const std::optional<LawJump> jump = find_jump(law, from, to);
-    if (!jump) continue;
     const ObstacleId id{obstacle.serial, assembly_->system().token()};
-    fail_jump(assembly_->system().name(id), jump->of_angle ? "angle" : "displacement",
-              jump->of_angle ? "rad" : "m", *jump);
+    if (const auto jump = find_jump(law, from, to)) {
+      fail_jump(assembly_->system().name(id), jump->of_angle ? "angle" : "displacement",
+                jump->of_angle ? "rad" : "m", *jump);
+    }
+    if (const auto rate = find_false_rate(law, from, to)) {
+      fail_rate(assembly_->system().name(id), rate->of_angle ? "spin" : "velocity",
+                rate->of_angle ? "angle" : "displacement", rate->of_angle ? "rad/s" : "m/s", *rate);
+    }
   }
 }
 

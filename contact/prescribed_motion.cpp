@@ -29,6 +29,8 @@ namespace planar {
 ObstacleMotion PrescribedMotion::at(double time, const Vec<2>& point) const {
   ObstacleMotion motion;
   motion.point = {point[0], point[1], 0.0};
+  motion.velocity_given = static_cast<bool>(velocity);
+  motion.spin_given = static_cast<bool>(spin);
   if (displacement) {
     const Course<Vec<2>> way = course(displacement, velocity, acceleration, time, breaks);
     for (int i = 0; i < 2; ++i) {

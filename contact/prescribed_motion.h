@@ -26,8 +26,8 @@ struct CAROM_API PrescribedMotion {
   std::function<double(double time)> spin{};                  ///< its rate [rad/s]
   std::function<double(double time)> angular_acceleration{};  ///< and that of the spin [rad/s^2]
   /// Times at which velocities jump or functions have kinks, ascending [s]. At a break functions are taken
-  /// for what holds after it. Displacement and angle are continuous, at breaks too: a jump of them is a
-  /// SolverError that names the obstacle and the time (core/law_jump.h).
+  /// for what holds after it. Displacement and angle are continuous, at breaks too: a jump of them, or a rate
+  /// that is not theirs, is a SolverError that names the obstacle and the time (core/law_jump.h).
   std::vector<double> breaks{};
 
   /// True if there is no motion.

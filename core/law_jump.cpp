@@ -169,7 +169,38 @@ private:
   std::size_t count_ = 0;
 };
 
+/// True if ways from a time on, from an eighth of `length` [s] downwards, are missed by the rate as long as
+/// they are told from rounding; how far off the rate is on the shortest of them.
+bool misses_throughout(FunctionRef<LawPoint(double)> law, FalseRate& found, double length) {
+  constexpr double shorter = 1.0 / 16.0, told = 10.0;
+  const LawPoint from = law(found.time);
+  bool looked = false;
+  for (length *= 0.125;; length *= shorter) {
+    const Change way = seen_change(from, law(found.time + length), found.of_angle);
+    if (!(std::max(way.moved, way.way) > told * way.resolved())) return looked;
+    if (way.smooth()) return false;
+    looked = true;
+    found.off = way.missed / length;
+    if (length < resolution * std::max(1.0, std::abs(found.time))) return looked;
+  }
+}
+
 }  // namespace
+
+std::optional<FalseRate> find_false_rate(FunctionRef<LawPoint(double)> law, const LawPoint& from,
+                                         const LawPoint& to) {
+  for (const bool of_angle : {false, true}) {
+    if (!(of_angle ? from.spin_given : from.velocity_given)) continue;
+    FalseRate found{.of_angle = of_angle};
+    const auto is_false_at = [&](double share) {
+      found.time = from.time + share * (to.time - from.time);
+      return misses_throughout(law, found, to.time - from.time);
+    };
+    constexpr std::array<double, 5> shares{0.1, 0.3, 0.5, 0.7, 0.9};
+    if (std::all_of(shares.begin(), shares.end(), is_false_at)) return found;
+  }
+  return std::nullopt;
+}
 
 bool looks_smooth(const LawPoint& from, const LawPoint& to) {
   const Change place = change_of_place(from, to), turn = turn_between(from, to);
@@ -184,6 +215,18 @@ void fail_jump(const std::string& part, const std::string& quantity, const char*
       part + ": " + quantity + " jumps at t = " + to_text(jump.time) + " s, by " + to_text(jump.size);
   if (*unit != '\0') message.append(" ").append(unit);
   message += "; allowed: a continuous one (its rate may jump, at times listed in breaks)";
+  throw SolverError(message, std::move(failure));
+}
+
+void fail_rate(const std::string& part, const std::string& rate, const std::string& of, const char* unit,
+               const FalseRate& found) {
+  SolverFailure failure;
+  failure.time = found.time;
+  failure.parts.push_back(part);
+  std::string message = part + ": " + rate + " at t = " + to_text(found.time) + " s is not the rate of " +
+                        of + ", off by " + to_text(found.off);
+  if (*unit != '\0') message.append(" ").append(unit);
+  message += "; allowed: its rate (it is computed where none is given)";
   throw SolverError(message, std::move(failure));
 }
 

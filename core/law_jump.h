@@ -20,12 +20,21 @@ struct LawPoint {
   std::array<double, 3> velocity{};  ///< its rate
   double angle = 0.0;                ///< [rad]; where whole turns do not matter
   double spin = 0.0;                 ///< its rate [rad/s]
+  bool velocity_given = false;       ///< by a function of its own, not from the place by differences
+  bool spin_given = false;           ///< likewise
 };
 
 /// A jump that was found.
 struct LawJump {
   double time = 0.0;      ///< the last time before it [s]
   double size = 0.0;      ///< |change| of the place, or change of the angle
+  bool of_angle = false;  ///< of which
+};
+
+/// A given rate that is not the rate of what it belongs to.
+struct FalseRate {
+  double time = 0.0;      ///< [s]
+  double off = 0.0;       ///< |given rate - rate of the place|, or of the angle
   bool of_angle = false;  ///< of which
 };
 
@@ -50,6 +59,17 @@ inline constexpr double resolved_share = 1e-9;
 /// the motion around them, and all but the eight roughest parts of an interval.
 [[nodiscard]] CAROM_API std::optional<LawJump> find_jump(FunctionRef<LawPoint(double time)> law,
                                                          const LawPoint& from, const LawPoint& to);
+
+/// Looks for a given rate that contradicts its place or angle between two points that do not look smooth: by
+/// more than smooth_share of the way, at five times of five, however short the way. Not found are rates that
+/// are false for less than that, and ways below 1e-8 of the largest |x|.
+[[nodiscard]] CAROM_API std::optional<FalseRate> find_false_rate(FunctionRef<LawPoint(double time)> law,
+                                                                 const LawPoint& from, const LawPoint& to);
+
+/// Throws the SolverError of a false rate. \param part whose law it is \param rate its name, in `unit`
+/// \param of what it should be the rate of
+[[noreturn]] CAROM_API void fail_rate(const std::string& part, const std::string& rate, const std::string& of,
+                                      const char* unit, const FalseRate& found);
 
 /// Throws the SolverError of a jump. \param part whose law it is \param quantity what jumps, in `unit`
 [[noreturn]] CAROM_API void fail_jump(const std::string& part, const std::string& quantity, const char* unit,

@@ -31,6 +31,8 @@ struct ObstacleMotion {
   double sine = 0.0;                     ///< of the angle
   double spin = 0.0;                     ///< [rad/s]
   double angular_acceleration = 0.0;     ///< [rad/s^2]
+  bool velocity_given = false;           ///< by the user, not by differences of the place
+  bool spin_given = false;               ///< likewise
 };
 
 /// All obstacles of one kind.

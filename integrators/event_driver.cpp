@@ -50,12 +50,31 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
   }
 }
 
+/// Looks at a state, where no step or event is at hand that could tell of too many evaluations.
+template <class F>
+auto EventDriver::within_limit(double time, F&& look) const {
+  try {
+    return look();
+  } catch (const EvaluationLimit::Reached&) {
+    SolverFailure failure;
+    failure.time = time;
+    throw SolverError("event-driven at t = " + to_text(time) + " s: more than " +
+                          std::to_string(options_.evaluation_limit) +
+                          " evaluations to look at a state (evaluation_limit)",
+                      std::move(failure));
+  }
+}
+
 void EventDriver::demand_start(const State& state) {
-  for (auto& island : islands_) island->demand_start(state);
+  within_limit(state.time, [&] {
+    for (auto& island : islands_) island->demand_start(state);
+  });
 }
 
 void EventDriver::start(const State& state, const Companion& companion) {
-  for (auto& island : islands_) island->start(state, companion.modes);
+  within_limit(state.time, [&] {
+    for (auto& island : islands_) island->start(state, companion.modes);
+  });
   counted_ = work_.flows.counts();
   started_ = true;
 }
@@ -148,7 +167,9 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
     return place.slot >= range.begin && place.slot < range.end;
   };
   while (!within(island)) ++island;
-  return islands_[island]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+  return within_limit(state.time, [&] {
+    return islands_[island]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+  });
 }
 
 /// Islands were gone through one after the other; their events are told in time, then by island.

@@ -26,7 +26,8 @@ public:
   /// \param stop asked within the work, may be null; must outlive this
   EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop = nullptr);
 
-  /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start.
+  /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start, SolverError
+  /// for more evaluations than the options allow.
   void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
@@ -45,6 +46,8 @@ public:
 
 private:
   void start(const State& state, const Companion& companion);
+  template <class F>
+  auto within_limit(double time, F&& look) const;
   void count(Companion& companion);
   void demand_continuous_laws(double from, double to);
   [[noreturn]] void fail_energy(double from, double to);

@@ -2,6 +2,7 @@
 
 #include <carom/core/csv.h>
 #include <carom/core/enum_name.h>
+#include <carom/core/part_check.h>
 #include <carom/core/whole_file.h>
 #include <carom/integrators/event_log.h>
 #include <carom/integrators/simulation.h>
@@ -80,6 +81,14 @@ void write_events(std::ostream& out, const std::vector<EventRecord>& events,
 
 std::string Simulation::name(const EventRecord& event) const {
   const System& model = system();
+  const auto demand = [&](const char* what, const auto& id) {
+    if (!id.valid() || id.token == model.token()) return;
+    throw ModelError(std::string("event: ") + what + " is " + refused_name(model, id) +
+                     "; allowed: one of this model");
+  };
+  demand("element", event.element);
+  demand("joint", event.joint);
+  demand("obstacle", event.obstacle);
   if (event.element.valid()) return name_with_bodies(model, event.element);
   if (event.joint.valid()) return model.name(event.joint);
   return event.body.valid() ? name(event.contact) : model.name(event.obstacle);

@@ -154,6 +154,7 @@ private:
 
   // Events.
   void begin_phase(DriverNews& news);
+  void settle_known(DriverNews& news);
   void set_scales();
   void locate_contacts();
   bool resolve_impacts(DriverNews& news);

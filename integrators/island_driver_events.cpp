@@ -60,6 +60,7 @@ void IslandDriver::begin_phase(DriverNews& news) {
   motion_.evaluate(time_, y_.data(), false);
   locate_contacts();
   set_scales();
+  if (fresh_ && !motion_.closed().list().empty()) settle_known(news);
   before_ = motion_.closed().list();
   std::fill(closed_at_.begin(), closed_at_.end(), char{0});
   for (const ClosedContact& contact : before_) {

@@ -2,6 +2,7 @@
 
 #include <carom/contact/impact_restitution.h>
 #include <carom/integrators/island_driver.h>
+#include <carom/integrators/prescribed_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +98,8 @@ void IslandDriver::resolve_body(std::size_t first, std::size_t last, double fast
     names.reserve(touching.size());
     for (const Contact& contact : touching) names.push_back(finder_->name(contact.key));
     std::string what = "the contact problem of an impact is not solved (" +
-                       std::string(to_string(cluster.report().outcome)) + motion_.driven_by() + ")";
+                       std::string(to_string(cluster.report().outcome)) +
+                       driven_by(*assembly_, motion_.island()) + ")";
     if (cluster.report().outcome == Outcome::no_solution) what += "; " + tell_approach(touching, velocity);
     fail(what, std::move(names), &cluster);
   }

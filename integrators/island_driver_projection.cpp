@@ -2,7 +2,10 @@
 
 #include <carom/integrators/island_driver.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 namespace carom {
 
@@ -25,6 +28,25 @@ bool IslandDriver::settle(DriverNews& news) {
   bool changed = false;
   news.flows[EnergyFlow::projection] += project(y_, changed, news);
   return changed;
+}
+
+/// A run that goes on from a state within a phase takes out what the tolerances left of the contacts known to
+/// be closed there; a lift-off or an impact would be made of it. The workspace holds an evaluation.
+void IslandDriver::settle_known(DriverNews& news) {
+  constexpr double left_by_tolerances = 1e3;
+  std::vector<ClosedContact>& list = motion_.closed().list();
+  const std::vector<ClosedContact> known = list;
+  const double* const velocity = work_->motion.trial.v.data();
+  std::erase_if(list, [&](ClosedContact& closed) {
+    const auto pair = std::find(motion_.pairs().begin(), motion_.pairs().end(), closed.pair);
+    closed.at = work_->contacts[static_cast<std::size_t>(pair - motion_.pairs().begin())];
+    return closed.at.gap > options_.gap_tolerance ||
+           std::abs(closed.at.velocity(0, velocity)) > left_by_tolerances * speed_noise();
+  });
+  if (!list.empty() && motion_.evaluate(time_, y_.data(), true)) settle(news);
+  list = known;
+  motion_.evaluate(time_, y_.data(), false);
+  locate_contacts();
 }
 
 /// Contacts that have just stopped slipping are projected as sticking, with all that can only move with them.

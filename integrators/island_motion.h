@@ -137,8 +137,6 @@ public:
   /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
   /// evaluation with reactions.
   [[nodiscard]] std::span<const double> joint_multipliers();
-  /// "; bodies are driven by driver 'hoist'", for messages; empty where they are not.
-  [[nodiscard]] std::string driven_by() const;
   /// Kinetic energy of the group of a body in the workspace's state [J].
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.

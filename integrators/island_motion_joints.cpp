@@ -168,17 +168,4 @@ std::vector<std::string> IslandMotion::projected_by() {
   return names;
 }
 
-std::string IslandMotion::driven_by() const {
-  std::string text;
-  for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {
-    if (!assembly_->joint_kinds()[k]->depends_on_time()) continue;
-    const Range range = assembly_->joints(island_, k);
-    for (Index joint = range.begin; joint < range.end; ++joint) {
-      text += (text.empty() ? "; bodies are driven by " : ", ") +
-              assembly_->system().name(assembly_->joint_id(k, joint));
-    }
-  }
-  return text;
-}
-
 }  // namespace carom

@@ -1,7 +1,7 @@
 #include <carom/integrators/prescribed_joints.h>
 
 #include <limits>
-#include <optional>
+#include <string>
 
 namespace carom {
 
@@ -22,11 +22,26 @@ void PrescribedJoints::demand_continuous(double from, double to) {
     if (law.last.time != from) law.last = at(from);
     const LawPoint end = at(to);
     if (!looks_smooth(law.last, end)) {
-      const std::optional<LawJump> jump = find_jump(at, law.last, end);
-      if (jump) fail_jump(assembly_->system().name(law.id), "position", "", *jump);
+      const std::string name = assembly_->system().name(law.id);
+      if (const auto jump = find_jump(at, law.last, end)) fail_jump(name, "position", "", *jump);
+      const auto rate = find_false_rate(at, law.last, end);
+      if (rate) fail_rate(name, "velocity", "position", "", *rate);
     }
     law.last = end;
   }
+}
+
+std::string driven_by(const Assembly& assembly, Index island) {
+  std::string text;
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
+    const Range range = assembly.joints(island, k);
+    for (Index joint = range.begin; joint < range.end; ++joint) {
+      text += (text.empty() ? "; bodies are driven by " : ", ") +
+              assembly.system().name(assembly.joint_id(k, joint));
+    }
+  }
+  return text;
 }
 
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 #include <carom/core/law_jump.h>
 
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -19,8 +20,8 @@ public:
 
   /// True if there are none.
   [[nodiscard]] bool empty() const { return laws_.empty(); }
-  /// Demands that no prescribed coordinate jumps between two times [s]. Throws SolverError naming the joint,
-  /// the time, and by how much it jumps (core/law_jump.h).
+  /// Demands that no prescribed coordinate jumps between two times [s], and that no rate contradicts it.
+  /// Throws SolverError naming the joint, the time, and by how much it does (core/law_jump.h).
   void demand_continuous(double from, double to);
 
 private:
@@ -34,5 +35,8 @@ private:
   const Assembly* assembly_;
   std::vector<Law> laws_;
 };
+
+/// "; bodies are driven by driver 'hoist'", for messages; empty where those of an island are not.
+[[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, Index island);
 
 }  // namespace carom

@@ -115,6 +115,13 @@ struct Simulation::Impl {
     companion.grid_start = state.time;
     companion.grid_steps = 0;
   }
+  /// A checkpoint may come from a run with another step or interval.
+  void match_grid() {
+    const auto* const stepping = std::get_if<TimeStepping>(&mode);
+    if (stepping != nullptr && stepping->control) return;  // goes along no grid
+    const double present = companion.grid_start + static_cast<double>(companion.grid_steps) * grid();
+    if (!(std::abs(present - state.time) <= closeness())) restart_grid();
+  }
   void demand_times(const char* call, double time) const;
   void step(Simulation& simulation, double limit);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
@@ -472,6 +479,7 @@ void Simulation::load(const std::string& path) {
   impl_->guard.demand("load", CallGuard::Need::no_reader);
   load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
+  impl_->match_grid();
 }
 
 }  // namespace carom

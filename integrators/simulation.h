@@ -119,7 +119,8 @@ public:
   /// of a key made by default "no contact". Throws ModelError for a key of parts that this model never had.
   [[nodiscard]] std::string name(const ContactKey& key) const;
   /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
-  /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps.
+  /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps. Throws
+  /// ModelError for parts of another model.
   [[nodiscard]] std::string name(const EventRecord& event) const;
 
   /// Log of warnings and notes; nothing is written until it has a sink.

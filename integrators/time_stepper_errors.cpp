@@ -198,7 +198,7 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   } else {
     message += to_string(cluster.report().outcome);
     if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
-    message += ", residual " + to_text(cluster.report().residual);
+    message += ", residual " + to_text(cluster.report().residual) + driven_by(*assembly_, island);
   }
   if (!tentative_) message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));

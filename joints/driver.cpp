@@ -55,6 +55,7 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
 LawPoint DriverKind::prescribed(Index joint, double time) const {
   const Driver& driver = parts_[joint].part;
   LawPoint point{.time = time};
+  point.velocity_given = static_cast<bool>(driver.velocity);
   point.place[0] = driver.position(time);
   point.velocity[0] =
       driver.velocity ? driver.velocity(time) : TimeDifference(time, 1, driver.breaks)(driver.position);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -149,6 +150,43 @@ TEST(LawJump, IsFoundWhereItIs) {
     EXPECT_NEAR(jump->size, std::abs(size), 1e-9 * (std::abs(size) + std::abs(around.place(at))));
     EXPECT_FALSE(jump->of_angle);
   }
+}
+
+// A rate that is given may be none of its place: of the wrong sign, of another law, or nothing.
+TEST(LawJump, FalseRatesAreTold) {
+  carom_test::Random random(1708);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    const Law right = smooth_law(random, 30.0, true);
+    const double begin = random.uniform(0.0, 10.0), length = std::pow(10.0, random.uniform(-4.0, -1.0));
+    for (const double factor : {1.0, -1.0, 0.0, 2.0, 0.5}) {
+      const auto law = [&](double t) {
+        LawPoint point{.time = t, .velocity_given = true};
+        point.place[0] = right.place(t);
+        point.velocity[0] = factor * right.rate(t);
+        return point;
+      };
+      const auto found = find_false_rate(law, law(begin), law(begin + length));
+      if (factor == 1.0) {
+        EXPECT_FALSE(found.has_value()) << repeat;
+        continue;
+      }
+      // Where the law turns back, or is at rest, nothing is seen at one of the times.
+      if (!found) continue;
+      // Told is the mean over a way of at most an eighth of the interval: as much as the rate changes there,
+      // and what rounding of 1e-15 max|x| makes of the shortest way.
+      const double rate = right.rate(found->time);
+      double change = 0.0;
+      for (int i = 1; i <= 16; ++i) {
+        change = std::max(change, std::abs(right.rate(found->time + i * length / 128.0) - rate));
+      }
+      EXPECT_NEAR(found->off, std::abs((factor - 1.0) * rate), 2.0 * change + 1e-5) << factor;
+    }
+  }
+  const auto still = [](double t) { return LawPoint{.time = t, .place = {t, 0.0, 0.0}}; };
+  EXPECT_FALSE(find_false_rate(still, still(0.0), still(0.1)));  // not given
+  auto told = [](double t) { return LawPoint{.time = t, .place = {t, 0.0, 0.0}, .velocity_given = true}; };
+  ASSERT_TRUE(find_false_rate(told, told(0.0), told(0.1)));
+  EXPECT_NEAR(find_false_rate(told, told(0.0), told(0.1))->off, 1.0, 1e-9);
 }
 
 TEST(LawJump, BeforeTheStartAndBeyondTheEnd) {

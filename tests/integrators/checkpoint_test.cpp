@@ -14,6 +14,7 @@
 #include <functional>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -93,6 +94,28 @@ TEST_F(Checkpoint, ContinuesInASimulationThatHasRunElsewhere) {
   other.load(path_);
   other.run_until(1.2);
   EXPECT_EQ(bits_of(other), bits_of(whole));
+}
+
+// Times on the way of the one are none of the other: the next step begins where the checkpoint ends.
+TEST_F(Checkpoint, ContinuesWithAnotherStepOrInterval) {
+  const auto mode = [](bool events, double length) {
+    return events ? Mode(EventDriven{.interval = length}) : Mode(TimeStepping{.step = length});
+  };
+  for (const bool events : {false, true}) {
+    for (const auto& [first, second] :
+         {std::pair(1e-3, 1e-4), std::pair(1e-4, 1e-3), std::pair(1e-3, 3e-4)}) {
+      Simulation whole(scene(), mode(events, first));
+      for (int i = 0; i < 3; ++i) whole.step();
+      whole.save(path_);
+      Simulation other(scene(), mode(events, second));
+      other.load(path_);
+      other.step();
+      EXPECT_NEAR(other.time(), whole.time() + second, 1e-15);  // rounding of times
+      // Free fall: 1 - cos is of second order, both modes are exact.
+      const double height = whole.state().q[1] + second * whole.state().v[1] - 0.5 * 9.81 * second * second;
+      EXPECT_NEAR(other.state().q[1], height, 1e-12) << first << " " << second;
+    }
+  }
 }
 
 TEST_F(Checkpoint, KeepsTheRhythmOfPeriodicEvents) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/allocation_counter.h"
+#include "tests/integrators/throws.h"
 #include "tests/temporary_folder.h"
 
 namespace {
@@ -107,6 +108,21 @@ TEST(EventLog, NamesThePartOfEveryEvent) {
       {"law break of half-plane 'table'", 1},
   };
   EXPECT_EQ(named, expected);
+}
+
+TEST(EventLog, PartsOfAnotherModelHaveNoName) {
+  System here, there;
+  here.add(RigidBody{.mass = rod(1.0, 1.0)});
+  const BodyId ball = there.add(Particle{.mass = 1.0}), bar = there.add(RigidBody{.mass = rod(1.0, 1.0)});
+  EventRecord joint, element, obstacle;
+  joint.joint = there.add(Revolute{.from = ground, .to = bar});
+  element.element = there.add(Cable{.from = ground, .to = ball, .stiffness = 1.0, .free_length = 1.0});
+  obstacle.obstacle =
+      there.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.0, .normal_restitution = 0.0});
+  const Simulation simulation(here, EventDriven{});
+  EXPECT_THROWS(ModelError, (void)simulation.name(joint), "joint", "of another system", "allowed");
+  EXPECT_THROWS(ModelError, (void)simulation.name(element), "element", "of another system", "allowed");
+  EXPECT_THROWS(ModelError, (void)simulation.name(obstacle), "obstacle", "of another system", "allowed");
 }
 
 TEST(EventLog, RecordsNothingWhereNotAskedTo) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,37 @@ TEST(LawJumps, OfDrivers) {
     Simulation good(driven_crank([](double t) { return std::sin(40.0 * t) + std::max(0.0, t - 0.3); }, {0.3}),
                     mode);
     EXPECT_NO_THROW(good.run_until(1.0));
+  }
+}
+
+// Bodies would move by the one and be struck by the other.
+TEST(LawJumps, RatesThatContradictTheirPositionsAreNamed) {
+  System crank = driven_crank([](double t) { return t; });
+  crank.remove(crank.joints().back());
+  const auto way = [](double t) { return Vec<2>(0.0, 0.1 * std::sin(3.0 * t)); };
+  for (const Mode& mode : modes()) {
+    for (const double rate : {0.0, -1.0, 2.0}) {
+      System system = crank;
+      system.add(Driver{.joint = system.joints().front(),
+                        .position = [](double t) { return t; },
+                        .velocity = [=](double) { return rate; }},
+                 "false motor");
+      Simulation simulation(system, mode);
+      const auto before = bits_of(simulation);
+      EXPECT_THROWS(SolverError, simulation.run_until(0.1), "driver 'false motor'",
+                    "not the rate of position");
+      EXPECT_EQ(bits_of(simulation), before);
+    }
+    const PrescribedMotion shaker{.displacement = way,
+                                  .velocity = [](double t) { return Vec<2>(0.0, 0.3 * std::sin(3.0 * t)); }};
+    Simulation shaken(ball_on(shaker), mode);
+    EXPECT_THROWS(SolverError, shaken.run_until(1.0), "half-plane 'table'", "velocity",
+                  "not the rate of displacement", "m/s");
+    const PrescribedMotion wheel{.angle = [](double t) { return 0.1 * t; },
+                                 .spin = [](double) { return 1.0; }};
+    Simulation turned(ball_on(wheel), mode);
+    EXPECT_THROWS(SolverError, turned.run_until(1.0), "half-plane 'table'", "spin",
+                  "not the rate of angle, off by 0.9", "rad/s");
   }
 }
 

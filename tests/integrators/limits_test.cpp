@@ -113,6 +113,25 @@ TEST(Limits, EvaluationsWithoutProgressEnd) {
   EXPECT_EQ(simulation.state().q, plain.state().q);
 }
 
+// Also where a state is only looked at, before there is a step.
+TEST(Limits, EvaluationsOfALookAreCounted) {
+  System system;
+  const BodyId bar = system.add(RigidBody{.mass = rod(1.0, 1.0)});
+  const JointId pin = system.add(Revolute{.from = ground, .to = bar});
+  system.add(Gravity{{0.0, -9.81}});
+  for (const std::int64_t limit : {1, 2, 3}) {
+    Simulation run(system, TimeStepping{});
+    const auto look = [&] {
+      run.switch_to(EventDriven{.evaluation_limit = limit});
+      (void)run.reaction(pin);
+      run.run_until(0.1);
+    };
+    EXPECT_THROWS(SolverError, look(), "evaluations", "evaluation_limit", std::to_string(limit));
+    run.switch_to(EventDriven{});
+    EXPECT_NO_THROW(run.run_until(0.1));
+  }
+}
+
 TEST(Limits, OptionsThatCannotBe) {
   EXPECT_MODEL_ERROR(Simulation(pair_scene(), EventDriven{.step_limit = 0.0}), "step_limit", "0", "allowed");
   EXPECT_MODEL_ERROR(Simulation(pair_scene(), EventDriven{.step_limit = std::nan("")}), "step_limit", "nan");
@@ -217,6 +236,46 @@ TEST(Cancelling, LeavesTheLastGoodStateAndGoesOnFromThere) {
       EXPECT_NEAR(simulation.state().q[i], plain.state().q[i], 1e-7);
     }
   }
+}
+
+// What tolerances leave of a contact is neither a lift-off nor an impact where a run goes on.
+TEST(Cancelling, ContactsThatLastGoOn) {
+  Random random(1709);
+  int stops = 0;
+  for (int repeat = 0; repeat < 40; ++repeat) {
+    System system;
+    system.add(Gravity{{0.0, -9.81}});
+    const double slope = random.uniform(-0.6, 0.6);
+    const Vec<2> normal = incline(slope);
+    system.add(HalfPlane{.normal = normal},
+               Surface{.friction = random.uniform(0.0, 0.5), .normal_restitution = 0.0});
+    const double length = random.uniform(0.3, 1.5), angle = random.uniform(0.2, 1.3);
+    const BodyId bar = system.add(RigidBody{.mass = rod(random.uniform(0.1, 3.0), length),
+                                            .position = (0.5 * length * std::sin(angle) + 0.02) * normal,
+                                            .angle = slope + angle,
+                                            .velocity = {random.uniform(-1.0, 1.0), -0.3}});
+    system.add(Segment{.body = bar, .from = {-0.5 * length, 0.0}, .to = {0.5 * length, 0.0}});
+    // Until the bar is about to fall flat: that is an accumulation whose count depends on the last bit.
+    Simulation plain(system, EventDriven{});
+    Simulation stopped(system, EventDriven{});
+    std::int64_t asked = 0, stop_at = 61;
+    stopped.stop_when([&] { return ++asked == stop_at; });
+    while (stopped.time() < 0.25) {
+      try {
+        stopped.run_until(0.25);
+      } catch (const Cancelled&) {
+        stop_at = asked + 300;  // more than an interval takes, or there would be no end
+        ++stops;
+      }
+    }
+    plain.run_until(0.25);
+    ASSERT_EQ(stopped.events().size(), plain.events().size()) << repeat;
+    for (std::size_t i = 0; i < plain.events().size(); ++i) {
+      EXPECT_EQ(stopped.events()[i].kind, plain.events()[i].kind) << repeat;
+      EXPECT_NEAR(stopped.events()[i].time, plain.events()[i].time, 1e-8) << repeat;
+    }
+  }
+  EXPECT_GE(stops, 80);
 }
 
 TEST(Cancelling, IsAskedWithinStepsOfBothModes) {
