@@ -1,9 +1,10 @@
 // Problem: the distance between the two modes as a function of the step.
 
 #include <carom/analysis/cross_check.h>
+#include <carom/core/assembly.h>
 #include <carom/core/text_table.h>
+#include <carom/integrators/run/time_resolution.h>
 #include <carom/integrators/simulation.h>
-#include <carom/integrators/time_resolution.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 
 #include <carom/core/export.h>
 #include <carom/core/system.h>
-#include <carom/integrators/event_driven.h>
-#include <carom/integrators/stop_request.h>
-#include <carom/integrators/time_stepping.h>
+#include <carom/integrators/run/event_driven.h>
+#include <carom/integrators/run/stop_request.h>
+#include <carom/integrators/run/time_stepping.h>
 
 #include <iosfwd>
 #include <limits>

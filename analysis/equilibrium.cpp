@@ -2,6 +2,7 @@
 
 #include <carom/analysis/equilibrium.h>
 #include <carom/analysis/resting_model.h>
+#include <carom/core/assembly.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
 

@@ -8,19 +8,20 @@
 /// where G has the rows of the joints, the normals of the closed contacts and the tangents of those that
 /// stick. Matrices are dense: for models of a few hundred bodies.
 
-#include <carom/contact/contact.h>
-#include <carom/core/assembly.h>
+#include <carom/core/contact.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
-#include <carom/integrators/stop_request.h>
+#include <carom/integrators/run/stop_request.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
 namespace carom {
+
+class Assembly;
 
 /// Options of the search for an equilibrium.
 struct EquilibriumOptions {

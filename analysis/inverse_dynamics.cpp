@@ -1,9 +1,10 @@
 // Problem: the forces of drivers from the motion that they prescribe.
 
 #include <carom/analysis/inverse_dynamics.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/errors.h>
-#include <carom/core/island_joints.h>
-#include <carom/core/joint_closure.h>
 #include <carom/core/part_check.h>
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 /// \file
 /// Forces of drivers that move a mechanism as prescribed (inverse dynamics). Contacts and limits are ignored.
 
-#include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
@@ -12,6 +11,8 @@
 #include <vector>
 
 namespace carom {
+
+class Assembly;
 
 /// Forces of all drivers at one time.
 struct DriverForces {

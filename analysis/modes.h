@@ -9,7 +9,6 @@
 /// where the rows G and their forces l are those of equilibrium.h. Closed contacts are constraints: normals,
 /// and the tangents of those with friction, which stick while motions are small.
 
-#include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 
@@ -19,6 +18,8 @@
 #include <vector>
 
 namespace carom {
+
+class Assembly;
 
 /// Options of the linearisation about a state.
 struct ModesOptions {

@@ -207,8 +207,8 @@ void RestingModel::locate() {
     evaluate_loads(*assembly_, island, view.state, evaluation_, {force, force, force});
   }
   loads_ = Eigen::Map<const VectorXd>(evaluation_.force.data(), size).cwiseQuotient(lengths_);
-  // Rows that nearly follow from others are let go, like those of core/sparse_factors.h: pivots there are
-  // squares of those here.
+  // Rows that nearly follow from others are let go, like those of core/numerics/sparse_factors.h: pivots
+  // there are squares of those here.
   factors_.setThreshold(std::sqrt(dependent_pivot));
   factors_.compute(rows_);
 }

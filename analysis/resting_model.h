@@ -4,11 +4,11 @@
 /// A whole model at rest as equations with dense matrices, f(q) + G(q)^T l = 0, g(q) = 0, and their
 /// derivatives. Used for equilibria and modes.
 
-#include <carom/contact/contact_finder.h>
+#include <carom/contact/detection/contact_finder.h>
 #include <carom/core/assembly.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/joint_kind.h>
-#include <carom/core/sparse_factors.h>
+#include <carom/core/numerics/sparse_factors.h>
 #include <carom/core/state.h>
 
 #include <Eigen/Core>

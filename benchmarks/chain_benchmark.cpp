@@ -3,6 +3,8 @@
 // solver did not give, `sweeps` those of the plain loop.
 
 #include <carom/carom.h>
+#include <carom/contact/solvers/pivoting_solvers.h>
+#include <carom/contact/solvers/projection_solver.h>
 
 #include <benchmark/benchmark.h>
 

@@ -9,6 +9,7 @@
 // of the numbers for nets. explicit_runge_kutta beside it, whose steps are many.
 
 #include <carom/carom.h>
+#include <carom/integrators/flow/flow.h>
 
 #include <benchmark/benchmark.h>
 

@@ -3,6 +3,9 @@
 // seconds.
 
 #include <carom/carom.h>
+#include <carom/contact/contact_cluster.h>
+#include <carom/contact/solvers/single_contact.h>
+#include <carom/core/assembly.h>
 
 #include <benchmark/benchmark.h>
 

@@ -4,6 +4,8 @@
 // s: `seconds` of CPU, `drift` of the energy [J].
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
 
 #include "benchmarks/allocation_meter.h"
 

@@ -5,6 +5,8 @@
 // Names: <what>/<k> for k x k particles. `per_particle` is in seconds, over one sweep or step.
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/core/workers.h>
 
 #include "benchmarks/allocation_meter.h"
 #include "benchmarks/plain_net.h"

@@ -1,6 +1,6 @@
 #include <carom/bodies/particle.h>
 
-#include <carom/core/pair.h>
+#include <carom/core/numerics/pair.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include <carom/bodies/rigid_body.h>
 
-#include <carom/core/compensated_sum.h>
+#include <carom/core/numerics/compensated_sum.h>
 
 #include <algorithm>
 #include <cmath>

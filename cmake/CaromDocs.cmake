@@ -5,7 +5,7 @@ if(NOT CAROM_DOXYGEN)
   return()
 endif()
 
-set(carom_docs_headers ${public_headers} ${kit_headers})
+set(carom_docs_headers ${carom_public_headers} ${kit_headers})
 list(JOIN carom_docs_headers " " carom_docs_headers)
 configure_file("${PROJECT_SOURCE_DIR}/docs/Doxyfile.in" "${PROJECT_BINARY_DIR}/Doxyfile" @ONLY)
 set(carom_copy_pictures "")

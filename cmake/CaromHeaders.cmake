@@ -2,18 +2,18 @@
 # <build>/include/carom with links to the folders, so that the build tree, the installed tree and a
 # subdirectory user see one path.
 
-# carom_collect_sources(folders sources programs public private): source files of the library, sources of
-# programs (named carom_*.cpp, one program each), and headers relative to the project, public ones apart from
-# those that match carom_private_headers.
-function(carom_collect_sources folders sources_out programs_out public_out private_out)
+# carom_collect_sources(folders public sources programs private): source files of the library, sources of programs
+# (named carom_*.cpp, one program each), and its headers that are not in the list of public ones, all relative to the
+# project. A public header that does not exist is an error.
+function(carom_collect_sources folders public sources_out programs_out private_out)
   set(sources "")
   set(programs "")
-  set(public "")
   set(private "")
+  set(missing "${public}")
   foreach(folder IN LISTS folders)
-    file(GLOB folder_sources CONFIGURE_DEPENDS LIST_DIRECTORIES false "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
+    file(GLOB_RECURSE folder_sources CONFIGURE_DEPENDS LIST_DIRECTORIES false "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
     file(
-      GLOB folder_headers CONFIGURE_DEPENDS LIST_DIRECTORIES false
+      GLOB_RECURSE folder_headers CONFIGURE_DEPENDS LIST_DIRECTORIES false
       RELATIVE "${PROJECT_SOURCE_DIR}"
       "${PROJECT_SOURCE_DIR}/${folder}/*.h")
     foreach(source IN LISTS folder_sources)
@@ -23,23 +23,15 @@ function(carom_collect_sources folders sources_out programs_out public_out priva
         list(APPEND sources "${source}")
       endif()
     endforeach()
-    foreach(header IN LISTS folder_headers)
-      set(is_private FALSE)
-      foreach(pattern IN LISTS carom_private_headers)
-        if(header MATCHES "^${pattern}$")
-          set(is_private TRUE)
-        endif()
-      endforeach()
-      if(is_private)
-        list(APPEND private "${header}")
-      else()
-        list(APPEND public "${header}")
-      endif()
-    endforeach()
+    list(REMOVE_ITEM missing ${folder_headers})
+    list(REMOVE_ITEM folder_headers ${public})
+    list(APPEND private ${folder_headers})
   endforeach()
+  if(missing)
+    message(FATAL_ERROR "public headers that do not exist: ${missing}")
+  endif()
   set(${sources_out} "${sources}" PARENT_SCOPE)
   set(${programs_out} "${programs}" PARENT_SCOPE)
-  set(${public_out} "${public}" PARENT_SCOPE)
   set(${private_out} "${private}" PARENT_SCOPE)
 endfunction()
 

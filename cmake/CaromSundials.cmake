@@ -1,6 +1,6 @@
-# SUNDIALS serves the smooth flow of the event-driven mode. Only integrators/sundials*.cpp may include it;
+# SUNDIALS serves the smooth flow of the event-driven mode. Only integrators/flow/sundials*.cpp may include it;
 # without such a file it is not even looked for.
-file(GLOB carom_sundials_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/integrators/sundials*.cpp")
+file(GLOB carom_sundials_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/integrators/flow/sundials*.cpp")
 if(NOT carom_sundials_sources)
   return()
 endif()

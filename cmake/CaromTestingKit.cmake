@@ -8,7 +8,7 @@ if(NOT TARGET GTest::gmock)
   return()
 endif()
 
-carom_collect_sources(testing kit_sources kit_programs kit_headers kit_private_headers)
+carom_collect_sources(testing "${kit_headers}" kit_sources kit_programs kit_private_headers)
 add_library(carom_testing STATIC ${kit_sources})
 add_library(carom::testing ALIAS carom_testing)
 set_target_properties(carom_testing PROPERTIES EXPORT_NAME testing)

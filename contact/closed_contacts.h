@@ -9,16 +9,16 @@
 ///     G a + drift = 0,   a = a_free + M^-1 D lambda.
 ///
 /// Contacts of different bodies do not know of each other, unless joints bind the bodies together: a contact
-/// then moves all that is bound, and M^-1 stands for what joints leave of it (core/island_joints.h).
+/// then moves all that is bound, and M^-1 stands for what joints leave of it (core/dynamics/island_joints.h).
 
-#include <carom/contact/contact_finder.h>
-#include <carom/contact/contact_mode.h>
-#include <carom/contact/lcp.h>
-#include <carom/contact/least_distance.h>
-#include <carom/contact/lemke.h>
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/solvers/contact_mode.h>
 #include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/export.h>
-#include <carom/core/island_joints.h>
+#include <carom/core/numerics/lcp.h>
+#include <carom/core/numerics/least_distance.h>
+#include <carom/core/numerics/lemke.h>
 
 #include <span>
 #include <vector>

@@ -1,5 +1,5 @@
 #include <carom/contact/contact_cluster.h>
-#include <carom/contact/contact_mode.h>
+#include <carom/contact/solvers/contact_mode.h>
 
 #include <algorithm>
 #include <cmath>

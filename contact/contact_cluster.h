@@ -6,13 +6,13 @@
 ///     W = H M^-1 H^T,   b = H v_free + E H v^-,   v^+ = v_free + M^-1 H^T P,
 /// to b in normal direction Contact::allowed_approach is added.
 
-#include <carom/contact/contact.h>
-#include <carom/contact/contact_problem.h>
-#include <carom/contact/newton_polish.h>
-#include <carom/contact/solver_chain.h>
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/newton_polish.h>
+#include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
+#include <carom/core/contact.h>
+#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/export.h>
-#include <carom/core/island_joints.h>
 
 #include <algorithm>
 #include <functional>

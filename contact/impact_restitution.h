@@ -3,7 +3,7 @@
 /// \file
 /// One restitution for a whole impact: friction in joints takes part with that of the contact that strikes.
 
-#include <carom/contact/contact.h>
+#include <carom/core/contact.h>
 #include <carom/core/export.h>
 
 #include <span>

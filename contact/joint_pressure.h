@@ -4,10 +4,10 @@
 /// What presses surfaces that rub in joints: a constant, and the force between the bodies of the joint, which
 /// follows from the multipliers of its rows.
 
-#include <carom/contact/contact.h>
 #include <carom/core/assembly.h>
+#include <carom/core/contact.h>
+#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/export.h>
-#include <carom/core/island_joints.h>
 #include <carom/core/joint_kind.h>
 
 #include <vector>

@@ -3,9 +3,7 @@
 /// \file
 /// Access to the state for a user's force element.
 
-#include <carom/core/assembly.h>
 #include <carom/core/end.h>
-#include <carom/core/errors.h>
 #include <carom/core/force_kind.h>
 
 namespace carom {
@@ -46,13 +44,13 @@ public:
   /// point off the centre of a body without orientation.
   [[nodiscard]] Attachment<D> attach(const End<D>& end) const {
     if (end.body != ground && slot(end.body).rotation == none && !end.point.isZero(0.0))
-      refuse_orientation(end.body);
-    return {end, *context_->assembly.layout()};
+      context_->refuse_unoriented(end.body);
+    return {end, context_->layout};
   }
   /// Slot of a body that must have an orientation. Throws ModelError otherwise.
   [[nodiscard]] BodySlot oriented(BodyId body) const {
     const BodySlot& place = slot(body);
-    if (place.rotation == none) refuse_orientation(body);
+    if (place.rotation == none) context_->refuse_unoriented(body);
     return place;
   }
   /// The context of the evaluation.
@@ -60,17 +58,9 @@ public:
 
 private:
   [[nodiscard]] BodySlot slot(BodyId body) const {
-    const Layout& layout = *context_->assembly.layout();
-    const Index index = layout.index(body);
-    const Range island = context_->assembly.islands()[context_->island].bodies;
-    if (index < island.begin || index >= island.end) {
-      throw ModelError("force element: acts on or looks at " + context_->assembly.system().name(body) +
-                       ", which it does not name; allowed: a body among its bodies()");
-    }
-    return layout.bodies()[index];
-  }
-  [[noreturn]] void refuse_orientation(BodyId body) const {
-    throw ModelError(context_->assembly.system().name(body) + ": has no orientation; allowed: a rigid body");
+    const Index index = context_->layout.index(body);
+    if (index < context_->reach.begin || index >= context_->reach.end) context_->refuse_unnamed(body);
+    return context_->layout.bodies()[index];
   }
 
   const EvaluationContext* context_;

@@ -4,9 +4,9 @@
 /// The energy ledger. Its flows are works of the impulses and forces that acted, never differences of the
 /// total, so its residual checks the bookkeeping of the library.
 
-#include <carom/core/compensated_sum.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/core/numerics/compensated_sum.h>
 
 #include <array>
 #include <iosfwd>

@@ -57,13 +57,13 @@
 ///
 /// Without them they are computed by differences, with many evaluations and half of the digits.
 
-#include <carom/core/assembly.h>
 #include <carom/core/element_derivatives.h>
 #include <carom/core/element_view.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/guard_motion.h>
 #include <carom/core/internal_step.h>
+#include <carom/core/part.h>
 #include <carom/core/part_check.h>
 
 #include <algorithm>

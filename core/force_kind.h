@@ -22,12 +22,23 @@ class Assembly;
 struct GuardMotion;
 
 /// State at which elements are evaluated.
-struct EvaluationContext {
+struct CAROM_API EvaluationContext {
+  /// \param island the elements belong to \param bodies for a field, those of the island that it acts on
+  EvaluationContext(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
+                    Index island, Range bodies = {});
+
   const Assembly& assembly;      ///< the model
+  const Layout& layout;          ///< places of its bodies
   StateView state;               ///< the state
   const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
   Index island;                  ///< the island the elements belong to
-  Range bodies{};                ///< for a field, the bodies of the island that it acts on; all if empty
+  Range reach;                   ///< all bodies of the island
+  Range bodies;                  ///< for a field, the bodies of the island that it acts on; all if empty
+
+  /// Throws the ModelError of an element that looks at a body outside its island.
+  [[noreturn]] void refuse_unnamed(BodyId body) const;
+  /// Throws the ModelError of a body without orientation, of which one was asked.
+  [[noreturn]] void refuse_unoriented(BodyId body) const;
 };
 
 /// A step of time stepping for elements: its two ends and the middle (mean velocities and internal variables,

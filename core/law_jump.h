@@ -54,9 +54,9 @@ inline constexpr double resolved_share = 1e-9;
 /// Looks for a jump between two points of a law that do not look smooth: the interval is halved as long as
 /// its parts do not look smooth either, down to the rounding of time. A jump is a change that over the last
 /// interval is still most of what it is over one a thousand times as long: fast and rough motions, and kinks,
-/// have none. A jump that velocities by differences have felt (core/time_difference.h) may lie a little
-/// outside of the interval, and is found there. Not found are jumps of less than smooth_share of the way of
-/// the motion around them, and all but the eight roughest parts of an interval.
+/// have none. A jump that velocities by differences have felt (core/numerics/time_difference.h) may lie a
+/// little outside of the interval, and is found there. Not found are jumps of less than smooth_share of the
+/// way of the motion around them, and all but the eight roughest parts of an interval.
 [[nodiscard]] CAROM_API std::optional<LawJump> find_jump(FunctionRef<LawPoint(double time)> law,
                                                          const LawPoint& from, const LawPoint& to);
 

@@ -3,7 +3,7 @@
 /// \file
 /// A prescribed quantity at a time, with its rates, given by the user or computed.
 
-#include <carom/core/time_difference.h>
+#include <carom/core/numerics/time_difference.h>
 
 #include <functional>
 #include <vector>

@@ -4,9 +4,8 @@
 //   M a = f + G^T lambda,  g(q) = 0      21 coordinates, 20 rows of pins; dynamics in absolute coordinates
 //   start                                at rest, closed up to rounding
 //   event-driven                         accelerations and multipliers from one sparse system, relative 1e-12
-//   time stepping                        h = 1e-5 s, reactions in the middle of the step, velocities satisfy
-//   the
-//                                        pins at its end
+//   time stepping                        h = 1e-5 s, reactions in the middle of the step, velocities
+//                                        satisfy the pins at its end
 //
 // Reference at 0.03 s: the test set for initial value problems ("Andrews' squeezing mechanism").
 //

@@ -5,38 +5,20 @@
 
 #include <carom/core/export.h>
 #include <carom/integrators/call_guard.h>
-#include <carom/integrators/companion.h>
+#include <carom/integrators/callback_id.h>
+#include <carom/integrators/run/companion.h>
 
 #include <cstddef>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace carom {
 
-class Simulation;
-
-/// Identity of a function given to Simulation::observe() or Simulation::every(). Good as long as that
-/// simulation calls it; keeps nothing alive.
-class CallbackId {
-public:
-  /// Of no function.
-  CallbackId() = default;
-
-private:
-  friend class Callbacks;
-  explicit CallbackId(const std::shared_ptr<const void>& function) : function_(function) {}
-  std::weak_ptr<const void> function_;
-};
-
 /// Observers and actions of one simulation, and calling them. While they are called further ones may be
 /// added (observers are called from the next step on) and any may be removed.
 class CAROM_API Callbacks {
 public:
-  using Observer = std::function<void(const Simulation&)>;  ///< called after every step
-  using Action = std::function<void(Simulation&)>;          ///< called at the times of a rhythm
-
   /// Adds an observer behind the others.
   CallbackId add_observer(Observer observer);
   /// Adds an action behind the others. Its rhythm is the next of Companion::rhythms.

@@ -6,7 +6,7 @@
 
 #include <carom/core/export.h>
 #include <carom/core/state.h>
-#include <carom/integrators/companion.h>
+#include <carom/integrators/run/companion.h>
 
 #include <cstdint>
 #include <string>

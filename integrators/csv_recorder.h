@@ -5,7 +5,7 @@
 
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
-#include <carom/integrators/callbacks.h>
+#include <carom/integrators/callback_id.h>
 
 #include <memory>
 #include <string>

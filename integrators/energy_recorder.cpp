@@ -1,7 +1,7 @@
-#include <carom/contact/contact_finder.h>
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/core/dynamics/total_momentum.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
-#include <carom/core/total_momentum.h>
 #include <carom/integrators/energy_recorder.h>
 #include <carom/integrators/simulation.h>
 

@@ -5,7 +5,7 @@
 
 #include <carom/core/energy_trace.h>
 #include <carom/core/export.h>
-#include <carom/integrators/callbacks.h>
+#include <carom/integrators/callback_id.h>
 
 #include <memory>
 #include <optional>

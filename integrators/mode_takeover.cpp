@@ -1,10 +1,10 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
 #include <carom/contact/contact_cluster.h>
-#include <carom/core/island_joints.h>
-#include <carom/core/joint_closure.h>
-#include <carom/integrators/gap_projection.h>
+#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_closure.h>
 #include <carom/integrators/mode_takeover.h>
+#include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <algorithm>
 #include <string>

@@ -5,12 +5,12 @@
 /// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
 /// 7).
 
-#include <carom/contact/contact_finder.h>
+#include <carom/contact/detection/contact_finder.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/integrators/companion.h>
-#include <carom/integrators/event_log.h>
-#include <carom/integrators/step_report.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/step_report.h>
 
 #include <vector>
 

@@ -3,11 +3,11 @@
 /// \file
 /// Lines that a run writes to its log: warnings and notes on the model, on steps and on events.
 
-#include <carom/contact/contact_finder.h>
+#include <carom/contact/detection/contact_finder.h>
 #include <carom/core/log.h>
 #include <carom/core/model_finding.h>
-#include <carom/integrators/event_log.h>
-#include <carom/integrators/step_report.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/step_report.h>
 
 #include <exception>
 #include <span>

@@ -1,16 +1,18 @@
-#include <carom/core/joint_closure.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/force_directions.h>
+#include <carom/core/dynamics/joint_closure.h>
 #include <carom/integrators/call_guard.h>
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
-#include <carom/integrators/event_driver.h>
-#include <carom/integrators/force_directions.h>
+#include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/mode_takeover.h>
 #include <carom/integrators/progress_bar.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/run/time_resolution.h>
 #include <carom/integrators/run_news.h>
 #include <carom/integrators/simulation.h>
-#include <carom/integrators/step_controller.h>
-#include <carom/integrators/time_resolution.h>
-#include <carom/integrators/time_stepper.h>
+#include <carom/integrators/time_stepping/step_controller.h>
+#include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,19 +3,18 @@
 /// \file
 /// The simulation of a model: its state, all that influences later steps, and the mode that advances them.
 
-#include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/energy_ledger.h>
 #include <carom/core/export.h>
-#include <carom/core/joint_closure.h>
 #include <carom/core/log.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
-#include <carom/integrators/callbacks.h>
-#include <carom/integrators/companion.h>
-#include <carom/integrators/event_driven.h>
-#include <carom/integrators/event_log.h>
-#include <carom/integrators/step_report.h>
-#include <carom/integrators/stop_request.h>
-#include <carom/integrators/time_stepping.h>
+#include <carom/integrators/callback_id.h>
+#include <carom/integrators/run/event_driven.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/step_report.h>
+#include <carom/integrators/run/stop_request.h>
+#include <carom/integrators/run/time_stepping.h>
 
 #include <functional>
 #include <memory>
@@ -24,6 +23,9 @@
 #include <vector>
 
 namespace carom {
+
+class Assembly;
+struct Companion;
 
 /// The modes of integration, as values.
 using Mode = std::variant<TimeStepping, EventDriven>;
@@ -37,8 +39,8 @@ using Mode = std::variant<TimeStepping, EventDriven>;
 /// call is in docs/errors.md, others throw ModelError.
 class CAROM_API Simulation {
 public:
-  using Observer = Callbacks::Observer;
-  using Action = Callbacks::Action;
+  using Observer = carom::Observer;
+  using Action = carom::Action;
 
   /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
   /// joints they are corrected (joint_closure.h); report().projected has the largest displacement, and

@@ -22,7 +22,8 @@ class MotorKind;
 class StopKind;
 
 /// Prescribes the coordinate of a joint as a function of time. Its work is external work. Rates that are not
-/// given are computed by differences (core/time_difference.h); functions must then be smooth between breaks.
+/// given are computed by differences (core/numerics/time_difference.h); functions must then be smooth between
+/// breaks.
 struct Driver {
   static constexpr Role role = Role::joint;
   using Kind = DriverKind;

@@ -1,5 +1,5 @@
 #include <carom/core/assembly.h>
-#include <carom/core/compensated_sum.h>
+#include <carom/core/numerics/compensated_sum.h>
 #include <carom/joints/gravity.h>
 
 namespace carom::generic {

@@ -1,5 +1,5 @@
 #include <carom/core/assembly.h>
-#include <carom/core/compensated_sum.h>
+#include <carom/core/numerics/compensated_sum.h>
 #include <carom/joints/line_of_action.h>
 #include <carom/joints/spring_damper.h>
 #include <carom/joints/spring_pull.h>

@@ -6,7 +6,7 @@
 #include <carom/core/column.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
-#include <carom/core/pair.h>
+#include <carom/core/numerics/pair.h>
 #include <carom/core/part.h>
 
 #include <limits>

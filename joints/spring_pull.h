@@ -4,7 +4,7 @@
 /// Pulls of many springs in the plane, four at a time where the processor has 256-bit vectors (AVX2).
 
 #include <carom/core/ids.h>
-#include <carom/core/pair.h>
+#include <carom/core/numerics/pair.h>
 
 namespace carom {
 

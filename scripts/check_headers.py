@@ -44,7 +44,7 @@ def includes_eigen(header):
 def main():
     build = Path(sys.argv[1] if len(sys.argv) > 1 else root / "build" / "release").resolve()
     command = compile_command(build)
-    headers = sorted(header for folder in FOLDERS for header in (root / folder).glob("*.h"))
+    headers = sorted(header for folder in FOLDERS for header in (root / folder).glob("**/*.h"))
 
     with tempfile.TemporaryDirectory() as folder:
         eigen = Path(folder) / "eigen.h"

@@ -19,6 +19,7 @@ cmake --build "$build" --target docs >"$build.log" 2>&1 || {
 }
 
 status=0
+python3 scripts/plot_rooms.py --check || status=1
 python3 scripts/docs_warnings.py "$build/warnings.txt" || status=1
 python3 scripts/check_site.py "$build/html" || status=1
 echo "site: $build/html/index.html"

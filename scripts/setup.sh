@@ -14,8 +14,8 @@ packages=(
 )
 for argument in "$@"; do
   case "$argument" in
-    --docs) packages+=(doxygen) ;;
-    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen) ;;
+    --docs) packages+=(doxygen graphviz) ;;
+    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen graphviz) ;;
     *)
       echo "usage: $0 [--docs | --checks]" >&2
       exit 2

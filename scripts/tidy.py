@@ -77,10 +77,11 @@ def main():
     groups = {}  # by folder and flags
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = Path(entry["file"]).resolve()
-        if file.parent.parent != root or file.parent.name not in FOLDERS or (wanted and file not in wanted):
+        folder = file.parent.relative_to(root) if file.is_relative_to(root) else Path()
+        if folder.parts[:1] not in [(name,) for name in FOLDERS] or (wanted and file not in wanted):
             continue
         flags = flags_of(entry["command"])
-        groups.setdefault((file.parent.name, *flags), (flags, []))[1].append(file)
+        groups.setdefault((folder, *flags), (flags, []))[1].append(file)
     if wanted - {file for _, files in groups.values() for file in files}:
         sys.exit("tidy: not among the sources of the library in " + str(build))
 

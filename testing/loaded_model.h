@@ -1,10 +1,9 @@
 #pragma once
 
 /// \file
-/// An assembly with a state and its loads, by cause; and a check of conservative loads.
+/// An assembly with a state and its loads, by cause.
 
 #include <carom/core/assembly.h>
-#include <carom/testing/verdict.h>
 
 #include <array>
 #include <vector>
@@ -35,10 +34,5 @@ public:
   Evaluation evaluation;                                    ///< workspace
   std::vector<double> conservative, dissipative, external;  ///< loads over all velocities [N, N m]
 };
-
-/// At the described state, the conservative loads are minus the gradient of the potential energy, each within
-/// `tolerance` [N, N m]: this finds a wrong sign, a forgotten lever or a wrong factor. The verdict shows the
-/// loads that differ. Throws ModelError as Assembly, and for a tolerance that is negative or not finite.
-[[nodiscard]] Verdict check_conservative_loads(const System& system, double tolerance);
 
 }  // namespace carom::energy_test

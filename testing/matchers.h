@@ -9,7 +9,7 @@
 /// Invalid input, such as a negative tolerance, is refused with the ModelError of the check that it calls.
 
 #include <carom/core/text_table.h>
-#include <carom/testing/loaded_model.h>
+#include <carom/testing/conservative_loads.h>
 #include <carom/testing/refinement.h>
 #include <carom/testing/stored_trace.h>
 #include <carom/testing/trace_checks.h>

@@ -1,5 +1,5 @@
-#include <carom/core/compensated_sum.h>
 #include <carom/core/errors.h>
+#include <carom/core/numerics/compensated_sum.h>
 #include <carom/core/part_check.h>
 #include <carom/core/text_table.h>
 #include <carom/testing/trace_checks.h>

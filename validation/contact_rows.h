@@ -3,7 +3,7 @@
 /// \file
 /// Contact problems of bodies and contacts, from the rows of contact velocities.
 
-#include <carom/contact/contact_problem.h>
+#include <carom/contact/solvers/contact_problem.h>
 
 #include <cstddef>
 #include <vector>

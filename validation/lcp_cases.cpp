@@ -1,8 +1,9 @@
 #include "validation/measure.h"
 #include "validation/pages.h"
 
-#include <carom/contact/lemke.h>
-#include <carom/contact/principal_pivoting.h>
+#include <carom/core/numerics/lcp.h>
+#include <carom/core/numerics/lemke.h>
+#include <carom/core/numerics/principal_pivoting.h>
 
 #include <algorithm>
 #include <map>

@@ -2,7 +2,7 @@
 #include "validation/pages.h"
 #include "validation/scenes.h"
 
-#include <carom/contact/single_contact.h>
+#include <carom/contact/solvers/single_contact.h>
 
 #include <algorithm>
 

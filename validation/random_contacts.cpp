@@ -3,7 +3,7 @@
 #include "validation/pages.h"
 #include "validation/scenes.h"
 
-#include <carom/contact/solver_chain.h>
+#include <carom/contact/solvers/solver_chain.h>
 
 #include <algorithm>
 

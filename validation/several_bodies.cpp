@@ -2,7 +2,7 @@
 #include "validation/measure.h"
 #include "validation/pages.h"
 
-#include <carom/contact/solver_chain.h>
+#include <carom/contact/solvers/solver_chain.h>
 
 namespace validation {
 namespace {

@@ -1,4 +1,5 @@
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs a user's program against carom in four ways: a shared copy out of the Debian package, the same
 # from a program with wider vector instructions, a subdirectory, and an installed static copy. And the energy tests
-# of docs/energy_tests.md, from an empty folder, against the shared copy.
+# of docs/energy_tests.md, from an empty folder, against the shared copy; examples and what pages show, compiled.
 #   tests/consumer/run.sh <work dir> [<build dir of a shared carom>]
 set -euo pipefail
 
@@ -66,6 +66,10 @@ check_copy() {
   if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector|nlohmann)' "$1/include"; then
     fail "installed headers show a private dependency"
   fi
+  for header in core/assembly.h contact/contact_cluster.h integrators/time_stepping/time_stepper.h; do
+    [[ -e $source_dir/$header ]] || fail "$header is no header any more: name another private one"
+    [[ ! -e $1/include/carom/$header ]] || fail "$header is private but installed"
+  done
   if grep -rqF -e "$source_dir/" -e "$1.first" "$1/include" "$1"/lib*/cmake "$1"/lib/*/cmake 2>/dev/null; then
     fail "the installed copy points back to where it was built"
   fi
@@ -154,6 +158,15 @@ configure_and_build "$here/find_package" "$work/readme" \
   -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}" -DCONSUMER_SOURCE="$work/readme.cpp"
 run "$work/readme/consumer" >"$work/readme.out"
 grep -q '^  total ' "$work/readme.out" || fail "the README's program prints no energies"
+
+echo "consumer: examples and pages against the public headers"
+if [[ -f $shared/include/carom/testing/matchers.h ]]; then
+  run python3 "$here/public_api/snippets.py" "$work/pages"
+  configure_and_build "$here/public_api" "$work/public_api" -DCMAKE_PREFIX_PATH="$shared" \
+    -DCAROM_SOURCE="$source_dir" -DPAGES="$work/pages" "${without_private[@]}"
+else
+  echo "consumer: left out, this build has no testing kit"
+fi
 
 echo "consumer: shared copy, program compiled with -mavx2"
 if grep -qw avx2 /proc/cpuinfo; then

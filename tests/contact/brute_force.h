@@ -4,7 +4,7 @@
 /// Planar contacts by brute force in 113-bit arithmetic: every mode solved and tested as it is written in the
 /// law, without a thought for rounding. The judge of the library's closed forms, and of its lists.
 
-#include <carom/contact/contact_problem.h>
+#include <carom/contact/solvers/contact_problem.h>
 
 #include <algorithm>
 #include <cstddef>

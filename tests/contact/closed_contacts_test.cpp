@@ -5,6 +5,8 @@
 
 #include <carom/carom.h>
 #include <carom/contact/closed_contacts.h>
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/core/assembly.h>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

@@ -1,6 +1,9 @@
 // Contacts of one body as a problem, and back: W = H M^-1 H^T, b = H v_free + E H v^-, v += M^-1 H^T P.
 
 #include <carom/carom.h>
+#include <carom/contact/contact_cluster.h>
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 

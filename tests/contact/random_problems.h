@@ -3,7 +3,7 @@
 /// \file
 /// Random contact problems, the same on every machine for the same seed.
 
-#include <carom/contact/contact_problem.h>
+#include <carom/contact/solvers/contact_problem.h>
 
 #include <array>
 #include <cmath>

@@ -4,6 +4,8 @@
 #include "examples/scenes/net.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/core/workers.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <carom/bodies/particle.h>
 #include <carom/bodies/rigid_body.h>
-#include <carom/contact/half_space.h>
+#include <carom/contact/detection/half_space.h>
 #include <carom/core/assembly.h>
 #include <carom/joints/gravity.h>
 #include <carom/joints/spring_damper.h>

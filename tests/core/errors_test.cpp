@@ -1,4 +1,4 @@
-#include <carom/contact/contact_problem.h>
+#include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/errors.h>
 
 #include <gtest/gtest.h>

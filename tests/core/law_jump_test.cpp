@@ -3,7 +3,7 @@
 #include "tests/random.h"
 
 #include <carom/core/law_jump.h>
-#include <carom/core/time_difference.h>
+#include <carom/core/numerics/time_difference.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <carom/bodies/shape_point.h>
 #include <carom/bodies/shape_polygon.h>
 #include <carom/bodies/shape_segment.h>
-#include <carom/contact/half_space.h>
+#include <carom/contact/detection/half_space.h>
 #include <carom/core/system.h>
 #include <carom/joints/applied_load.h>
 #include <carom/joints/gravity.h>

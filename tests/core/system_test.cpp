@@ -1,7 +1,7 @@
 #include <carom/bodies/particle.h>
 #include <carom/bodies/rigid_body.h>
 #include <carom/bodies/shape_disc.h>
-#include <carom/contact/half_space.h>
+#include <carom/contact/detection/half_space.h>
 #include <carom/core/system.h>
 #include <carom/joints/gravity.h>
 #include <carom/joints/spring_damper.h>

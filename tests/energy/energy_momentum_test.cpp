@@ -7,6 +7,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 

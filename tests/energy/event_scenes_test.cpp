@@ -43,7 +43,7 @@ bool has_no_solution(const SolverError& error) {
 
 // Not run, of the scenes 0 to 179,999 (their ledgers close to 1.4e-6 at the default tolerance, all but three
 // dozen to 1e-7, which close to 1e-8 at the tight one): two particles start at one place, joined by a spring
-// that is longer, which are named (tests/integrators/force_directions_test.cpp).
+// that is longer, which are named (tests/core/dynamics/force_directions_test.cpp).
 constexpr std::array<std::uint64_t, 3> without_direction{22935, 32129, 95909};
 
 void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_residual, Findings& findings) {

@@ -5,6 +5,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
 
 #include <algorithm>
 #include <cmath>

@@ -16,6 +16,7 @@
 #include "tests/energy/ledger_check.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
 #include <carom/testing/matchers.h>
 
 #include <gtest/gtest.h>

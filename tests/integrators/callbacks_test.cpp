@@ -7,6 +7,8 @@
 #include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
+#include <carom/integrators/callbacks.h>
+#include <carom/integrators/run/companion.h>
 
 #include <gtest/gtest.h>
 

@@ -91,10 +91,12 @@ TEST(EventsPage, NamesEveryOptionAndMethod) {
     }
     return count;
   };
-  EXPECT_EQ(expect_all("integrators/event_driven.h", "struct EventDriven {",
+  EXPECT_EQ(expect_all("integrators/run/event_driven.h", "struct EventDriven {",
                        std::regex(R"(\n  (?:double|bool|FlowMethod|std::int64_t|std::string) (\w+))")),
             14);
-  EXPECT_EQ(expect_all("integrators/flow.h", "enum class FlowMethod", std::regex(R"(\n  (\w+),? +///<)")), 4);
+  EXPECT_EQ(expect_all("integrators/flow/flow_method.h", "enum class FlowMethod",
+                       std::regex(R"(\n  (\w+),? +///<)")),
+            4);
 }
 
 TEST(EventsPage, TheProgramRuns) {

@@ -2,7 +2,7 @@
 
 // Problems for flows, from lambdas.
 
-#include <carom/integrators/flow.h>
+#include <carom/integrators/flow/flow.h>
 
 #include <algorithm>
 #include <array>

@@ -5,6 +5,7 @@
 #include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 

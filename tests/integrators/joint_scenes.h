@@ -6,6 +6,8 @@
 #include "tests/reference/reference_data.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
 
 #include <algorithm>
 #include <array>

@@ -6,6 +6,8 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/integrators/run/companion.h>
 
 #include <algorithm>
 #include <cmath>

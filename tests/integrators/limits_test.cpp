@@ -8,6 +8,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/integrators/run/companion.h>
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,8 @@
 #include "tests/reference/reference_data.h"
 
 #include <carom/carom.h>
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/core/assembly.h>
 #include <carom/testing/refinement.h>
 
 #include <gtest/gtest.h>

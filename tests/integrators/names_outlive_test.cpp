@@ -6,6 +6,8 @@
 #include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
+#include <carom/contact/detection/contact_name.h>
+#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 

@@ -70,7 +70,7 @@ void expect_all(const std::string& page, const std::string& header, const std::s
 }
 
 TEST(OptionsTables, TimeSteppingHasEveryOptionWithItsDefault) {
-  const std::string page = text_of("docs/two_modes.md"), header = "integrators/time_stepping.h";
+  const std::string page = text_of("docs/two_modes.md"), header = "integrators/run/time_stepping.h";
   const std::size_t control = page.find("The options of `StepControl`");
   ASSERT_NE(control, std::string::npos);
   expect_all(page.substr(0, control), header, "TimeStepping", 11);
@@ -78,7 +78,7 @@ TEST(OptionsTables, TimeSteppingHasEveryOptionWithItsDefault) {
 }
 
 TEST(OptionsTables, EventDrivenHasEveryOptionWithItsDefault) {
-  expect_all(text_of("docs/events.md"), "integrators/event_driven.h", "EventDriven", 11);
+  expect_all(text_of("docs/events.md"), "integrators/run/event_driven.h", "EventDriven", 11);
 }
 
 TEST(OptionsTables, ReadsNumbersAndNames) {

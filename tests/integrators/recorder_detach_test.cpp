@@ -6,6 +6,7 @@
 #include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
+#include <carom/integrators/run/companion.h>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 // Is it bit for bit the same? State, energy ledger, statistics, and all else that a later step depends on.
 
 #include <carom/carom.h>
+#include <carom/integrators/run/companion.h>
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include <carom/joints/one_sided_spring.h>
 #include <carom/joints/spring_damper.h>
 #include <carom/joints/torsional_spring.h>
+#include <carom/testing/loaded_model.h>
 
 #include "tests/derivative_check.h"
 #include "tests/joints/element_pairs.h"

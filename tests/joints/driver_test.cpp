@@ -3,6 +3,7 @@
 #include <carom/joints/prismatic.h>
 #include <carom/joints/revolute.h>
 #include <carom/joints/rod.h>
+#include <carom/testing/loaded_model.h>
 
 #include "tests/joints/element_pairs.h"
 #include "tests/joints/joint_model.h"

@@ -1,4 +1,5 @@
 #include <carom/joints/follower_load.h>
+#include <carom/testing/loaded_model.h>
 
 #include "tests/joints/element_pairs.h"
 #include "tests/model_error.h"

@@ -1,3 +1,4 @@
+#include <carom/contact/detection/contact_finder.h>
 #include <carom/joints/joint_friction.h>
 
 #include <carom/joints/driver.h>

@@ -2,7 +2,8 @@
 
 // A system with joints at one state: rows, their differences, the forces that hold it.
 
-#include <carom/core/island_joints.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/joint_kind.h>
 #include <carom/testing/loaded_model.h>
 

@@ -1,5 +1,6 @@
 #include <carom/joints/gravity.h>
 #include <carom/joints/one_sided_spring.h>
+#include <carom/testing/loaded_model.h>
 
 #include "tests/joints/element_pairs.h"
 #include "tests/model_error.h"

@@ -1,6 +1,7 @@
 // The page docs/elements.md: the elements it shows, and the test of one that it shows.
 
 #include <carom/carom.h>
+#include <carom/testing/loaded_model.h>
 #include <carom/testing/matchers.h>
 
 #include "tests/derivative_check.h"

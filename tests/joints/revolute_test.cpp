@@ -1,3 +1,4 @@
+#include <carom/core/assembly.h>
 #include <carom/joints/applied_load.h>
 #include <carom/joints/gravity.h>
 #include <carom/joints/prismatic.h>

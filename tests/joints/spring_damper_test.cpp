@@ -1,5 +1,6 @@
 #include <carom/bodies/particle.h>
 #include <carom/bodies/rigid_body.h>
+#include <carom/core/assembly.h>
 #include <carom/joints/spring_damper.h>
 
 #include "tests/derivative_check.h"

@@ -1,0 +1,64 @@
+#pragma once
+
+/// \file
+/// Contacts that last from one time step to the next although they are a little open.
+///
+/// Contact velocities of a step are taken along the rows at its start. A feature on an arm that turns leaves
+/// a flat boundary meanwhile: with d the rate of the normal velocity at constant velocities (docs/method.md,
+/// section 6), a contact that the law holds at gamma_n+ = 0 begins the next step with gamma_n- = h d and has
+/// opened by h^2 d. It is closed in the motion that the steps approach, so it stays in the contact problem.
+
+#include <carom/core/contact.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// The contacts of the step before that turning may have opened, and by how much. A workspace:
+/// ContactFinder::remember() fills it at the start of every step.
+class CAROM_API LastingContacts {
+public:
+  /// Gaps up to this many times h^2 d count as opened by turning. The steady gap is h^2 d. From 0 a contact
+  /// comes there with at most h^2 d (1 + d/(2 (a - d))), a the normal acceleration towards the obstacle that
+  /// the body would have without it, and d < a while the contact lasts: one about to lift off, a < 15/14 d,
+  /// may be lost on that way.
+  static constexpr double most_opening = 8.0;
+
+  /// Forgets all contacts. \param step length of a step that gaps may come from [s]
+  void start(double step) {
+    step_ = step;
+    keys_.clear();
+    centres_.clear();
+  }
+  /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
+  void add(const ContactKey& key, Index centre = none) {
+    keys_.push_back(key);
+    if (centre != none) centres_.push_back(centre);
+  }
+  /// Makes the contacts ready to be looked up.
+  void finish() {
+    if (keys_.size() > 1) put_in_order();
+  }
+
+  /// True if there are none.
+  [[nodiscard]] bool empty() const { return keys_.empty(); }
+  /// True if a contact is among them.
+  [[nodiscard]] bool contains(const ContactKey& key) const;
+  /// True if a body within a range, in the order of assembly, touched at its centre of mass.
+  [[nodiscard]] bool any_centre(Range bodies) const;
+  /// Length of the step that gaps come from [s].
+  [[nodiscard]] double step() const { return step_; }
+  /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
+  [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
+
+private:
+  void put_in_order();
+
+  double step_ = 0.0;
+  std::vector<ContactKey> keys_;  // ascending
+  std::vector<Index> centres_;    // likewise
+};
+
+}  // namespace carom

@@ -1,0 +1,85 @@
+// Problem: hold W, b and the row sets of one contact problem, and find which rows belong together.
+
+#include <carom/contact/solvers/contact_problem.h>
+
+#include <carom/core/numerics/accurate_dot.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+// Whether the set depends on the impulse of another row.
+bool bounded(const RowSet& set) { return set.kind != SetKind::half_line && set.kind != SetKind::interval; }
+
+[[noreturn]] void refuse(int row, const char* what) {
+  throw std::invalid_argument("contact problem, row " + std::to_string(row) + ": " + what);
+}
+
+// Whether P of this row cannot be negative, so that it can bound another one.
+bool never_negative(const RowSet& set) {
+  return set.kind == SetKind::half_line || (set.kind == SetKind::interval && set.lower >= 0.0);
+}
+
+void check(std::span<const RowSet> sets, int row) {
+  const RowSet& set = sets[static_cast<std::size_t>(row)];
+  if (set.kind == SetKind::interval && !(set.lower <= set.upper)) {
+    refuse(row, "an interval needs lower <= upper");
+  }
+  if (!bounded(set)) return;
+  if (!std::isfinite(set.coefficient)) refuse(row, "a coefficient is finite");
+  if (set.coefficient < 0.0 && set.kind != SetKind::proportional) {
+    refuse(row, "a coefficient of friction is not negative");
+  }
+  if (set.bound < 0 || set.bound >= row || !never_negative(sets[static_cast<std::size_t>(set.bound)])) {
+    refuse(row, "a bounded row follows the row that bounds it, whose impulse is not negative");
+  }
+}
+
+}  // namespace
+
+void ContactProblem::reset(int rows) {
+  if (rows < 0) throw std::invalid_argument("contact problem: the number of rows is not negative");
+  rows_ = rows;
+  const auto n = static_cast<std::size_t>(rows);
+  w_.assign(n * n, 0.0);
+  b_.assign(n, 0.0);
+  sets_.assign(n, RowSet{});
+  groups_.clear();
+}
+
+void ContactProblem::group() {
+  groups_.clear();
+  for (int row = 0; row < rows_; ++row) {
+    check(sets_, row);
+    const RowSet& set = sets_[static_cast<std::size_t>(row)];
+    if (!bounded(set)) {
+      groups_.push_back({row, 1});
+      continue;
+    }
+    if (groups_.empty() || set.bound != groups_.back().first) {
+      refuse(row, "friction rows stand directly behind the row that bounds them");
+    }
+    ++groups_.back().size;
+    if (set.kind != SetKind::bounded_disc) continue;
+    // A disc takes two rows with one description.
+    if (++row == rows_) refuse(row - 1, "a disc takes two rows");
+    const RowSet& second = sets_[static_cast<std::size_t>(row)];
+    if (second.kind != SetKind::bounded_disc || second.bound != set.bound ||
+        std::abs(second.coefficient - set.coefficient) > 0.0) {
+      refuse(row, "both rows of a disc carry the same description");
+    }
+    ++groups_.back().size;
+  }
+}
+
+void ContactProblem::velocities(std::span<const double> impulse, std::span<double> xi) const {
+  const auto n = static_cast<std::size_t>(rows_);
+  for (std::size_t i = 0; i < n; ++i) xi[i] = accurate_dot(std::span(w_).subspan(i * n, n), impulse, b_[i]);
+}
+
+}  // namespace carom

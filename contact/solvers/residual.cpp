@@ -1,0 +1,105 @@
+// Problem: judge an answer without trusting whoever gave it.
+
+#include <carom/contact/solvers/residual.h>
+
+#include <carom/contact/solvers/planar_certificate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double trace(const ContactProblem& problem, const RowGroup& group) {
+  double sum = 0.0;
+  for (int i = group.first; i < group.first + group.size; ++i) sum += problem.w(i, i);
+  return sum;
+}
+
+// Larger of two magnitudes; a NaN counts as infinite, so that it cannot hide in a maximum.
+double larger(double most, double value) {
+  const double magnitude = std::abs(value);
+  if (magnitude <= most) return most;
+  return std::isnan(magnitude) ? infinity : magnitude;
+}
+
+// max over the group's rows of |P - proj_C(P - rho xi)| [N s].
+double distance(const ContactProblem& problem, const RowGroup& group, std::span<const double> impulse,
+                std::span<const double> xi, double rho) {
+  double worst = 0.0;
+  const auto last = static_cast<std::size_t>(group.first + group.size);
+  for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
+    const RowSet& set = problem.sets()[i];
+    const double moved = impulse[i] - rho * xi[i];
+    switch (set.kind) {
+      case SetKind::half_line:
+        worst = larger(worst, impulse[i] - std::max(moved, 0.0));
+        break;
+      case SetKind::interval:
+        worst = larger(worst, impulse[i] - std::min(std::max(moved, set.lower), set.upper));
+        break;
+      case SetKind::bounded_interval: {
+        const double radius = set.coefficient * std::max(impulse[static_cast<std::size_t>(set.bound)], 0.0);
+        worst = larger(worst, impulse[i] - std::min(std::max(moved, -radius), radius));
+        break;
+      }
+      case SetKind::bounded_disc: {
+        const double radius = set.coefficient * std::max(impulse[static_cast<std::size_t>(set.bound)], 0.0);
+        const double second = impulse[i + 1] - rho * xi[i + 1];
+        const double length = std::hypot(moved, second);
+        const double shrink = length > radius ? radius / length : 1.0;
+        worst = larger(worst, impulse[i] - shrink * moved);
+        worst = larger(worst, impulse[i + 1] - shrink * second);
+        ++i;
+        break;
+      }
+      case SetKind::proportional:
+        worst = larger(worst, impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
+        break;
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+Residual residual(const ContactProblem& problem, std::span<const double> impulse,
+                  std::span<const double> xi) {
+  if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
+      problem.sets()[1].kind == SetKind::bounded_interval) {
+    const auto b = problem.vector();
+    return {planar_residual({problem.w(0, 0) + problem.w(1, 1), b[0], b[1], problem.sets()[1].coefficient,
+                             impulse[0], impulse[1], xi[0], xi[1]}),
+            0};
+  }
+  double largest_trace = 0.0;
+  for (const RowGroup& group : problem.groups()) largest_trace = larger(largest_trace, trace(problem, group));
+  const double least_trace = largest_trace * negligible_trace;
+  const double rho_of_immovable = largest_trace > 0.0 ? 1.0 / largest_trace : 1.0;
+
+  // A NaN anywhere makes P* or a distance infinite, or is caught by the comparison below.
+  double scale = 0.0;
+  Residual worst;
+  for (std::size_t g = 0; g < problem.groups().size(); ++g) {
+    const RowGroup& group = problem.groups()[g];
+    const double own = trace(problem, group);
+    const double rho = own > least_trace ? 1.0 / own : rho_of_immovable;
+    for (auto i = static_cast<std::size_t>(group.first), n = i + static_cast<std::size_t>(group.size); i < n;
+         ++i) {
+      scale = larger(scale, impulse[i]);
+      scale = larger(scale, problem.vector()[i] * rho);
+    }
+    const double error = distance(problem, group, impulse, xi, rho);
+    if (worst.group < 0 || error > worst.value) worst = {error, static_cast<int>(g)};
+  }
+  if (worst.value == 0.0 && scale < infinity) return worst;
+  if (scale == 0.0) return {0.0, worst.group};
+  const double relative = worst.value / scale;
+  return {std::isfinite(relative) && scale < infinity ? relative : infinity, worst.group};
+}
+
+}  // namespace carom

@@ -1,0 +1,34 @@
+#pragma once
+
+/// \file
+/// How wrong is an answer? One certificate judges every solver (docs/method.md, section 3), from the
+/// problem and the impulses alone.
+
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/core/export.h>
+
+#include <span>
+
+namespace carom {
+
+/// A group whose trace of W is below this part of the largest trace counts as immovable (trace zero):
+/// such a trace is rounding of a zero.
+inline constexpr double negligible_trace = 1e-15;
+
+/// Worst relative residual over the groups of a problem.
+struct Residual {
+  double value = 0.0;  ///< dimensionless; infinity where a number is not finite
+  int group = -1;      ///< group where it is found; -1 for a problem without groups
+};
+
+/// max over groups i of  |P - proj_C(P - rho xi)|_inf / P*,  rho = 1 / trace W_ii,
+/// with C = [0, inf), [lower, upper], [-mu P_n, mu P_n] or the disc of that radius (P_n < 0 counts as 0), the
+/// point coefficient * P_n of a proportional row whatever its xi, and
+/// P* = max(|P|, |b| / trace W_ii) [N s] over the whole problem. 0 where P* = 0.
+///
+/// `impulse` [N s] and `xi` = W P + b [m/s] have size rows(); the problem is grouped. An immovable group
+/// takes the largest trace of the problem for its own; in a problem without any mobility rho = 1 kg.
+[[nodiscard]] CAROM_API Residual residual(const ContactProblem& problem, std::span<const double> impulse,
+                                          std::span<const double> xi);
+
+}  // namespace carom

@@ -1,0 +1,307 @@
+// Problem: get impulses that are right, know how right, and know who found them.
+
+#include <carom/contact/solvers/solver_chain.h>
+
+#include <carom/contact/solvers/newton_polish.h>
+#include <carom/contact/solvers/pivoting_solvers.h>
+#include <carom/contact/solvers/projection_solver.h>
+#include <carom/contact/solvers/single_contact.h>
+#include <carom/contact/solvers/solution_list.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+// Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
+constexpr double polish_from = 1e-16;
+constexpr int polish_steps = 3;
+
+// Steps where these leave the answer unacceptable: far from rounding, modes still change.
+constexpr int rescue_steps = 30;
+
+constexpr std::string_view not_applicable = "not applicable";
+
+// A proof about numbers that are none is no proof.
+bool finite(const ContactProblem& problem) {
+  const auto good = [](double value) { return std::isfinite(value); };
+  return std::all_of(problem.matrix().begin(), problem.matrix().end(), good) &&
+         std::all_of(problem.vector().begin(), problem.vector().end(), good);
+}
+
+void demand_grouped(const ContactProblem& problem, std::span<const double> impulse) {
+  const auto rows = static_cast<std::size_t>(problem.rows());
+  if (impulse.size() != rows) throw std::invalid_argument("contact solver: one impulse for each row");
+  if (rows > 0 && problem.groups().empty()) {
+    throw std::invalid_argument("contact solver: the problem is not grouped");
+  }
+}
+
+}  // namespace
+
+struct SolverChain::Workspace {
+  SingleContactSolver single;
+  PrincipalPivotingSolver pivoting;
+  LemkeSolver lemke;
+  ProjectionSolver projection;
+  SolutionList list;
+  NewtonPolish polish;
+  ChainStatistics statistics;
+  std::vector<double> trial, trial_xi, xi;
+  std::vector<ContactMode> modes;
+
+  // What the solvers tried so far have brought.
+  struct Attempt {
+    ContactReport& report;  // of the best answer
+    SolverId best = SolverId::single_contact;
+    SolverId last = SolverId::single_contact;  // asked last
+    bool proved_unsolvable = false;            // by the last one
+    int applicable = 0;                        // solvers that could be tried
+  };
+
+  bool begin(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  bool attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse, Attempt& state);
+  bool enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
+  void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
+            Attempt& state);
+  void conclude(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
+  void count(const Attempt& state);
+
+  ContactSolver& solver(SolverId id) {
+    switch (id) {
+      case SolverId::principal_pivoting:
+        return pivoting;
+      case SolverId::lemke:
+        return lemke;
+      case SolverId::projection:
+        return projection;
+      case SolverId::single_contact:
+      case SolverId::enumeration:
+        break;
+    }
+    return single;
+  }
+};
+
+// Sizes the workspace; false for a problem without rows, which is solved.
+bool SolverChain::Workspace::begin(const ContactProblem& problem, std::span<double> impulse,
+                                   ContactReport& report) {
+  const std::size_t n = impulse.size();
+  trial.resize(n);
+  trial_xi.resize(n);
+  xi.resize(n);
+  modes.resize(problem.groups().size());
+  if (n > 0) return true;
+  report.outcome = Outcome::solved;
+  report.residual = 0.0;
+  return false;
+}
+
+// The hot path: one planar contact, regular and unique. False where the long way has to be gone.
+bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::span<double> impulse,
+                                           ContactReport& report) {
+  const CertifiedImpulse answer = solve_regular_contact(problem);
+  if (!answer.usable || !(answer.residual <= accepted_residual)) return false;
+  impulse[0] = answer.impulse.normal;
+  impulse[1] = answer.impulse.tangential;
+  if (xi.size() != 2) xi.resize(2);
+  xi[0] = answer.xi_n;
+  xi[1] = answer.xi_t;
+  if (modes.size() != 1) modes.resize(1);
+  modes[0] = answer.mode;
+  constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);
+  report.outcome = Outcome::solved;
+  report.degenerate = answer.degenerate;
+  report.residual = answer.residual;
+  report.worst_group = 0;
+  report.iterations = 1;
+  report.tried = 1u << id;
+  report.solver = solver_names[id];
+  ++statistics.problems;
+  ++statistics.tried[id];
+  ++statistics.accepted[id];
+  if (answer.degenerate) ++statistics.degenerate;
+  statistics.worst_residual = std::max(statistics.worst_residual, answer.residual);
+  return true;
+}
+
+// Takes the trial as the best answer so far if it is.
+void SolverChain::Workspace::keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate,
+                                  std::span<double> impulse, Attempt& state) {
+  ContactReport& report = state.report;
+  if (found.value < report.residual || report.worst_group < 0) {
+    report.residual = found.value;
+    report.worst_group = found.group;
+    report.degenerate = degenerate;
+    // Whether a solver was sure of itself is not asked: the residual judges.
+    const bool named = outcome == Outcome::several_solutions || outcome == Outcome::forces_not_unique;
+    report.outcome = named ? outcome : Outcome::solved;
+    report.solver = to_string(id);
+    state.best = id;
+    std::copy(trial.begin(), trial.end(), impulse.begin());
+    std::copy(trial_xi.begin(), trial_xi.end(), xi.begin());
+  }
+}
+
+// Tries one solver; returns whether the search is over: an accepted answer, or a proof that there is none.
+bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse,
+                                     Attempt& state) {
+  state.last = id;
+  if (id == SolverId::enumeration) return enumerate(problem, impulse, state);
+  const SolverAnswer answer = solver(id).solve(problem, trial);
+  ContactReport& report = state.report;
+  report.iterations += answer.iterations;
+  if (answer.outcome == Outcome::not_solved) {
+    report.reason = answer.reason;
+    if (answer.reason == not_applicable) return false;
+  }
+  ++state.applicable;
+  report.tried = static_cast<std::uint8_t>(report.tried | 1u << static_cast<unsigned>(id));
+  if (answer.outcome == Outcome::no_solution) {
+    report.reason = answer.reason;
+    state.proved_unsolvable = finite(problem);
+    return true;
+  }
+  // Where the scan gives up it has no point to offer; the others end near one, and polishing may reach it.
+  if (answer.outcome == Outcome::not_solved && id == SolverId::principal_pivoting) return false;
+  problem.velocities(trial, trial_xi);
+  Residual found = residual(problem, trial, trial_xi);
+  bool degenerate = answer.degenerate;
+  if (id != SolverId::single_contact) {
+    if (found.value > polish_from) {
+      found = polish.improve(problem, trial, polish_steps);
+      if (found.value > accepted_residual) found = polish.improve(problem, trial, rescue_steps);
+      problem.velocities(trial, trial_xi);
+    }
+    degenerate = degenerate || at_mode_boundary(problem, trial, trial_xi);
+  }
+  keep(found, id, answer.outcome, degenerate, impulse, state);
+  return report.residual <= accepted_residual;
+}
+
+bool SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<double> impulse,
+                                       Attempt& state) {
+  const Outcome outcome = list.enumerate(problem);
+  if (!list.applicable()) {
+    if (state.report.reason.empty()) state.report.reason = not_applicable;
+    return false;
+  }
+  state.report.tried =
+      static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
+  state.proved_unsolvable = outcome == Outcome::no_solution && finite(problem);
+  if (list.size() > 0) {
+    std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
+    problem.velocities(trial, trial_xi);
+    keep(residual(problem, trial, trial_xi), SolverId::enumeration, outcome,
+         at_mode_boundary(problem, trial, trial_xi), impulse, state);
+  }
+  return state.proved_unsolvable || state.report.residual <= accepted_residual;
+}
+
+// Judges what was found, and reads the modes off it.
+void SolverChain::Workspace::conclude(const ContactProblem& problem, std::span<double> impulse,
+                                      Attempt& state) {
+  ContactReport& report = state.report;
+  if (report.residual <= tolerated_residual) {
+    report.reason = {};
+  } else {
+    report.outcome = state.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
+    if (report.reason.empty()) report.reason = "residual too large";
+    if (state.proved_unsolvable) report.reason = "no mode is possible";
+    if (state.proved_unsolvable || report.worst_group < 0) {
+      // A proof, or nobody had anything to offer: nothing acts.
+      std::fill(impulse.begin(), impulse.end(), 0.0);
+      problem.velocities(impulse, xi);
+      const Residual found = residual(problem, impulse, xi);
+      report.residual = found.value;
+      report.worst_group = found.group;
+      report.solver = to_string(state.last);
+    }
+  }
+  for (std::size_t g = 0; g < modes.size(); ++g) {
+    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
+  }
+}
+
+void SolverChain::Workspace::count(const Attempt& state) {
+  const ContactReport& report = state.report;
+  ++statistics.problems;
+  for (std::size_t i = 0; i < solver_count; ++i) {
+    if (report.was_tried(static_cast<SolverId>(i))) ++statistics.tried[i];
+  }
+  if (report.usable()) {
+    ++statistics.accepted[static_cast<std::size_t>(state.best)];
+    statistics.worst_residual = std::max(statistics.worst_residual, report.residual);
+    if (report.residual > accepted_residual) ++statistics.tolerated;
+  }
+  if (state.applicable > 1) ++statistics.fall_backs;
+  if (report.degenerate) ++statistics.degenerate;
+  switch (report.outcome) {
+    case Outcome::solved:
+      break;
+    case Outcome::several_solutions:
+      ++statistics.several_solutions;
+      break;
+    case Outcome::forces_not_unique:
+      ++statistics.forces_not_unique;
+      break;
+    case Outcome::no_solution:
+      ++statistics.no_solution;
+      break;
+    case Outcome::not_solved:
+      ++statistics.not_solved;
+      break;
+  }
+}
+
+SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
+SolverChain::~SolverChain() = default;
+SolverChain::SolverChain(SolverChain&&) noexcept = default;
+SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
+
+ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
+  demand_grouped(problem, impulse);
+  Workspace& work = *work_;
+  // One report, built where the caller reads it: copying it would cost as much as solving a contact.
+  ContactReport report;
+  if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
+      problem.sets()[1].kind == SetKind::bounded_interval && work.solve_regular(problem, impulse, report)) {
+    return report;
+  }
+  if (!work.begin(problem, impulse, report)) return report;
+  Workspace::Attempt attempt{.report = report};
+  const SolverId first =
+      problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
+  const bool done = work.attempt(problem, first, impulse, attempt) ||
+                    work.attempt(problem, SolverId::lemke, impulse, attempt) ||
+                    work.attempt(problem, SolverId::projection, impulse, attempt);
+  if (!done && !(report.residual <= tolerated_residual)) {
+    work.attempt(problem, SolverId::enumeration, impulse, attempt);
+  }
+  work.conclude(problem, impulse, attempt);
+  work.count(attempt);
+  return report;
+}
+
+ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& problem,
+                                      std::span<double> impulse) {
+  demand_grouped(problem, impulse);
+  ContactReport report;
+  if (!work_->begin(problem, impulse, report)) return report;
+  Workspace::Attempt attempt{.report = report};
+  work_->attempt(problem, solver, impulse, attempt);
+  work_->conclude(problem, impulse, attempt);
+  return report;
+}
+
+std::span<const double> SolverChain::velocities() const { return work_->xi; }
+std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }
+const ChainStatistics& SolverChain::statistics() const { return work_->statistics; }
+void SolverChain::reset_statistics() { work_->statistics = {}; }
+
+}  // namespace carom

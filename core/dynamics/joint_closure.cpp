@@ -1,0 +1,226 @@
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_closure.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// Gaps and velocities this small against the coordinates and velocities are rounding of a few terms.
+constexpr double rounding = 16.0 * epsilon;
+
+// What may be left where steps shrink no more: rounding of a poor matrix.
+constexpr double accepted = 1e-11;
+
+// Newton's method from a start that is roughly right; more steps than this do not come to an end.
+constexpr int most_steps = 60;
+
+double largest(const std::vector<double>& numbers, Range range, double least) {
+  double size = least;
+  for (Index i = range.begin; i < range.end; ++i) size = std::max(size, std::abs(numbers[i]));
+  return size;
+}
+
+/// Joints whose rows take part in the dependence of one row on others.
+std::vector<JointId> partners(const IslandJoints& joints, std::size_t row, std::span<const double> vector) {
+  // Against the row itself; the rest is rounding.
+  constexpr double takes_part = 1e-6;
+  std::vector<JointId> found;
+  for (std::size_t i = 0; i < vector.size(); ++i) {
+    const JointId joint = joints.joint(i);
+    if (joint == joints.joint(row) || std::abs(vector[i]) <= takes_part * std::abs(vector[row])) continue;
+    if (std::find(found.begin(), found.end(), joint) == found.end()) found.push_back(joint);
+  }
+  return found;
+}
+
+std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
+  std::vector<double> vector;
+  joints.factors().dependence(row, vector);
+  return partners(joints, row, vector);
+}
+
+[[noreturn]] void refuse(const Assembly& assembly, IslandJoints& joints, std::size_t row, double off,
+                         const char* what, const char* unit) {
+  const System& system = assembly.system();
+  const JointId joint = joints.joint(row);
+  std::string message = system.name(joint) + ": " + what + ", it is off by " + to_text(off) + " " + unit;
+  bool first = true;
+  if (joints.factors().pivot(row) < dependent_pivot) {
+    for (const JointId other : partners(joints, row)) {
+      message += (first ? "; contradicted by " : ", ") + system.name(other);
+      first = false;
+    }
+  }
+  message += "; allowed: joints that can be closed together";
+  throw ModelError(message);
+}
+
+/// Demands that forces of joints which bound friction are unique.
+void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints& joints) {
+  const System& system = assembly.system();
+  std::vector<std::size_t> dependent;
+  for (std::size_t row = 0; row < joints.size(); ++row) {
+    if (joints.factors().pivot(row) < dependent_pivot) dependent.push_back(row);
+  }
+  if (dependent.empty()) return;
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly.joint_kinds()[k];
+    if (!kind.rubs()) continue;
+    const Range range = assembly.joints(island, k);
+    for (Index slot = range.begin; slot < range.end; ++slot) {
+      if (kind.rub(slot).coefficient == 0.0) continue;
+      const JointId bearing = kind.on_joint(slot);
+      for (const std::size_t row : dependent) {
+        std::vector<JointId> taking_part = partners(joints, row);
+        taking_part.push_back(joints.joint(row));
+        if (std::find(taking_part.begin(), taking_part.end(), bearing) == taking_part.end()) continue;
+        std::string message = system.name(assembly.joint_id(k, slot)) + ": coefficient is " +
+                              to_text(kind.rub(slot).coefficient) + ", and forces of " +
+                              system.name(bearing) + " are not unique: redundant are";
+        for (const JointId joint : taking_part) {
+          message += (joint == taking_part.front() ? " " : ", ") + system.name(joint);
+        }
+        throw ModelError(message +
+                         "; allowed: a constant bound, or joints none of which follows from others");
+      }
+    }
+  }
+}
+
+/// The row that is furthest off.
+std::size_t worst_row(std::span<const double> off) {
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < off.size(); ++i) {
+    if (!(std::abs(off[i]) <= std::abs(off[worst]))) worst = i;
+  }
+  return worst;
+}
+
+/// Numbers over the whole model that islands share: made for each they would cost the square of their number.
+struct ClosureWork {
+  explicit ClosureWork(const Assembly& assembly, const State& state)
+      : lengths(assembly.length_scales()),
+        evaluation(make_evaluation(assembly)),
+        start(state.q),
+        before(state.v),
+        change(state.v.size(), 0.0),
+        moved(state.q.size(), 0.0) {}
+  std::vector<double> lengths;
+  Evaluation evaluation;
+  std::vector<double> start, before;  // q and v as they were
+  std::vector<double> change, moved;
+};
+
+void close_island(const Assembly& assembly, Index island, ClosureWork& work, State& state,
+                  JointClosure& closure) {
+  IslandJoints joints(assembly, island);
+  if (joints.empty()) return;
+  const Island& range = assembly.islands()[island];
+  const Layout& layout = *assembly.layout();
+  for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
+    const BodySlot slot = layout.bodies()[body];
+    if (assembly.system().keeps_place(layout.id(body))) joints.hold_still({slot.v, slot.v + slot.v_size});
+  }
+  Evaluation& evaluation = work.evaluation;
+  const std::vector<double>& lengths = work.lengths;
+  const auto locate = [&] {
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    joints.locate({state.view(), evaluation.rotation.data()});
+  };
+  std::vector<double> off(joints.size());
+  const std::vector<double>& start = work.start;
+  std::vector<double>&change = work.change, &moved = work.moved;
+  double best = std::numeric_limits<double>::infinity();
+  for (int step = 0;; ++step) {
+    locate();
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gap(i);
+    const std::size_t worst = worst_row(off);
+    const double left = std::abs(off[worst]), size = largest(state.q, range.q, 1.0);
+    if (left <= rounding * size) break;
+    const bool stalls = !(left < 0.5 * best) && left <= accepted * size;
+    if (stalls) break;
+    if (step == most_steps || !std::isfinite(left)) {
+      refuse(assembly, joints, worst, off[worst], "cannot be closed", "m or rad");
+    }
+    best = std::min(best, left);
+    std::fill(change.begin() + range.v.begin, change.begin() + range.v.end, 0.0);
+    joints.hold(JointLevel::displacement, change.data());
+    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+      kind.advance(slots, state.q.data() + q, change.data() + v, moved.data() + q);
+    });
+    std::copy(moved.begin() + range.q.begin, moved.begin() + range.q.end, state.q.begin() + range.q.begin);
+  }
+  demand_unique_pressure(assembly, island, joints);
+  // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
+  for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
+    const BodySlot slot = layout.bodies()[body];
+    for (Index i = 0; i < std::min(slot.q_size, slot.v_size); ++i) {
+      closure.shift =
+          std::max(closure.shift, std::abs(state.q[slot.q + i] - start[slot.q + i]) * lengths[slot.v + i]);
+    }
+  }
+
+  const auto find_off = [&] { joints.residuals(JointLevel::velocity, state.v.data(), off.data()); };
+  double speed = largest(state.v, range.v, 0.0);
+  for (std::size_t i = 0; i < off.size(); ++i) speed = std::max(speed, std::abs(joints.rate(i)));
+  find_off();
+  if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
+  const std::vector<double>& before = work.before;
+  joints.hold(JointLevel::velocity, state.v.data());
+  joints.hold(JointLevel::velocity, state.v.data());  // what rounding left
+  find_off();
+  const std::size_t worst = worst_row(off);
+  const double left = off[worst];
+  if (!(std::abs(left) <= 1e-9 * std::max(speed, 1.0))) {
+    refuse(assembly, joints, worst, left, "cannot be kept closed", "m/s or rad/s");
+  }
+  for (Index i = range.v.begin; i < range.v.end; ++i) {
+    closure.change = std::max(closure.change, std::abs(state.v[i] - before[i]) * lengths[i]);
+  }
+}
+
+}  // namespace
+
+JointClosure close_joints(const Assembly& assembly, State& state) {
+  check_sizes(assembly, state);
+  JointClosure closure;
+  if (assembly.joint_kinds().empty()) return closure;
+  ClosureWork work(assembly, state);
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    close_island(assembly, island, work, state, closure);
+  }
+  return closure;
+}
+
+Mobility mobility(const Assembly& assembly, const State& state) {
+  check_sizes(assembly, state);
+  Mobility result;
+  result.velocities = assembly.layout()->v_size();
+  Evaluation evaluation = make_evaluation(assembly);
+  for (Index island = 0; island < assembly.islands().size(); ++island) {
+    IslandJoints joints(assembly, island);
+    if (joints.empty()) continue;
+    evaluate_positions(assembly, island, state.view(), evaluation);
+    joints.locate({state.view(), evaluation.rotation.data()});
+    result.rows += static_cast<Index>(joints.size());
+    for (std::size_t row = 0; row < joints.size(); ++row) {
+      if (joints.factors().pivot(row) >= dependent_pivot) {
+        ++result.independent_rows;
+        continue;
+      }
+      result.redundant.push_back({joints.joint(row), partners(joints, row)});
+    }
+  }
+  result.degrees_of_freedom = result.velocities - result.independent_rows;
+  return result;
+}
+
+}  // namespace carom

@@ -1,0 +1,47 @@
+#include <carom/core/dynamics/prescribed_joints.h>
+
+#include <limits>
+#include <string>
+
+namespace carom {
+
+PrescribedJoints::PrescribedJoints(const Assembly& assembly) : assembly_(&assembly) {
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly.joint_kinds()[k];
+    for (Index slot = 0; slot < kind.size(); ++slot) {
+      if (!kind.prescribes(slot)) continue;
+      laws_.push_back(
+          {&kind, slot, assembly.joint_id(k, slot), {.time = std::numeric_limits<double>::quiet_NaN()}});
+    }
+  }
+}
+
+void PrescribedJoints::demand_continuous(double from, double to) {
+  for (Law& law : laws_) {
+    auto at = [&](double time) { return law.kind->prescribed(law.slot, time); };
+    if (law.last.time != from) law.last = at(from);
+    const LawPoint end = at(to);
+    if (!looks_smooth(law.last, end)) {
+      const std::string name = assembly_->system().name(law.id);
+      if (const auto jump = find_jump(at, law.last, end)) fail_jump(name, "position", "", *jump);
+      const auto rate = find_false_rate(at, law.last, end);
+      if (rate) fail_rate(name, "velocity", "position", "", *rate);
+    }
+    law.last = end;
+  }
+}
+
+std::string driven_by(const Assembly& assembly, Index island) {
+  std::string text;
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
+    const Range range = assembly.joints(island, k);
+    for (Index joint = range.begin; joint < range.end; ++joint) {
+      text += (text.empty() ? "; bodies are driven by " : ", ") +
+              assembly.system().name(assembly.joint_id(k, joint));
+    }
+  }
+  return text;
+}
+
+}  // namespace carom

@@ -1,0 +1,74 @@
+#pragma once
+
+/// \file
+/// The machine of the event-driven mode: all islands of a model, each at its own pace, met at times asked
+/// for.
+
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/island_driver.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/run/event_driven.h>
+#include <carom/integrators/run/step_report.h>
+
+#include <memory>
+#include <vector>
+
+namespace carom {
+
+/// Advances states of one assembly. Islands are ahead of the state by what their last step covers; that is
+/// memory only: from any state the same motion follows within the tolerance.
+class CAROM_API EventDriver {
+public:
+  /// Throws ModelError for impossible options, a contact without a law, contact in space.
+  /// \param stop asked within the work, may be null; must outlive this
+  EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop = nullptr);
+
+  /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start, SolverError
+  /// for more evaluations than the options allow.
+  void demand_start(const State& state);
+  /// Advances to a time, not before the state's. On success state and companion are those then, `report`
+  /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
+  /// ModelError where bodies are too deep in obstacles at a start.
+  void advance(State& state, Companion& companion, double target, StepReport& report,
+               std::vector<EventRecord>& events);
+  /// Reaction of a joint at a state last advanced to, or changed to since.
+  [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
+  /// The state was changed from outside: start anew from it.
+  void forget() { started_ = false; }
+
+  /// The flows that islands share.
+  [[nodiscard]] const FlowPool& flows() const { return work_.flows; }
+  /// Names of contacts.
+  [[nodiscard]] const ContactFinder& finder() const { return finder_; }
+
+private:
+  void start(const State& state, const Companion& companion);
+  template <class F>
+  auto within_limit(double time, F&& look) const;
+  void count(Companion& companion);
+  void demand_continuous_laws(double from, double to);
+  [[noreturn]] void fail_energy(double from, double to);
+  void order_events();
+  void report_contacts(const DriverNews& news, StepReport& report) const;
+
+  const Assembly* assembly_;
+  EventDriven options_;
+  ContactFinder finder_;
+  PrescribedJoints prescribed_;
+  ObstaclePlaces places_, places_after_;  // at the ends of an advance
+  DriverWorkspace work_;
+  std::vector<std::unique_ptr<IslandDriver>> islands_;
+  Evaluation evaluation_;
+  State trial_;
+  ContactModes modes_;
+  DriverNews news_;
+  std::vector<EventRecord> ordered_;
+  std::vector<std::size_t> order_;
+  FlowCounts counted_;  // of the flows, told so far
+  bool started_ = false;
+};
+
+}  // namespace carom

@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// What the flows behind make_flow() have in common: the last step, its ends, and the errors.
+
+#include <carom/integrators/flow/flow.h>
+#include <carom/integrators/flow/sundials_link.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// A flow whose steps an integrator of SUNDIALS makes.
+class SundialsFlow : public Flow {
+public:
+  void bind(FlowProblem& problem) final;
+  [[nodiscard]] bool leave(FlowStep& out) const final;
+  void resume(const FlowStep& step) final;
+  void start(double time, std::span<const double> y, double first_step) final;
+  void advance(double longest) final;
+  [[nodiscard]] double begin() const final { return begin_; }
+  [[nodiscard]] double end() const final { return end_; }
+  [[nodiscard]] std::span<const double> state() const final { return end_state_; }
+  void sample(double time, std::span<double> y) final;
+  void land(double time, std::span<double> y) final;
+  void correct(std::span<const double> y) final;
+  [[nodiscard]] double next_step() const final { return next_; }
+  [[nodiscard]] const FlowCounts& counts() const final;
+
+protected:
+  SundialsFlow(FlowProblem& problem, double relative_tolerance);
+
+  /// Makes a step from begin(), end_state_ holding y there, into end_state_; sets next_. The step may end
+  /// beside where it must, by the rounding of time. \return what SUNDIALS returned; `reached` is the step's
+  /// end
+  virtual int step(double longest, double& reached) = 0;
+  /// Called by start() and resume(): what was known of the motion so far no longer holds.
+  virtual void forget() = 0;
+  /// True if the next step will start anew.
+  [[nodiscard]] virtual bool starts_anew() const = 0;
+  /// What a step that does not start anew needs to know of those before: whether it is numbers that can be
+  /// told, how many, telling them, and taking over those of another flow (after forget()).
+  [[nodiscard]] virtual bool can_tell_history() const { return false; }
+  [[nodiscard]] virtual std::size_t history_size() const { return 0; }
+  virtual void tell_history(double* /*out*/) const {}
+  virtual void take_history(const double* /*from*/) {}
+  /// Called by correct() after a step, while end_state_ still holds what will be replaced.
+  virtual void shift(std::span<const double> y) = 0;
+  /// sample() and land() strictly inside the last step; after resume() the latter alone.
+  virtual void interpolate(double time, double* y) = 0;
+  virtual void integrate_to(double time, double* y) = 0;
+
+  /// A time after begin() that serves the integrators to choose a first step by.
+  [[nodiscard]] double horizon(double longest) const;
+
+  SundialsLink link_;
+  double begin_ = 0.0, end_ = 0.0;
+  double next_ = 0.0;
+  std::vector<double> begin_state_, end_state_;
+  SundialsVector begin_vector_, end_vector_;
+  SundialsVector out_vector_;  // points to whatever is to be written
+
+private:
+  void demand_step(double time, std::size_t size, const char* what) const;
+
+  bool started_ = false;
+  bool stepped_ = false;  // since start() or resume()
+  mutable FlowCounts counts_{};
+};
+
+/// The methods.
+[[nodiscard]] std::unique_ptr<Flow> make_runge_kutta_flow(FlowProblem& problem, double relative_tolerance);
+[[nodiscard]] std::unique_ptr<Flow> make_multistep_flow(FlowMethod method, FlowProblem& problem,
+                                                        double relative_tolerance);
+
+}  // namespace carom

@@ -1,0 +1,129 @@
+#pragma once
+
+/// \file
+/// What SUNDIALS is given of a FlowProblem: a context, vectors with loops of our own, functions in C that
+/// call the problem. Differences between the versions 6.4 and 7 live here and in sundials_link.cpp.
+
+#include <carom/core/errors.h>
+#include <carom/integrators/flow/flow.h>
+#include <carom/integrators/flow/newton_matrix.h>
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_config.h>
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_matrix.h>
+#include <sundials/sundials_types.h>
+
+#include <array>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+static_assert(std::is_same_v<sunrealtype, double>, "carom needs SUNDIALS in double precision");
+
+// Since 7.1 the functions of ARKODE's methods have one name for all of them.
+#if SUNDIALS_VERSION_MAJOR > 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR >= 1)
+#define CAROM_ERK(name) ARKode##name
+#else
+#define CAROM_ERK(name) ERKStep##name
+#endif
+
+namespace carom {
+
+/// Deletes what N_V*() made.
+struct SundialsVectorDeleter {
+  void operator()(N_Vector vector) const { N_VDestroy(vector); }
+};
+/// A vector over memory that somebody else owns.
+using SundialsVector = std::unique_ptr<std::remove_pointer_t<N_Vector>, SundialsVectorDeleter>;
+
+/// One problem as SUNDIALS sees it: the `user_data` of its callbacks. Stays where it is.
+class SundialsLink {
+public:
+  /// Checks the problem's size and tolerances; ModelError.
+  SundialsLink(FlowProblem& problem, double relative_tolerance);
+  ~SundialsLink();
+  SundialsLink(const SundialsLink&) = delete;
+  SundialsLink& operator=(const SundialsLink&) = delete;
+
+  /// Another problem from now on; ModelError as check_flow_bind() and check_flow_problem().
+  void bind(FlowProblem& problem);
+  /// Number of unknowns.
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The context of everything made for this problem.
+  [[nodiscard]] SUNContext context() const { return context_; }
+  /// The problem.
+  [[nodiscard]] FlowProblem& problem() const { return *problem_; }
+  /// Evaluations of f so far.
+  [[nodiscard]] std::int64_t evaluations() const { return evaluations_; }
+  /// Makes a vector over size() numbers.
+  [[nodiscard]] SundialsVector vector(double* numbers) const;
+
+  /// Holds the errors of steps to this part of the tolerances, > 0.
+  void tighten(double part) { part_ = part; }
+  /// Largest component of x, each measured by its tolerance at y.
+  [[nodiscard]] double in_tolerances(const double* x, const double* y) const;
+  /// Evaluates f outside SUNDIALS. False: not finite.
+  [[nodiscard]] bool evaluate(double time, const double* y, double* rates);
+
+  /// The next time that SUNDIALS asks for rates at this very time these are the answer, without an
+  /// evaluation; once. \param rates must outlive that
+  void answer(double time, const double* rates) {
+    answer_at_ = time;
+    answer_ = rates;
+  }
+
+  /// Forgets what went wrong before.
+  void clear();
+  /// True if rates or their derivatives were not finite since clear().
+  [[nodiscard]] bool not_finite() const { return not_finite_; }
+  /// The time at which they last were not, also before clear(); minus infinity if they always were.
+  [[nodiscard]] double not_finite_at() const { return not_finite_at_; }
+  /// True if the problem threw since clear().
+  [[nodiscard]] bool thrown() const { return exception_ != nullptr; }
+
+  /// Throws what the problem threw, or else the SolverError that says why a step from `time` failed.
+  /// \param flag what SUNDIALS returned; CVODE and ARKODE mean the same by it
+  [[noreturn]] void fail(int flag, double time, double step) const;
+  /// Throws the SolverError that rates are not finite where they last were not.
+  [[noreturn]] void fail_not_finite(double time, double step) const;
+  /// For calls that fail for want of memory or by a mistake of ours only.
+  void demand(bool success, const char* what) const;
+
+  /// Callbacks of CVODE and ARKODE; `link` is a SundialsLink.
+  static int rates(sunrealtype time, N_Vector y, N_Vector rates, void* link) noexcept;
+  static int weights(N_Vector y, N_Vector weights, void* link) noexcept;
+  /// Fills and factorises a matrix of make_newton_matrix().
+  static int linear_system(sunrealtype time, N_Vector y, N_Vector rates, SUNMatrix matrix,
+                           sunbooleantype keep, sunbooleantype* renewed, sunrealtype gamma, void* link,
+                           N_Vector, N_Vector, N_Vector) noexcept;
+#if SUNDIALS_VERSION_MAJOR < 7
+  /// Takes messages in place of stderr; set for each integrator.
+  static void take_message(int code, const char* module, const char* function, char* message,
+                           void* link) noexcept;
+#endif
+
+private:
+  bool linearise(double time, double* y, const double* rates, NewtonMatrix& matrix);
+  bool difference_rates(double time, double* y, const double* rates, std::vector<RateDerivative>& out);
+  void keep_message(int code, const char* message) noexcept;
+
+  FlowProblem* problem_;
+  std::size_t size_, integrals_;
+  double relative_tolerance_;
+  double part_ = 1.0;
+  SUNContext context_ = nullptr;
+  std::int64_t evaluations_ = 0;
+  std::vector<double> moved_rates_;
+  double answer_at_ = 0.0;
+  const double* answer_ = nullptr;
+  bool not_finite_ = false;
+  double not_finite_at_ = -std::numeric_limits<double>::infinity();
+  std::exception_ptr exception_{};
+  std::array<char, 256> message_{};
+};
+
+}  // namespace carom

@@ -1,0 +1,79 @@
+#pragma once
+
+/// \file
+/// Events as data: impacts, contacts that close, open, stick and slip, accumulations (Zeno), switching
+/// points.
+
+#include <carom/contact/solvers/contact_solver.h>
+#include <carom/core/contact.h>
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// Kinds of events.
+enum class EventKind : std::uint8_t {
+  impact,        ///< a contact that took part in an impact
+  accumulation,  ///< a contact closed by an impact without restitution below the capture speed (Zeno)
+  closing,       ///< an open contact joins the active set: it stays closed
+  lift_off,      ///< a closed contact opens
+  stick,         ///< a slipping contact sticks
+  slip,          ///< a sticking contact slips, or a slipping one reverses
+  impact_without_collision,  ///< no contact forces exist (Painleve): an impact at zero normal speed
+  several_accelerations,     ///< several accelerations are possible (Painleve): one was chosen by rule
+  kink,                      ///< switching point: loads of an element change their form
+  law_break,                 ///< discontinuity of a law of time: it jumps or has a kink, as its part says
+  mode_switch                ///< a contact was opened when the simulation changed to the event-driven mode
+};
+/// Number of kinds.
+inline constexpr std::size_t event_kind_count = 11;
+
+/// Name of a kind: "impact", "lift-off", ...
+[[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);
+
+/// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
+/// driver or obstacle. Simulation::name() names the part. Directions: normal first, then tangential.
+struct EventRecord {
+  double time = 0.0;                        ///< [s]
+  EventKind kind = EventKind::impact;       ///< what happened
+  ContactKey contact{};                     ///< of a contact
+  BodyId body{};                            ///< its body
+  ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
+  ElementId element{};                      ///< of a kink, or whose law of time jumps
+  JointId joint{};                          ///< driver whose law of time jumps
+  std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
+  std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
+  std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
+  double energy_before = 0.0;               ///< kinetic energy of the body [J]
+  double energy_after = 0.0;                ///< likewise after
+  ContactMode mode = ContactMode::open;     ///< of the contact, after
+  Outcome outcome = Outcome::not_solved;    ///< number of solutions of the problem that decided, if known
+  double residual = 0.0;                    ///< certificate of its answer
+  std::string_view solver{};                ///< solver whose answer was used
+  /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration per unit of normal force while slipping
+  /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].
+  double stiffness = 0.0, free_acceleration = 0.0;
+  /// Of an accumulation: time at which infinitely many impacts would have ended, by the ratio of their
+  /// intervals; NaN where the ratios had not converged [s].
+  double accumulation_time = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Events by kind.
+using EventCounts = std::array<std::int64_t, event_kind_count>;
+
+/// Writes events as CSV, one line each: time, kind, name, numbers with units in the header, exact digits.
+/// \param name_of gives the name of the part of an event (Simulation::name())
+CAROM_API void write_events(std::ostream& out, const std::vector<EventRecord>& events,
+                            const std::function<std::string(const EventRecord&)>& name_of);
+
+}  // namespace carom

@@ -1,0 +1,42 @@
+#include <carom/contact/solvers/problem_file.h>
+#include <carom/core/part_check.h>
+#include <carom/integrators/run/failure_file.h>
+
+#include <filesystem>
+#include <system_error>
+
+namespace carom {
+
+namespace fs = std::filesystem;
+
+void check_failure_directory(const std::string& directory, const std::string& mode) {
+  if (directory.empty()) return;
+  const auto refuse = [&](const std::string& allowed) {
+    throw ModelError(mode + ": failure_directory is '" + directory + "'; allowed: " + allowed);
+  };
+  if (!problem_files_available()) refuse("none, since this carom was built without JSON (CAROM_WITH_JSON)");
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) refuse("an existing directory, or none");
+}
+
+std::string write_failure(const std::string& directory, const SolverFailure& failure,
+                          const std::string& message) {
+  if (directory.empty() || failure.problem == nullptr) return {};
+  const std::string stem = "contact_problem_t" + to_text(failure.time);
+  fs::path path = fs::path(directory) / (stem + ".json");
+  std::error_code error;
+  // Another run, or a further try of the step, may have left one.
+  for (int i = 2; fs::exists(path, error); ++i) {
+    path = fs::path(directory) / (stem + "_" + std::to_string(i) + ".json");
+  }
+  ProblemNotes notes{.comment = message, .time = failure.time, .contacts = {}};
+  if (failure.parts.size() == failure.problem->groups().size()) notes.contacts = failure.parts;
+  try {
+    save_problem(path.string(), *failure.problem, notes);
+  } catch (const FileError& problem) {
+    return std::string("; ") + problem.what();
+  }
+  return "; the problem is in '" + path.string() + "'";
+}
+
+}  // namespace carom

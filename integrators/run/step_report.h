@@ -1,0 +1,112 @@
+#pragma once
+
+/// \file
+/// Report of a step, and statistics of all steps so far.
+
+#include <carom/contact/solvers/contact_solver.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/contact.h>
+#include <carom/core/ids.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/model_finding.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/time_stepping.h>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// One contact that took part in a step. Directions: normal first, then tangential (one in the plane).
+struct ContactRecord {
+  ContactKey key;       ///< identity
+  BodyId body;          ///< the body
+  ObstacleId obstacle;  ///< what it touches
+  int directions = 2;   ///< 2 in the plane, 3 in space
+  double gap = 0.0;     ///< when the contact was detected; > 0 of a lasting one that turning
+                        ///< has opened [m]
+  std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
+  std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
+  std::array<double, 3> impulse{};          ///< P [N s]
+  std::array<double, 3> work{};             ///< P (gamma^- + gamma^+)/2, by direction [J]
+  ContactMode mode = ContactMode::open;     ///< of the mean velocities
+  bool impact = false;                      ///< closed faster than the capture speed
+  Outcome outcome = Outcome::not_solved;    ///< number of solutions of its problem, if known
+  double residual = 0.0;                    ///< certificate of its problem
+  std::string_view solver{};                ///< solver whose answer was used
+};
+
+/// Impulse of a joint over a step of time stepping, whose mean force is the impulse divided by the length of
+/// the step; or in an impact of the event-driven mode.
+struct JointImpulse {
+  JointId joint;          ///< identity
+  JointReaction impulse;  ///< on its body `to` [N s, N m s], in the middle of the step or at the impact
+  double time = 0.0;      ///< end of the step, or time of the impact [s]
+};
+
+/// Report of step control (TimeStepping::control). The step was kept as two halves, and the other numbers of
+/// the report are of both; contacts are those of the first half, then of the second.
+struct ControlReport {
+  double error = 0.0;          ///< estimated error of the step [m]; 0 across an impact
+  int rejected = 0;            ///< lengths that were tried before and rejected
+  bool across_impact = false;  ///< the error could not be estimated because of contact
+  double next_step = 0.0;      ///< length that will be tried next [s]; 0 without step control
+};
+
+/// The last accepted step.
+struct StepReport {
+  double time = 0.0;  ///< at its end [s]
+  double step = 0.0;  ///< its length [s]
+  /// Which solved the step; where islands differ the one farthest from the fixed-point iteration, in the
+  /// order of the enumeration.
+  Iteration iteration = Iteration::fixed_point;
+  int fallbacks = 0;           ///< iterations that were given up for another one, summed over islands
+  int sweeps = 0;              ///< of the iteration that solved the step, the most over all islands
+  int local_sweeps = 0;        ///< sweeps before, of the bodies near contacts only; the most over all islands
+  double contraction = 0.0;    ///< ratio of successive changes, the largest over islands (0: none seen)
+  ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
+  double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
+  /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
+  /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
+  double energy_gain = 0.0;
+  double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
+  double projected = 0.0;     ///< largest displacement by which a body was moved out of obstacles [m]
+  ControlReport control;      ///< of step control
+  std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
+  /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
+  /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
+  std::vector<JointImpulse> joint_impulses;
+  /// Findings of System::check() in the model, at the start or the last edit; the same in every step.
+  std::vector<ModelFinding> findings;
+};
+
+/// Counts and extremes since the start.
+struct Statistics {
+  std::int64_t steps = 0;            ///< accepted steps
+  std::int64_t sweeps = 0;           ///< sum over steps of StepReport::sweeps
+  int most_sweeps = 0;               ///< the most in one step
+  double largest_contraction = 0.0;  ///< the largest StepReport::contraction
+  /// Steps by StepReport::iteration: fixed-point, Anderson, linearly implicit.
+  std::array<std::int64_t, iteration_count> steps_by_iteration{};
+  std::int64_t fallbacks = 0;             ///< sum over steps of StepReport::fallbacks
+  std::int64_t impacts = 0;               ///< contacts that closed faster than the capture speed
+  std::int64_t contact_steps = 0;         ///< contacts that took part in steps
+  std::int64_t several_solutions = 0;     ///< of contact problems with more than one end velocity
+  std::int64_t forces_not_unique = 0;     ///< contact problems with more than one set of impulses
+  std::int64_t rejected_steps = 0;        ///< lengths that step control rejected
+  std::int64_t steps_across_impacts = 0;  ///< steps whose error could not be estimated because of contact
+  std::int64_t energy_gains = 0;          ///< steps in which impacts added energy
+  double energy_gained = 0.0;             ///< sum of those gains [J]
+  std::int64_t lasting_gains = 0;         ///< steps in which lasting contact added energy
+  double lasting_gained = 0.0;            ///< sum of those gains [J]
+  double deepest_gap = 0.0;               ///< the most negative gap found [m]
+  double worst_residual = 0.0;            ///< the largest certificate of a contact problem
+  EventCounts events{};                   ///< of the event-driven mode, by kind
+  std::int64_t flow_steps = 0;            ///< of its integrators, over all islands
+  std::int64_t flow_evaluations = 0;      ///< of rates, likewise
+  std::int64_t flow_restarts = 0;         ///< likewise
+};
+
+}  // namespace carom

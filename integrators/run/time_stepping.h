@@ -1,0 +1,104 @@
+#pragma once
+
+/// \file
+/// Options of the time-stepping mode (Johansson 1999, section 4).
+
+#include <carom/core/export.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace carom {
+
+/// How the impulse of the force elements over a step is computed from the states at its ends. Both rules are
+/// of second order.
+enum class ForceRule : std::uint8_t {
+  /// h times the mean of the forces at both ends (Johansson 1999, section 4). Conserves linear momentum;
+  /// energy
+  /// too where forces are linear in the coordinates, else with a bounded error of order h^2.
+  trapezoidal,
+  /// Mean forces whose work is exactly the change of the potentials, at mean levers (docs/method.md,
+  /// section 6). Conserves energy, linear and angular momentum of springs to round-off. Elements without a
+  /// mean
+  /// force are evaluated at the middle of the step. Rigid bodies turn by 2 atan(h w/2).
+  energy_momentum
+};
+
+/// How the implicit equations of a step are solved. All iterations converge to the same step.
+enum class Iteration : std::uint8_t {
+  fixed_point,  ///< sweeps from loads to motion to loads; contract for roughly h^2 k/m and h d/m below a few
+  anderson,     ///< the same with Anderson acceleration: contracts faster, and for slightly stiffer elements
+  /// Newton's method with the derivatives of the elements, kept while it contracts well: a sparse linear
+  /// problem in every sweep, with the rows of the joints. For elements that are too stiff for the others.
+  /// Allocates.
+  linearly_implicit,
+  /// The fixed-point iteration; within a step, for a component in which it fails, Anderson's, then the
+  /// linearly implicit one. After three such steps in a row its steps begin with the one that solved the
+  /// last, and every 32 steps with the fixed-point iteration again. StepReport::iteration is the one that
+  /// solved a step.
+  automatic
+};
+
+/// Number of iterations that can end a step: all but `automatic`, which stands behind them.
+inline constexpr std::size_t iteration_count = 3;
+
+/// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit", "automatic".
+[[nodiscard]] CAROM_API std::string_view to_string(ForceRule rule);
+[[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);  ///< likewise
+
+/// Steps of varying length. Each step is computed once as a whole and once as two halves; the halves are
+/// kept, and the difference gives the error. Impacts are excepted: where the whole step and the halves have
+/// different contacts, or contacts in different modes, their difference does not measure the error of the
+/// smooth motion; the halves are kept, and StepReport::control says so.
+struct StepControl {
+  double tolerance = 1e-6;  ///< > 0, largest error of positions and of h times velocities in a step [m]
+  double smallest = 1e-7;   ///< > 0, where the error would ask for less the step fails [s]
+  double largest = 1e-1;    ///< >= smallest, no step is longer [s]
+};
+
+/// Forces of elements by the implicit trapezoidal rule with a fixed-point iteration, contacts detected at the
+/// start of a step, the contact law in every step of a lasting contact (kept where turning opens it:
+/// docs/method.md). docs/two_modes.md has a table of
+/// these options.
+struct TimeStepping {
+  double step = 1e-3;  ///< h > 0 [s]
+
+  /// The iteration ends when another sweep would change positions, and h times velocities, by less than this
+  /// (angles times the radius of gyration). At 0 it goes on until the change no longer decreases [m].
+  double tolerance = 1e-12;
+  int max_sweeps = 200;  ///< sweeps after which an iteration is given up, >= 2
+
+  /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
+  /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
+  /// restitution of the contact; on nothing else of the motion [m/s]. Of a limit: the rate of its
+  /// coordinate, rad/s where that is an angle.
+  double capture_speed = 1e-2;
+  /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
+  bool refuse_energy_gain = false;
+
+  ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements
+  /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does
+  /// the step.
+  Iteration iteration = Iteration::automatic;
+  /// Move bodies out of obstacles at the end of each step, by the smallest displacement in the mass norm:
+  /// contacts that took part in the step end with gaps >= 0 up to rounding. A contact that closes within the
+  /// step is detected at its end and takes part in the next. Bodies with joints move along their joints. The
+  /// change of the potential energy is booked as `projection`.
+  bool project_gaps = false;
+  /// Adapt the length of steps, beginning with `step`; fixed if not given.
+  std::optional<StepControl> control{};
+
+  /// Number of threads that share the work on large islands (at least twice Assembly::block_size bodies),
+  /// >= 1. The result is the same bit for bit for any number. More than one need a library built with oneTBB,
+  /// and laws that may be called from several threads at once.
+  int threads = 1;
+
+  /// An existing directory where the contact problem of a SolverError is written to a file, whose name is in
+  /// the message (docs/contact_problems.md). Empty: nothing is written.
+  std::string failure_directory{};
+};
+
+}  // namespace carom

@@ -1,0 +1,68 @@
+#pragma once
+
+/// \file
+/// Bounds of the work on an island, so that no run goes on for ever without getting anywhere.
+
+#include <carom/core/errors.h>
+#include <carom/core/export.h>
+#include <carom/integrators/run/stop_request.h>
+
+#include <cstdint>
+#include <limits>
+
+namespace carom {
+
+/// Finds out whether something happens more often than it may, over windows of so many.
+class RateLimit {
+public:
+  /// \param window > 0
+  explicit RateLimit(std::int64_t window) : window_(window) {}
+
+  /// Begins a window at a time [s].
+  void start(double time) {
+    counted_ = 0;
+    since_ = time;
+  }
+  /// Counts one more. True if with it a window is full that lasted less than its number over `most` [1/s].
+  [[nodiscard]] bool exceeds(double most, double time) {
+    if (++counted_ < window_) return false;
+    const bool too_often = time - since_ < static_cast<double>(window_) / most;
+    start(time);
+    return too_often;
+  }
+
+private:
+  std::int64_t window_;
+  std::int64_t counted_ = 0;
+  double since_ = 0.0;  // start of the window [s]
+};
+
+/// Evaluations since an island last got on: within one step of its flow, one event, one look at it.
+class CAROM_API EvaluationLimit {
+public:
+  /// Thrown where there were too many; who knows the island makes a SolverError of it.
+  class CAROM_API Reached : public Error {
+  public:
+    Reached() : Error("too many evaluations") {}
+  };
+
+  /// No limit.
+  EvaluationLimit() = default;
+  /// \param stop asked at every evaluation, may be null; must outlive this
+  EvaluationLimit(std::int64_t most, const StopRequest* stop) : most_(most), stop_(stop) {}
+
+  /// The island got on.
+  void restart() { made_ = 0; }
+  /// Counts one more. Throws Reached, Cancelled.
+  void take() {
+    if (++made_ > most_) throw Reached();
+    if (stop_ != nullptr) stop_->check();
+  }
+
+private:
+  std::int64_t most_ = std::numeric_limits<std::int64_t>::max();
+  std::int64_t made_ = 0;
+  const StopRequest* stop_ = nullptr;
+};
+
+}  // namespace carom

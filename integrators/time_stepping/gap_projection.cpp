@@ -1,0 +1,203 @@
+// Problem: move bodies out of obstacles by the smallest displacement.
+
+#include <carom/integrators/time_stepping/gap_projection.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+/// Gaps are brought to this depth: rounding of the coordinates, on the closed side so that a resting body
+/// remains in contact.
+double rounding_depth(const Assembly& assembly, Index island, const State& state) {
+  const Range q = assembly.islands()[island].q;
+  double size = 1.0;
+  for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(state.q[i]));
+  return 8.0 * std::numeric_limits<double>::epsilon() * size;
+}
+
+/// The largest gap of the joints.
+double off(IslandJoints& joints, const State& state, const Evaluation& evaluation) {
+  joints.place_gaps({state.view(), evaluation.rotation.data()});
+  double worst = 0.0;
+  for (std::size_t row = 0; row < joints.size(); ++row) worst = std::max(worst, std::abs(joints.gap(row)));
+  return worst;
+}
+
+}  // namespace
+
+/// Contacts near enough to matter, of those that are asked for (both lists are in the finder's order).
+void GapProjection::find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
+                         const Which& which, double margin, const State& state,
+                         const Evaluation& evaluation) {
+  found_.clear();
+  contacts_.clear();
+  finder.find(island, state.view(), evaluation, places, nullptr, margin, found_);
+  if (which.all) {
+    contacts_ = found_;
+    return;
+  }
+  auto wanted = which.taking_part.begin();
+  for (const Contact& contact : found_) {
+    auto at = wanted;
+    while (at != which.taking_part.end() && at->key != contact.key) ++at;
+    if (at == which.taking_part.end()) continue;  // has not taken part
+    wanted = at + 1;
+    contacts_.push_back(contact);
+  }
+}
+
+GapProjection::Result GapProjection::project(const Assembly& assembly, Index island,
+                                             const ContactFinder& finder, const ObstaclePlaces& places,
+                                             const Which& which, SolverChain& chain, State& state,
+                                             Evaluation& evaluation, IslandJoints& joints) {
+  // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
+  constexpr int most_passes = 20;
+  const double depth = rounding_depth(assembly, island, state);
+  const Island& range = assembly.islands()[island];
+  if (lengths_.size() != state.v.size()) lengths_ = assembly.length_scales();
+  unmoved_.assign(state.q.begin(), state.q.end());
+  displacement_.assign(state.v.size(), 0.0);
+  Result result;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    // Bodies may have been moved too far: those contacts are open now, and looked at too.
+    find(island, finder, places, which, 2.0 * result.shift, state, evaluation);
+    // Bodies that joints bind come last, and together.
+    const auto owner = [&](const Contact& contact) {
+      return assembly.is_bound(contact.body) ? none : contact.body;
+    };
+    std::stable_sort(contacts_.begin(), contacts_.end(),
+                     [&](const Contact& a, const Contact& b) { return owner(a) < owner(b); });
+    result.left = nullptr;
+    double worst = 2.0 * depth;
+    bool improved = false;
+    for (std::size_t first = 0; first < contacts_.size();) {
+      std::size_t last = first + 1;
+      while (last < contacts_.size() && owner(contacts_[last]) == owner(contacts_[first])) ++last;
+      const std::span<const Contact> of_body(contacts_.data() + first, last - first);
+      const BodySlot body = assembly.layout()->bodies()[of_body.front().body];
+      const bool bound = assembly.is_bound(of_body.front().body);
+      const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
+      const bool moved = std::any_of(displacement_.begin() + own.begin, displacement_.begin() + own.end,
+                                     [](double number) { return number != 0.0; });
+      for (const Contact& contact : of_body) {
+        if (-contact.gap <= worst) continue;
+        worst = -contact.gap;
+        result.left = &contact;
+        result.together = of_body;
+      }
+      const bool deep = std::any_of(of_body.begin(), of_body.end(),
+                                    [&](const Contact& at) { return at.gap < -2.0 * depth; });
+      const bool open = moved && std::all_of(of_body.begin(), of_body.end(),
+                                             [](const Contact& at) { return at.gap > 0.0; });
+      // Where turning bodies have been moved far their joints are off by the square of it.
+      const bool loose = bound && moved && off(joints, state, evaluation) > 2.0 * depth;
+      if (deep || open || loose) {
+        const bool better =
+            bound ? move_bound(assembly, island, of_body, chain, state, evaluation, depth, joints)
+                  : move_body(assembly, of_body, chain, state, depth);
+        improved = better || improved;
+      }
+      first = last;
+    }
+    if (!improved) return result;
+    result.moved = true;
+    for (Index i = range.v.begin; i < range.v.end; ++i) {
+      result.shift = std::max(result.shift, std::abs(displacement_[i]) * lengths_[i]);
+    }
+    evaluate_positions(assembly, island, state.view(), evaluation);
+  }
+  return result;
+}
+
+bool GapProjection::move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
+                              State& state, double depth) {
+  const BodySlot& body = assembly.layout()->bodies()[contacts.front().body];
+  const BodyKind& kind = *assembly.body_kinds()[body.kind];
+  const std::size_t columns = body.v_size;
+  const auto rows = static_cast<int>(contacts.size());
+  double* const displacement = displacement_.data() + body.v;
+  problem_.reset(rows);
+  response_.resize(contacts.size() * columns);
+  multipliers_.assign(contacts.size(), 0.0);
+  const auto dot = [&](const double* row, const double* column) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < columns; ++k) sum += row[k] * column[k];
+    return sum;
+  };
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    kind.apply_inverse_mass({body.slot, body.slot + 1}, contacts[i].row(0), response_.data() + i * columns);
+    problem_.vector()[i] = contacts[i].gap + depth - dot(contacts[i].row(0), displacement);
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      problem_.w(i, j) = dot(contacts[static_cast<std::size_t>(i)].row(0),
+                             response_.data() + static_cast<std::size_t>(j) * columns);
+    }
+  }
+  problem_.group();
+  if (!chain.solve(problem_, multipliers_).usable()) return false;
+  for (std::size_t k = 0; k < columns; ++k) {
+    displacement[k] = 0.0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      displacement[k] += response_[i * columns + k] * multipliers_[i];
+    }
+  }
+  moved_.assign(body.q_size, 0.0);
+  kind.advance({body.slot, body.slot + 1}, unmoved_.data() + body.q, displacement, moved_.data());
+  std::copy(moved_.begin(), moved_.end(), state.q.begin() + body.q);
+  return true;
+}
+
+bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span<const Contact> contacts,
+                               SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
+                               IslandJoints& joints) {
+  const std::size_t size = state.v.size();
+  const auto rows = static_cast<int>(contacts.size());
+  joints.locate({state.view(), evaluation.rotation.data()});
+  of_joints_.resize(joints.size());
+  joints.residuals(JointLevel::change, displacement_.data(), of_joints_.data());
+  for (std::size_t i = 0; i < joints.size(); ++i) of_joints_[i] = joints.gap(i) - of_joints_[i];
+  joints.solve(of_joints_.data());
+  towards_.assign(size, 0.0);
+  joints.add_response(of_joints_.data(), towards_.data());
+  problem_.reset(rows);
+  response_.assign(contacts.size() * size, 0.0);
+  multipliers_.assign(contacts.size(), 0.0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    double* const response = response_.data() + i * size;
+    contacts[i].add_transposed(0, 1.0, response);
+    joints.respond(response);
+    problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data()) +
+                           contacts[i].times(0, towards_.data());
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      problem_.w(i, j) = contacts[static_cast<std::size_t>(i)].times(
+          0, response_.data() + static_cast<std::size_t>(j) * size);
+    }
+  }
+  problem_.group();
+  if (!chain.solve(problem_, multipliers_).usable()) return false;
+  const auto& bodies = assembly.layout()->bodies();
+  const Range all = assembly.islands()[island].bodies;
+  moved_.resize(state.q.size());
+  for (Index body = all.begin; body < all.end; ++body) {
+    if (!assembly.is_bound(body)) continue;
+    const BodySlot slot = bodies[body];
+    for (Index k = slot.v; k < slot.v + slot.v_size; ++k) {
+      displacement_[k] = towards_[k];
+      for (std::size_t i = 0; i < contacts.size(); ++i)
+        displacement_[k] += response_[i * size + k] * multipliers_[i];
+    }
+    assembly.body_kinds()[slot.kind]->advance({slot.slot, slot.slot + 1}, unmoved_.data() + slot.q,
+                                              displacement_.data() + slot.v, moved_.data() + slot.q);
+    std::copy(moved_.begin() + slot.q, moved_.begin() + slot.q + slot.q_size, state.q.begin() + slot.q);
+  }
+  return true;
+}
+
+}  // namespace carom

@@ -1,0 +1,71 @@
+#pragma once
+
+/// \file
+/// Bodies that have sunk into obstacles are moved out by the smallest displacement in the sense of their
+/// masses:  minimise |d|_M  such that  g(q + d) >= 0  for the gaps g of the contacts of a body. At an
+/// estimate d the gaps are taken as linear; the multipliers y of the next estimate d' = M^-1 G^T y solve
+///     W y + g(q + d) - G d >= 0,  y >= 0,  complementary,   W = G M^-1 G^T.
+/// Where joints bind the bodies, with rows J and gaps j, they move together: M^-1 leaves room for K of
+/// core/dynamics/island_joints.h, and  d' = K G^T y + d0  with the smallest d0 for which  J d0 = J d - j(q +
+/// d).
+
+#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Moves the bodies of one island. Keeps memory only.
+class CAROM_API GapProjection {
+public:
+  /// Outcome of a projection.
+  struct Result {
+    bool moved = false;             ///< a body was moved
+    double shift = 0.0;             ///< largest displacement of a body, angles weighed by its size [m]
+    const Contact* left = nullptr;  ///< deepest contact that could not be opened
+    /// The contacts of its bodies that had to be open together, it among them. Valid, as `left`, until the
+    /// next projection.
+    std::span<const Contact> together{};
+  };
+  /// Gaps that are to be opened.
+  struct Which {
+    std::span<const Contact> taking_part{};  ///< these, in the order of the finder,
+    bool all = false;                        ///< or all, those that a displacement closes included
+  };
+
+  /// Moves bodies until the gaps asked for are at most rounding below zero; those that keep a body from
+  /// falling back end there, still closed. Obstacles are at `places`. The position group of `evaluation` must
+  /// be up to date, and is so afterwards.
+  /// \param joints of the island; may be empty
+  Result project(const Assembly& assembly, Index island, const ContactFinder& finder,
+                 const ObstaclePlaces& places, const Which& which, SolverChain& chain, State& state,
+                 Evaluation& evaluation, IslandJoints& joints);
+
+private:
+  void find(Index island, const ContactFinder& finder, const ObstaclePlaces& places, const Which& which,
+            double margin, const State& state, const Evaluation& evaluation);
+  /// Makes a better estimate for one body; false if there is none.
+  bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
+                 State& state, double depth);
+
+  /// Likewise for all bodies of an island that joints bind.
+  bool move_bound(const Assembly& assembly, Index island, std::span<const Contact> contacts,
+                  SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
+                  IslandJoints& joints);
+
+  std::vector<Contact> found_, contacts_;
+  ContactProblem problem_;
+  std::vector<double> unmoved_;       // q
+  std::vector<double> displacement_;  // d, over all velocities
+  std::vector<double> lengths_;       // of the assembly
+  std::vector<double> response_, multipliers_, moved_;
+  std::vector<double> towards_, of_joints_;  // d0; multipliers of joints
+};
+
+}  // namespace carom

@@ -1,0 +1,157 @@
+// Problem: choose the length of steps by the error of the smooth motion.
+
+#include <carom/integrators/time_stepping/step_controller.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// Whether contact took part in the same way: no impact, and the same contacts in the same modes.
+bool same_contacts(const StepReport& a, const StepReport& b) {
+  const auto same = [](const ContactRecord& x, const ContactRecord& y) {
+    return x.key == y.key && x.mode == y.mode && !x.impact && !y.impact;
+  };
+  return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same);
+}
+
+}  // namespace
+
+StepController::StepController(const Assembly& assembly, const TimeStepping& options)
+    : assembly_(&assembly), options_(options) {
+  if (options.control) lengths_ = assembly.length_scales();
+}
+
+void StepController::step(TimeStepper& stepper, State& state, Companion& companion, double limit,
+                          StepReport& report) {
+  // Of the length that the error allows, for the error of its estimate; and bounds of one change.
+  constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
+  constexpr double order = 3.0;  // of the error of one step
+  const StepControl& control = *options_.control;
+
+  const double wanted = companion.next_step > 0.0 ? companion.next_step : options_.step;
+  const double room = limit - state.time;
+  // Neither a sliver before the limit nor a step beyond it.
+  double step = wanted >= room ? room : std::min(wanted, 0.5 * room);
+  int rejected = 0;
+  for (;;) {
+    if (!(state.time + 0.5 * step > state.time)) fail_short(state.time, step);
+    const bool cut = step < wanted && rejected == 0;
+    const double end = step == room ? limit : state.time + step;
+    double asked = 0.0;
+    bool compared = false;
+    double found = 0.0;
+    try {
+      compared = try_step(stepper, state, companion, step, end);
+      if (compared) found = error(step);
+    } catch (const SolverError&) {
+      // A shorter step may succeed; at the smallest the error is the caller's.
+      if (step <= control.smallest) throw;
+      asked = most_shrinking * step;
+    }
+    if (asked == 0.0) {
+      const double factor =
+          found > 0.0 ? caution * std::pow(control.tolerance / found, 1.0 / order) : most_growth;
+      if (!compared || found <= control.tolerance) {
+        // What was cut for the limit's sake says nothing against the length before.
+        double next = compared ? step * std::clamp(factor, most_shrinking, most_growth) : step;
+        if (cut) next = std::max(next, wanted);
+        next = std::clamp(next, control.smallest, control.largest);
+        std::swap(state, halves_.state);
+        std::swap(companion, halves_.companion);
+        companion.next_step = next;
+        companion.statistics.rejected_steps += rejected;
+        if (!compared) ++companion.statistics.steps_across_impacts;
+        merge(report);
+        report.step = step;
+        report.control = {found, rejected, !compared, next};
+        return;
+      }
+      asked = step * std::clamp(factor, most_shrinking, caution);
+      if (step <= control.smallest) {
+        SolverFailure failure;
+        failure.time = state.time;
+        failure.step = step;
+        failure.residual = found;
+        throw SolverError("time stepping at t = " + to_text(state.time) + " s: error " + to_text(found) +
+                              " m at the smallest step, " + to_text(step) +
+                              " s; allowed: " + to_text(control.tolerance) + " m",
+                          std::move(failure));
+      }
+    }
+    step = std::max(asked, std::min(control.smallest, step));
+    ++rejected;
+  }
+}
+
+void StepController::fail_short(double time, double step) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.step = step;
+  throw SolverError("time stepping at t = " + to_text(time) + " s: a step of " + to_text(step) +
+                        " s is lost in the rounding of time; allowed: steps that move it (control.smallest)",
+                    std::move(failure));
+}
+
+/// Makes the step at once and in halves. Returns whether the two can be compared.
+bool StepController::try_step(TimeStepper& stepper, const State& state, const Companion& companion,
+                              double step, double end) {
+  whole_.state = state;
+  whole_.companion = companion;
+  halves_.state = state;
+  halves_.companion = companion;
+  stepper.step(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
+  stepper.step(halves_.state, halves_.companion, 0.5 * step, end, second_);
+  stepper.step(whole_.state, whole_.companion, step, end, of_whole_);
+  return same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_);
+}
+
+double StepController::error(double step) const {
+  constexpr double share = 1.0 / 3.0;  // of the halves in the difference: C h^3/4 of 3 C h^3/4
+  double largest = 0.0;
+  const auto take = [&](double difference, double length) {
+    largest = std::max(largest, std::abs(difference) * length);
+  };
+  for (const BodySlot& body : assembly_->layout()->bodies()) {
+    // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
+    for (Index i = 0; i < body.q_size; ++i) {
+      const double length = i < body.v_size ? lengths_[body.v + i] : 1.0;
+      take(whole_.state.q[body.q + i] - halves_.state.q[body.q + i], length);
+    }
+    for (Index i = 0; i < body.v_size; ++i) {
+      take(step * (whole_.state.v[body.v + i] - halves_.state.v[body.v + i]), lengths_[body.v + i]);
+    }
+  }
+  return share * largest;
+}
+
+void StepController::merge(StepReport& report) {
+  first_.findings.swap(report.findings);
+  std::swap(report, first_);
+  report.time = second_.time;
+  report.iteration = std::max(report.iteration, second_.iteration);
+  report.fallbacks += second_.fallbacks;
+  report.sweeps = std::max(report.sweeps, second_.sweeps);
+  report.local_sweeps = std::max(report.local_sweeps, second_.local_sweeps);
+  report.contraction = std::max(report.contraction, second_.contraction);
+  if (second_.worst_coupling_rate > report.worst_coupling_rate) {
+    report.worst_coupling = second_.worst_coupling;
+    report.worst_coupling_rate = second_.worst_coupling_rate;
+  }
+  report.energy_gain += second_.energy_gain;
+  report.lasting_gain += second_.lasting_gain;
+  report.projected = std::max(report.projected, second_.projected);
+  report.contacts.insert(report.contacts.end(), second_.contacts.begin(), second_.contacts.end());
+  for (std::size_t i = 0; i < report.joint_impulses.size(); ++i) {
+    JointReaction& sum = report.joint_impulses[i].impulse;
+    const JointReaction& part = second_.joint_impulses[i].impulse;
+    for (std::size_t k = 0; k < sum.force.size(); ++k) sum.force[k] += part.force[k];
+    sum.moment += part.moment;
+    report.joint_impulses[i].time = second_.joint_impulses[i].time;
+  }
+}
+
+}  // namespace carom

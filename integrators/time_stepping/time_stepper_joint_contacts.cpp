@@ -1,0 +1,96 @@
+// Problem: contact of bodies that joints make answer together, and friction in their joints.
+//
+// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
+// their rows G0 there: both are one impact,
+//
+//   K = M^-1 - M^-1 G0^T S^-1 G0 M^-1,   S = G0 M^-1 G0^T,   W = H K H^T,
+//
+// the same in all sweeps. The law sees velocities that the joints allow there,
+//
+//   gamma^+ = H (v - M^-1 G0^T S^-1 (G0 v + rate)),   v = v_{j+1}, rate at the end,
+//
+// which differ from H v_{j+1} by how far the joints turn within the step. With that, of contacts at one pin
+// (the ends of two bars that it joins) one follows from the other; with H v_{j+1} they would contradict each
+// other by that little, and large impulses would change from sweep to sweep. Impulses and answers do the work
+// P . (gamma^- + gamma^+)/2, and on drivers the multipliers times the mean of their rates, nothing else.
+
+#include <carom/integrators/time_stepping/time_stepper.h>
+
+#include <algorithm>
+
+namespace carom {
+
+/// Whether anything but friction in joints takes part.
+bool TimeStepper::strikes() const {
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [](const Contact& contact) { return !contact.rubs(); });
+}
+
+void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
+  ContactCluster& cluster = clusters_.front();
+  JointWork& work = joints_[island];
+  if (work.struck) {
+    // The guess of Newton's method couples bodies by more than their joints.
+    if (iteration_ == Iteration::linearly_implicit) cluster.couple(work.start);
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (contacts_[c].rubs()) cluster.press(c);
+    }
+  } else {
+    place_rubbing(island);
+    cluster.couple(work.mean);
+  }
+  const Range v = assembly_->islands()[island].v;
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
+  if (work.struck) allow_at_start(work, scratch_.data());
+  cluster.set_free_velocity(scratch_.data());
+  const PressedContacts pressed{.cluster = cluster,
+                                .contacts = contacts_,
+                                .pressure = work.pressure,
+                                .at = {middle_.view(), middle_evaluation_.rotation.data()},
+                                .duration = step,
+                                .multipliers = [this, island] {
+                                  add_contacts_to_joints(island);
+                                  return joints_[island].total.data();
+                                }};
+  if (!work.pressed.solve(pressed, chains_.front())) fail_contact(island, cluster, state, step);
+  std::fill(struck_.begin() + v.begin, struck_.begin() + v.end, 0.0);
+  cluster.apply_coupled(struck_.data());
+}
+
+/// Makes velocities obey the joints with the rows at the start and the rates at the end.
+void TimeStepper::allow_at_start(JointWork& work, double* velocity) {
+  work.start.residuals(JointLevel::change, velocity, work.left.data());
+  for (std::size_t row = 0; row < work.left.size(); ++row) work.left[row] += work.end.rate(row);
+  work.start.solve(work.left.data());
+  work.start.add_response(work.left.data(), velocity);
+}
+
+/// Friction in joints alone acts halfway, against the rates that coordinates have at the end.
+void TimeStepper::place_rubbing(Index island) {
+  const Range v = assembly_->islands()[island].v;
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Contact& contact = contacts_[c];
+    const JointView halfway{middle_.view(), middle_evaluation_.rotation.data()};
+    finder_.place_rubbing({trial_.view(), evaluation_.rotation.data()}, contact);
+    const double at_end = contact.times(1, scratch_.data());
+    finder_.place_rubbing(halfway, contact);
+    contact.obstacle_velocity_after[1] = contact.times(1, scratch_.data()) - at_end;
+    clusters_.front().press(c);
+  }
+}
+
+/// Impulses of the joints, with those by which they answer to contact.
+void TimeStepper::add_contacts_to_joints(Index island) {
+  JointWork& work = joints_[island];
+  IslandJoints& answering = work.struck ? work.start : work.mean;
+  const Range v = assembly_->islands()[island].v;
+  work.total = work.impulse;
+  std::fill(scratch_.begin() + v.begin, scratch_.begin() + v.end, 0.0);
+  clusters_.front().add_loads(1.0, scratch_.data());
+  answering.apply_inverse_mass(scratch_.data());
+  answering.hold(JointLevel::change, scratch_.data(), work.left.data());
+  for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
+}
+
+}  // namespace carom
