@@ -56,7 +56,7 @@ struct ContactForce {
 /// many: the smallest, or where that is outside a cone of friction one within all of them.
 struct Equilibrium {
   State state;                         ///< positions; velocities are 0
-  std::vector<JointForce> joints;      ///< by island, then by kind; stops are among the contacts
+  std::vector<JointForce> joints;      ///< by component, then by kind; stops are among the contacts
   std::vector<ContactForce> contacts;  ///< closed ones
   double residual = 0.0;               ///< largest force left over, moments over radii of gyration [N]
   double gap = 0.0;                    ///< largest gap left in joints and closed contacts [m, rad]

@@ -2,8 +2,8 @@
 
 #include <carom/analysis/inverse_dynamics.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
 
@@ -18,11 +18,11 @@ namespace {
 
 /// Drivers have a row, and act on the coordinate of another joint.
 template <class F>
-void for_drivers(const Assembly& assembly, Index island, F&& f) {
+void for_drivers(const Assembly& assembly, Index component, F&& f) {
   Index row = 0;
   for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
     const JointKind& joints = *assembly.joint_kinds()[kind];
-    const Range range = assembly.joints(island, kind);
+    const Range range = assembly.joints(component, kind);
     for (Index joint = range.begin; joint < range.end; ++joint, row += joints.rows()) {
       if (joints.rows() == 1 && joints.on_joint(joint).valid()) f(assembly.joint_id(kind, joint), row);
     }
@@ -71,8 +71,8 @@ void check_times(std::span<const double> times) {
 
 std::vector<JointId> drivers(const Assembly& assembly) {
   std::vector<JointId> found;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    for_drivers(assembly, island, [&](JointId id, Index) { found.push_back(id); });
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    for_drivers(assembly, component, [&](JointId id, Index) { found.push_back(id); });
   }
   return found;
 }
@@ -85,17 +85,17 @@ DriverForces driver_forces(const Assembly& assembly, const State& state) {
   result.accelerations.assign(state.v.size(), 0.0);
   Evaluation evaluation = make_evaluation(assembly);
   std::vector<double> multipliers;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate(assembly, island, state.view(), evaluation);
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate(assembly, component, state.view(), evaluation);
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       kind.apply_inverse_mass(slots, evaluation.force.data() + v, result.accelerations.data() + v);
     });
-    IslandJoints joints(assembly, island);
+    JointConstraints joints(assembly, component);
     if (joints.empty()) continue;
-    joints.locate({state.view(), evaluation.rotation.data()});
+    joints.update_and_factor({state.view(), evaluation.rotation.data()});
     multipliers.resize(joints.size());
-    joints.hold(JointLevel::acceleration, result.accelerations.data(), multipliers.data());
-    for_drivers(assembly, island, [&](JointId, Index row) {
+    joints.project(JointLevel::acceleration, result.accelerations.data(), multipliers.data());
+    for_drivers(assembly, component, [&](JointId, Index row) {
       result.forces.push_back(multipliers[row]);
       result.powers.push_back(multipliers[row] * joints.row(row).times(state.v.data()));
     });
@@ -124,8 +124,8 @@ InverseDynamics inverse_dynamics(const System& system, std::span<const double> t
         change[i] = passed * (last.state.v[i] + 0.5 * passed * last.accelerations[i]);
         state.v[i] = last.state.v[i] + passed * last.accelerations[i];
       }
-      for (Index island = 0; island < assembly.islands().size(); ++island) {
-        assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+      for (Index component = 0; component < assembly.components().size(); ++component) {
+        assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
           kind.advance(slots, last.state.q.data() + q, change.data() + v, state.q.data() + q);
         });
       }

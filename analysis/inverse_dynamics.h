@@ -24,11 +24,11 @@ struct DriverForces {
 
 /// Drivers and their forces over time.
 struct InverseDynamics {
-  std::vector<JointId> drivers;       ///< by island, then by kind
+  std::vector<JointId> drivers;       ///< by component, then by kind
   std::vector<DriverForces> samples;  ///< by time
 };
 
-/// Drivers of a model, in the order of their forces: by island.
+/// Drivers of a model, in the order of their forces: by component.
 [[nodiscard]] CAROM_API std::vector<JointId> drivers(const Assembly& assembly);
 
 /// Forces of the drivers at a state that satisfies the joints. Accelerations that drivers do not prescribe

@@ -31,7 +31,7 @@ RestingModel::RestingModel(const Assembly& assembly, const State& start, double 
                            std::string purpose)
     : assembly_(&assembly),
       purpose_(std::move(purpose)),
-      finder_(assembly),
+      detector_(assembly),
       state_(start),
       evaluation_(make_evaluation(assembly)) {
   check_state(assembly, start);
@@ -39,7 +39,7 @@ RestingModel::RestingModel(const Assembly& assembly, const State& start, double 
   std::fill(state_.v.begin(), state_.v.end(), 0.0);
   const std::vector<double> lengths = assembly.length_scales();
   lengths_ = Eigen::Map<const VectorXd>(lengths.data(), at(static_cast<Index>(lengths.size())));
-  finder_.place(state_.time, places_);
+  detector_.place(state_.time, places_);
   joints_of_body_.resize(assembly.layout()->bodies().size());
   supports_of_body_.resize(joints_of_body_.size());
 
@@ -54,10 +54,10 @@ RestingModel::RestingModel(const Assembly& assembly, const State& start, double 
     std::vector<std::size_t>& list = lists[body_at[v]];
     if (list.empty() || list.back() != what) list.push_back(what);
   };
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
     for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
       const JointKind& joints = *assembly.joint_kinds()[kind];
-      const Range range = assembly.joints(island, kind);
+      const Range range = assembly.joints(component, kind);
       for (Index slot = range.begin; slot < range.end && joints.rows() > 0; ++slot) {
         joint_rows_.resize(row + joints.rows());
         joints.pattern(slot, joint_rows_.data() + row);
@@ -71,8 +71,8 @@ RestingModel::RestingModel(const Assembly& assembly, const State& start, double 
       }
     }
   }
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state_.view(), evaluation_);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state_.view(), evaluation_);
   }
   find_supports(contact_tolerance);
   for (std::size_t i = 0; i < supports_.size(); ++i) {
@@ -98,11 +98,11 @@ void RestingModel::refuse_internals() const {
 }
 
 void RestingModel::find_supports(double tolerance) {
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    for (const ContactPair& pair : finder_.pairs(island)) {
+  for (Index component = 0; component < assembly_->components().size(); ++component) {
+    for (const ContactPair& pair : detector_.pairs(component)) {
       Support support;
       support.pair = pair;
-      finder_.contact(pair, state_.view(), evaluation_, places_, support.at);
+      detector_.contact(pair, state_.view(), evaluation_, places_, support.at);
       if (!(support.at.gap <= tolerance)) continue;
       const bool sticks = support.at.rows > 1 && support.at.law.sticking_friction() > 0.0;
       support.rows = sticks ? support.at.rows : 1;
@@ -142,11 +142,11 @@ void RestingModel::move(const Place& from, const VectorXd& x) {
   VectorXd part(change.size());
   const auto go = [&](double way) {
     part = way * change;
-    for (Index island = 0; island < assembly_->islands().size(); ++island) {
-      assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    for (Index component = 0; component < assembly_->components().size(); ++component) {
+      assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
         kind.advance(slots, from.q.data() + q, part.data() + v, state_.q.data() + q);
       });
-      evaluate_positions(*assembly_, island, state_.view(), evaluation_);
+      evaluate_positions(*assembly_, component, state_.view(), evaluation_);
     }
   };
   // What a place of touch slides is an integral along the way (a wheel has no place that stays): Gauss.
@@ -162,7 +162,7 @@ void RestingModel::move(const Place& from, const VectorXd& x) {
     Contact contact;
     for (Support& support : supports_) {
       if (support.rows == 1) continue;
-      finder_.contact(support.pair, state_.view(), evaluation_, places_, contact);
+      detector_.contact(support.pair, state_.view(), evaluation_, places_, contact);
       for (int row = 1; row < support.rows; ++row) {
         support.slid[static_cast<std::size_t>(row - 1)] += weights[node] * contact.times(row, change.data());
       }
@@ -195,16 +195,16 @@ void RestingModel::locate() {
     }
   }
   for (Support& support : supports_) {
-    finder_.contact(support.pair, view.state, evaluation_, places_, support.at);
+    detector_.contact(support.pair, view.state, evaluation_, places_, support.at);
     for (int i = 0; i < support.rows; ++i) {
       row.setZero();
       support.at.add_transposed(i, 1.0, row.data());
       take(at(support.row) + i, i == 0 ? support.at.gap : support.slid[static_cast<std::size_t>(i - 1)]);
     }
   }
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
+  for (Index component = 0; component < assembly_->components().size(); ++component) {
     double* const force = evaluation_.force.data();
-    evaluate_loads(*assembly_, island, view.state, evaluation_, {force, force, force});
+    evaluate_loads(*assembly_, component, view.state, evaluation_, {force, force, force});
   }
   loads_ = Eigen::Map<const VectorXd>(evaluation_.force.data(), size).cwiseQuotient(lengths_);
   // Rows that nearly follow from others are let go, like those of core/numerics/sparse_factors.h: pivots
@@ -299,15 +299,15 @@ void RestingModel::check_supports(double allowed) {
 
 void RestingModel::check_open_contacts(double tolerance) const {
   Contact contact;
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    for (const ContactPair& pair : finder_.pairs(island)) {
+  for (Index component = 0; component < assembly_->components().size(); ++component) {
+    for (const ContactPair& pair : detector_.pairs(component)) {
       if (std::any_of(supports_.begin(), supports_.end(),
                       [&](const Support& support) { return support.pair == pair; })) {
         continue;
       }
-      finder_.contact(pair, state_.view(), evaluation_, places_, contact);
+      detector_.contact(pair, state_.view(), evaluation_, places_, contact);
       if (contact.gap >= -tolerance) continue;
-      const std::string who = finder_.name(contact.key);
+      const std::string who = detector_.name(contact.key);
       throw failure(state_,
                     purpose_ + ": " + who + " is entered by " + to_text(-contact.gap) +
                         " m; allowed: contacts that are closed at the start, or stay open",

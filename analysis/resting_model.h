@@ -4,7 +4,7 @@
 /// A whole model at rest as equations with dense matrices, f(q) + G(q)^T l = 0, g(q) = 0, and their
 /// derivatives. Used for equilibria and modes.
 
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/joint_kind.h>
@@ -49,7 +49,7 @@ public:
   [[nodiscard]] const std::vector<Support>& supports() const { return supports_; }  ///< closed contacts
   [[nodiscard]] const Eigen::VectorXd& lengths() const { return lengths_; }         ///< by velocity
   /// Name of a closed contact.
-  [[nodiscard]] std::string name(const Support& support) const { return finder_.name(support.at.key); }
+  [[nodiscard]] std::string name(const Support& support) const { return detector_.name(support.at.key); }
   /// Name of the body that a velocity belongs to.
   [[nodiscard]] std::string body_name(Eigen::Index velocity) const;
   /// Name of what a row belongs to.
@@ -106,7 +106,7 @@ private:
 
   const Assembly* assembly_;
   std::string purpose_;
-  ContactFinder finder_;
+  Detector detector_;
   ObstaclePlaces places_;
   State state_;
   Evaluation evaluation_;

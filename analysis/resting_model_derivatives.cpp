@@ -57,12 +57,12 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
   by_position.setZero(size, size);
   by_velocity.setZero(size, size);
   std::vector<LoadDerivative> entries;
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    const EvaluationContext here{*assembly_, state_.view(), evaluation_, island};
+  for (Index component = 0; component < assembly_->components().size(); ++component) {
+    const EvaluationContext here{*assembly_, state_.view(), evaluation_, component};
     std::optional<DifferenceDerivatives> differences;
     for (Index index = 0; index < assembly_->force_kinds().size(); ++index) {
       const ForceKind& kind = *assembly_->force_kinds()[index];
-      const Range elements = assembly_->elements(island, index);
+      const Range elements = assembly_->elements(component, index);
       for (Index element = elements.begin; element < elements.end; ++element) {
         if (kind.has_derivatives()) {
           kind.derivatives(here, element, entries);
@@ -115,7 +115,7 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
             }
             for (const std::size_t j : supports_of_body_[body]) {
               const Support& support = supports_[j];
-              finder_.contact(support.pair, view.state, evaluation, places_, contact);
+              detector_.contact(support.pair, view.state, evaluation, places_, contact);
               for (int row = 0; row < support.rows; ++row) {
                 contact.add_transposed(row, multiplier(at(support.row) + row), forces.data());
               }

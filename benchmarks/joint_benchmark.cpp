@@ -5,7 +5,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 
 #include "benchmarks/allocation_meter.h"
 
@@ -63,7 +63,7 @@ System net(int side) {
 }
 
 /// G M^-1 G^T as Eigen stores it.
-Eigen::SparseMatrix<double> matrix_of(const Assembly& assembly, const IslandJoints& joints) {
+Eigen::SparseMatrix<double> matrix_of(const Assembly& assembly, const JointConstraints& joints) {
   std::vector<double> response(assembly.layout()->v_size(), 0.0), inverse(response.size(), 1.0);
   joints.apply_inverse_mass(inverse.data());
   std::vector<std::vector<std::size_t>> rows_of(assembly.layout()->v_size());
@@ -113,14 +113,14 @@ void evaluate(benchmark::State& state, const System& system, double parts) {
   const Assembly assembly(system);
   const State start = assembly.initial_state();
   Evaluation evaluation = make_evaluation(assembly);
-  IslandJoints joints(assembly, 0);
+  JointConstraints joints(assembly, 0);
   std::vector<double> acceleration(start.v.size());
   const auto once = [&] {
     carom::evaluate(assembly, 0, start.view(), evaluation);
     std::copy(evaluation.force.begin(), evaluation.force.end(), acceleration.begin());
-    joints.locate({start.view(), evaluation.rotation.data()});
+    joints.update_and_factor({start.view(), evaluation.rotation.data()});
     joints.apply_inverse_mass(acceleration.data());
-    joints.hold(JointLevel::acceleration, acceleration.data());
+    joints.project(JointLevel::acceleration, acceleration.data());
     benchmark::DoNotOptimize(acceleration.data());
   };
   once();

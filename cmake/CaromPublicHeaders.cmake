@@ -80,7 +80,7 @@ set(carom_public_headers
     integrators/simulation.h
     joints/actuator.h
     joints/applied_load.h
-    joints/binding.h
+    joints/constraint_part.h
     joints/bushing.h
     joints/drag.h
     joints/driver.h

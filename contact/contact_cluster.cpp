@@ -25,7 +25,7 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
   contacts_ = contacts;
   solved_ = changed_modes_ = false;
-  if (contacts.size() == 1 && contacts[0].rows == 2 && !contacts[0].rubs() &&
+  if (contacts.size() == 1 && contacts[0].rows == 2 && !contacts[0].has_dry_friction() &&
       is_one_planar_contact(problem_)) {
     // The same form as before, which is the hot path.
     const Contact& contact = contacts[0];
@@ -77,7 +77,7 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
       before_[row] = contact.velocity(i, velocity_before);
       restitution_[row] = i == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
       RowSet& set = problem_.sets()[row];
-      if (contact.rubs()) {
+      if (contact.has_dry_friction()) {
         press(c);
       } else if (i == 0) {
         set.kind = SetKind::half_line;
@@ -131,9 +131,10 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
   problem_.group();
 }
 
-void ContactCluster::couple(IslandJoints& joints) {
+void ContactCluster::couple(JointConstraints& joints) {
   // Joints count velocities from the first of all. Little is captured, so that nothing is allocated.
-  couple(joints.velocities(), [&joints](double* x) { joints.respond(x - joints.velocities().begin); });
+  couple(joints.velocities(),
+         [&joints](double* x) { joints.constrained_response(x - joints.velocities().begin); });
   // A row that the joints hold fast (of a corner at a pin to the ground) is left without any response, in
   // place of one by rounding, against which impulses would be as large as its inverse: nothing acts along it.
   constexpr double held = 1e-12;  // of the response without joints: rounding
@@ -199,14 +200,14 @@ void ContactCluster::add_loads(double scale, double* load) const {
 void ContactCluster::press(std::size_t contact) {
   const Contact& at = contacts_[contact];
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact] + 1)];
-  const double slides = slides_[contact] * at.pressed, bound = at.friction * at.pressed;
+  const double slides = slides_[contact] * at.friction_bound, bound = at.friction * at.friction_bound;
   set.kind = SetKind::interval;
   set.lower = slides_[contact] != 0.0 ? slides : -bound;
   set.upper = slides_[contact] != 0.0 ? slides : bound;
 }
 
 void ContactCluster::slide(std::size_t contact, double ratio) {
-  if (contacts_[contact].rubs()) {
+  if (contacts_[contact].has_dry_friction()) {
     slides_[contact] = ratio;
     press(contact);
     problem_.group();

@@ -11,7 +11,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/contact.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ public:
   /// symmetric W takes one half; that is good enough for set_velocity().
   void couple(Range v, const std::function<void(double*)>& solve);
   /// Likewise where joints bind the bodies, which must have been located.
-  void couple(IslandJoints& joints);
+  void couple(JointConstraints& joints);
   /// Likewise for impulses that act with the answer of the joints, C P, C = K H^T from couple(joints):
   /// W = C^T M A^-1 M C. \param mass p = M x
   void couple_again(const std::function<void(const double* x, double* p)>& mass,

@@ -32,10 +32,10 @@ private:
 
 Assembly::Assembly(System system) : system_(std::move(system)) {
   if (system_.bodies().empty()) throw ModelError("system: number of bodies is 0; allowed: at least one body");
-  const std::vector<Index> island_of_body = order_bodies();
-  cut_islands();
-  order_joints(island_of_body);
-  order_elements(island_of_body);
+  const std::vector<Index> component_of_body = order_bodies();
+  cut_components();
+  order_joints(component_of_body);
+  order_elements(component_of_body);
   close_blocks();
   place_internals();
   unfinished_layout_.reset();
@@ -63,9 +63,9 @@ std::vector<Index> Assembly::order_bodies() {
     }
   }
 
-  // Islands by their first body, then kinds, then order of insertion.
+  // Components by their first body, then kinds, then order of insertion.
   struct Key {
-    Index island, kind, serial, slot;
+    Index component, kind, serial, slot;
     auto operator<=>(const Key&) const = default;
   };
   std::vector<Key> keys;
@@ -81,14 +81,14 @@ std::vector<Index> Assembly::order_bodies() {
   std::vector<std::vector<Index>> order(kinds);
   std::vector<BodySlot> slots;
   slots.reserve(keys.size());
-  std::vector<Index> island_of_body(registry.next_serial(), none);
+  std::vector<Index> component_of_body(registry.next_serial(), none);
   Index q = 0, v = 0, rotation = 0, root = none;
   for (const Key& key : keys) {
     const BodyKind& kind = *registry.entries()[key.kind].kind;
     const auto body = static_cast<Index>(slots.size());
-    if (key.island != root) {
-      root = key.island;
-      islands_.push_back({{body, body}, {q, q}, {v, v}, {}, {}, {}});
+    if (key.component != root) {
+      root = key.component;
+      components_.push_back({{body, body}, {q, q}, {v, v}, {}, {}, {}});
       for (Index k = 0; k < kinds; ++k) {
         const auto first = static_cast<Index>(order[k].size());
         body_slots_.push_back({first, first});
@@ -104,17 +104,17 @@ std::vector<Index> Assembly::order_bodies() {
     q += slot.q_size;
     v += slot.v_size;
     order[key.kind].push_back(key.slot);
-    Island& island = islands_.back();
-    island.bodies.end = body + 1;
-    island.q.end = q;
-    island.v.end = v;
-    ++body_slots_[(islands_.size() - 1) * kinds + key.kind].end;
-    island_of_body[key.serial] = static_cast<Index>(islands_.size() - 1);
+    Component& component = components_.back();
+    component.bodies.end = body + 1;
+    component.q.end = q;
+    component.v.end = v;
+    ++body_slots_[(components_.size() - 1) * kinds + key.kind].end;
+    component_of_body[key.serial] = static_cast<Index>(components_.size() - 1);
   }
   for (Index k = 0; k < kinds; ++k) body_kinds_.push_back(registry.entries()[k].kind->arranged(order[k]));
 
   layout_ = unfinished_layout_ = std::make_shared<Layout>(system_.dimension(), system_.token(), slots);
-  return island_of_body;
+  return component_of_body;
 }
 
 std::vector<double> Assembly::masses() const {
@@ -135,11 +135,11 @@ std::vector<double> Assembly::length_scales() const {
   return lengths;
 }
 
-void Assembly::order_joints(const std::vector<Index>& island_of_body) {
+void Assembly::order_joints(const std::vector<Index>& component_of_body) {
   joints_ = std::make_shared<JointTable>();
   const auto& entries = system_.joint_kinds().entries();
   const auto kinds = static_cast<Index>(entries.size());
-  joint_slots_.assign(islands_.size() * kinds, {});
+  joint_slots_.assign(components_.size() * kinds, {});
   joint_serials_.resize(kinds);
   if (system_.joints().empty() && kinds == 0) return;
   const auto bodies = static_cast<Index>(layout_->bodies().size());
@@ -151,7 +151,7 @@ void Assembly::order_joints(const std::vector<Index>& island_of_body) {
   for (Index k = 0; k < kinds; ++k) {
     const JointKind& kind = *entries[k].kind;
     struct Key {
-      Index island, slot;
+      Index component, slot;
       auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys;
@@ -160,7 +160,7 @@ void Assembly::order_joints(const std::vector<Index>& island_of_body) {
       ends.clear();
       kind.ends(slot, ends);
       std::erase(ends, ground);
-      keys.push_back({island_of_body[ends[0].serial], slot});
+      keys.push_back({component_of_body[ends[0].serial], slot});
       const Index first = layout_->index(ends[0]);
       for (const BodyId end : ends) {
         unions.join(first, layout_->index(end));
@@ -172,7 +172,7 @@ void Assembly::order_joints(const std::vector<Index>& island_of_body) {
     order.reserve(keys.size());
     for (const Key& key : keys) {
       const auto place = static_cast<Index>(order.size());
-      Range& range = joint_slots_[key.island * kinds + k];
+      Range& range = joint_slots_[key.component * kinds + k];
       if (range.empty()) range.begin = range.end = place;
       ++range.end;
       order.push_back(key.slot);
@@ -186,9 +186,9 @@ void Assembly::order_joints(const std::vector<Index>& island_of_body) {
   for (Index body = 0; body < bodies; ++body) groups_[body] = unions.find(body);
 }
 
-bool Assembly::has_joints(Index island) const {
+bool Assembly::has_joints(Index component) const {
   for (Index kind = 0; kind < joints_->kinds.size(); ++kind) {
-    if (!joints(island, kind).empty()) return true;
+    if (!joints(component, kind).empty()) return true;
   }
   return false;
 }
@@ -197,17 +197,17 @@ JointId Assembly::joint_id(Index kind, Index slot) const {
   return {joint_serials_[kind][slot], system_.token()};
 }
 
-void Assembly::order_elements(const std::vector<Index>& island_of_body) {
+void Assembly::order_elements(const std::vector<Index>& component_of_body) {
   const auto& entries = system_.force_kinds().entries();
   const auto kinds = static_cast<Index>(entries.size());
-  element_slots_.assign(islands_.size() * kinds, {});
-  bridges_.assign(islands_.size() * kinds, {});
+  element_slots_.assign(components_.size() * kinds, {});
+  bridges_.assign(components_.size() * kinds, {});
   block_elements_.assign(blocks_.size() * kinds, {});
   std::vector<BodyId> ends;
   for (Index k = 0; k < kinds; ++k) {
     const ForceKind& kind = *entries[k].kind;
     struct Key {
-      Index island, part, slot;  // part: as part_of() has it
+      Index component, part, slot;  // part: as part_of() has it
       auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys;
@@ -216,17 +216,17 @@ void Assembly::order_elements(const std::vector<Index>& island_of_body) {
       ends.clear();
       kind.ends(slot, ends);
       std::erase(ends, ground);
-      const Index island = ends.empty() ? 0 : island_of_body[ends[0].serial];
-      keys.push_back({island, part_of(island, ends), slot});
+      const Index component = ends.empty() ? 0 : component_of_body[ends[0].serial];
+      keys.push_back({component, part_of(component, ends), slot});
     }
     std::sort(keys.begin(), keys.end());
     std::vector<Index> order;
     order.reserve(keys.size());
     for (const Key& key : keys) {
-      const Range blocks = islands_[key.island].blocks;
+      const Range blocks = components_[key.component].blocks;
       Range& part = key.part < blocks.size() ? block_elements_[(blocks.begin + key.part) * kinds + k]
-                                             : bridges_[key.island * kinds + k];
-      for (Range* const range : {&element_slots_[key.island * kinds + k], &part}) {
+                                             : bridges_[key.component * kinds + k];
+      for (Range* const range : {&element_slots_[key.component * kinds + k], &part}) {
         if (range->empty()) range->begin = range->end = static_cast<Index>(order.size());
         ++range->end;
       }
@@ -234,13 +234,13 @@ void Assembly::order_elements(const std::vector<Index>& island_of_body) {
     }
     if (kind.is_field()) {
       const Range all{0, kind.size()};
-      for (Index island = 0; island < islands_.size(); ++island) {
-        element_slots_[island * kinds + k] = all;
-        bridges_[island * kinds + k] = kind.works_in_parts() ? Range{} : all;
+      for (Index component = 0; component < components_.size(); ++component) {
+        element_slots_[component * kinds + k] = all;
+        bridges_[component * kinds + k] = kind.works_in_parts() ? Range{} : all;
       }
       for (Index block = 0; block < blocks_.size(); ++block) {
         block_elements_[block * kinds + k] = kind.works_in_parts() ? all : Range{};
-        blocks_[block].bridged = blocks_[block].bridged || !kind.works_in_parts();
+        blocks_[block].loaded_across_runs = blocks_[block].loaded_across_runs || !kind.works_in_parts();
       }
     }
     force_kinds_.push_back(kind.arranged(order, *layout_));
@@ -253,18 +253,18 @@ void Assembly::place_internals() {
   Index z = 0;
   std::vector<InternalSlot> internals;
   std::vector<std::vector<Index>> first(force_kinds_.size());
-  for (Index island = 0; island < islands_.size(); ++island) {
-    islands_[island].z.begin = z;
+  for (Index component = 0; component < components_.size(); ++component) {
+    components_[component].z.begin = z;
     for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
       const Index size = force_kinds_[kind]->internal_size();
       if (size == 0) continue;
-      const Range range = elements(island, kind);
+      const Range range = elements(component, kind);
       for (Index element = range.begin; element < range.end; ++element, z += size) {
         internals.push_back({element_id(kind, element).serial, z, size});
         first[kind].push_back(z);
       }
     }
-    islands_[island].z.end = z;
+    components_[component].z.end = z;
   }
   if (internals.empty()) return;
   for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
@@ -281,11 +281,11 @@ State Assembly::initial_state() const {
                                                               state.v.data() + slot.v);
   }
   Index z = 0;
-  for (Index island = 0; island < islands_.size(); ++island) {
+  for (Index component = 0; component < components_.size(); ++component) {
     for (Index kind = 0; kind < force_kinds_.size(); ++kind) {
       const Index size = force_kinds_[kind]->internal_size();
       if (size == 0) continue;
-      const Range range = elements(island, kind);
+      const Range range = elements(component, kind);
       for (Index element = range.begin; element < range.end; ++element, z += size) {
         force_kinds_[kind]->initial_internal(element, state.z.data() + z);
       }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// A system made ready to run: bodies and elements ordered so that every island is a range of every array.
+/// A system made ready to run: bodies and elements ordered so that every component is a range of every array.
 
 #include <carom/core/export.h>
 #include <carom/core/force_kind.h>
@@ -18,7 +18,7 @@ namespace carom {
 
 /// A connected component: bodies connected by force elements or joints. Ground, obstacles and fields do not
 /// connect bodies.
-struct Island {
+struct Component {
   Range bodies;  ///< in the order of assembly
   Range q;       ///< coordinates
   Range v;       ///< velocities
@@ -27,17 +27,17 @@ struct Island {
   Range runs;    ///< see Assembly::runs()
 };
 
-/// Consecutive bodies of an island. Large islands are divided into blocks, whose number depends on the size
-/// of the island only; several threads may share a loop over them.
+/// Consecutive bodies of a component. Large components are divided into blocks, whose number depends on the
+/// size of the component only; several threads may share a loop over them.
 struct Block {
-  Range bodies;          ///< in the order of assembly
-  Range v;               ///< velocities
-  Index run = 0;         ///< its run, see Assembly::runs()
-  Index closed_by = 0;   ///< last block of its run whose elements act on it or on blocks before it
-  bool bridged = false;  ///< bridges act on it
+  Range bodies;                     ///< in the order of assembly
+  Range v;                          ///< velocities
+  Index run = 0;                    ///< its run, see Assembly::runs()
+  Index last_loading_block = 0;     ///< last block of its run whose elements act on it or on blocks before it
+  bool loaded_across_runs = false;  ///< bridges act on it
 };
 
-/// Some blocks of an island with those around them. All in ascending order.
+/// Some blocks of a component with those around them. All in ascending order.
 struct Surroundings {
   std::vector<Index> inner;    ///< the blocks themselves
   std::vector<Index> loading;  ///< whose elements, Assembly::elements_up_to(), may act on them
@@ -54,8 +54,8 @@ public:
   [[nodiscard]] const System& system() const { return system_; }
   /// Places of bodies.
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
-  /// Islands, in the order of assembly.
-  [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
+  /// Components, in the order of assembly.
+  [[nodiscard]] const std::vector<Component>& components() const { return components_; }
   /// Masses of the bodies, in the order of assembly [kg]. Made at each call.
   [[nodiscard]] std::vector<double> masses() const;
   /// Lengths that weight changes of the velocity coordinates (BodyKind::length_scale). Made at each
@@ -64,36 +64,36 @@ public:
 
   /// Kinds of bodies in the order of assembly, with the data of a run. The description is in system().
   [[nodiscard]] const std::vector<std::unique_ptr<BodyKind>>& body_kinds() const { return body_kinds_; }
-  /// Slots of a kind that belong to an island.
-  [[nodiscard]] Range body_slots(Index island, Index kind) const {
-    return body_slots_[island * body_kinds_.size() + kind];
+  /// Slots of a kind that belong to a component.
+  [[nodiscard]] Range body_slots(Index component, Index kind) const {
+    return body_slots_[component * body_kinds_.size() + kind];
   }
-  /// Blocks of all islands.
+  /// Blocks of all components.
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   /// Approximate number of bodies of a block: the cache of a core can hold the data of several blocks.
   static constexpr Index block_size = 512;
-  /// Runs of all islands: consecutive blocks, which one thread computes in their order, so that computations
-  /// for a block can wait for its neighbours and still find its data in the cache.
+  /// Runs of all components: consecutive blocks, which one thread computes in their order, so that
+  /// computations for a block can wait for its neighbours and still find its data in the cache.
   [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }
-  /// Most runs of one island.
+  /// Most runs of one component.
   static constexpr Index most_runs = 8;
-  /// Finds the neighbours of the inner blocks, which are of one island. False if bridges act on one of them:
-  /// its loads may then depend on any block.
+  /// Finds the neighbours of the inner blocks, which are of one component. False if bridges act on one of
+  /// them: its loads may then depend on any block.
   [[nodiscard]] bool surround(Surroundings& blocks) const;
 
   /// Kinds of force elements, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
-  /// Elements of a kind that act in an island.
-  [[nodiscard]] Range elements(Index island, Index kind) const {
-    return element_slots_[island * force_kinds_.size() + kind];
+  /// Elements of a kind that act in a component.
+  [[nodiscard]] Range elements(Index component, Index kind) const {
+    return element_slots_[component * force_kinds_.size() + kind];
   }
   /// Those of them that act on this block, and otherwise only on blocks of its run before it.
   [[nodiscard]] Range elements_up_to(Index block, Index kind) const {
     return block_elements_[block * force_kinds_.size() + kind];
   }
   /// Those of them that act on several runs.
-  [[nodiscard]] Range bridges(Index island, Index kind) const {
-    return bridges_[island * force_kinds_.size() + kind];
+  [[nodiscard]] Range bridges(Index component, Index kind) const {
+    return bridges_[component * force_kinds_.size() + kind];
   }
   /// Identity of an arranged element.
   [[nodiscard]] ElementId element_id(Index kind, Index slot) const {
@@ -104,26 +104,26 @@ public:
 
   /// Kinds of joints, arranged.
   [[nodiscard]] const std::vector<std::unique_ptr<JointKind>>& joint_kinds() const { return joints_->kinds; }
-  /// Joints of a kind in an island.
-  [[nodiscard]] Range joints(Index island, Index kind) const {
-    return joint_slots_[island * joints_->kinds.size() + kind];
+  /// Joints of a kind in a component.
+  [[nodiscard]] Range joints(Index component, Index kind) const {
+    return joint_slots_[component * joints_->kinds.size() + kind];
   }
-  /// True if an island has joints.
-  [[nodiscard]] bool has_joints(Index island) const;
+  /// True if a component has joints.
+  [[nodiscard]] bool has_joints(Index component) const;
   /// Identity of an arranged joint.
   [[nodiscard]] JointId joint_id(Index kind, Index slot) const;
   /// Mechanism of a body (the bodies connected to it by joints), named by its first body; the body itself
   /// without joints.
-  [[nodiscard]] Index group(Index body) const { return groups_.empty() ? body : groups_[body]; }
+  [[nodiscard]] Index mechanism(Index body) const { return groups_.empty() ? body : groups_[body]; }
   /// True if the body has a joint.
-  [[nodiscard]] bool is_bound(Index body) const { return !groups_.empty() && bound_[body] != 0; }
+  [[nodiscard]] bool is_jointed(Index body) const { return !groups_.empty() && bound_[body] != 0; }
 
-  /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of an island, kind by kind.
+  /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of a component, kind by kind.
   template <class F>
-  void for_bodies(Index island, F&& f) const {
-    Index body = islands_[island].bodies.begin;
+  void for_bodies(Index component, F&& f) const {
+    Index body = components_[component].bodies.begin;
     for (Index kind = 0; kind < body_kinds_.size(); ++kind) {
-      const Range slots = body_slots(island, kind);
+      const Range slots = body_slots(component, kind);
       if (slots.empty()) continue;
       const BodySlot first = layout_->bodies()[body];
       f(*body_kinds_[kind], slots, first.q, first.v, first.rotation);
@@ -131,12 +131,12 @@ public:
     }
   }
 
-  /// The same for some consecutive bodies of an island.
+  /// The same for some consecutive bodies of a component.
   template <class F>
-  void for_bodies(Index island, Range bodies, F&& f) const {
+  void for_bodies(Index component, Range bodies, F&& f) const {
     for (Index body = bodies.begin; body < bodies.end;) {
       const BodySlot first = layout_->bodies()[body];
-      const Index last = std::min(body_slots(island, first.kind).end, first.slot + (bodies.end - body));
+      const Index last = std::min(body_slots(component, first.kind).end, first.slot + (bodies.end - body));
       f(*body_kinds_[first.kind], Range{first.slot, last}, first.q, first.v, first.rotation);
       body += last - first.slot;
     }
@@ -146,19 +146,19 @@ public:
   [[nodiscard]] State initial_state() const;
 
 private:
-  // Returns the island of each body, by serial number.
+  // Returns the component of each body, by serial number.
   std::vector<Index> order_bodies();
-  void order_elements(const std::vector<Index>& island_of_body);
-  void order_joints(const std::vector<Index>& island_of_body);
+  void order_elements(const std::vector<Index>& component_of_body);
+  void order_joints(const std::vector<Index>& component_of_body);
   void place_internals();
-  void cut_islands();
-  [[nodiscard]] Index part_of(Index island, const std::vector<BodyId>& ends);
+  void cut_components();
+  [[nodiscard]] Index part_of(Index component, const std::vector<BodyId>& ends);
   void close_blocks();
 
   System system_;
   std::shared_ptr<const Layout> layout_;
   std::shared_ptr<Layout> unfinished_layout_;  // the same, while it is being made
-  std::vector<Island> islands_;
+  std::vector<Component> components_;
   std::vector<Block> blocks_;
   std::vector<Range> runs_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
@@ -173,81 +173,85 @@ private:
   std::vector<std::vector<Index>> element_order_;  // by kind: described slots, empty if the order is the same
 };
 
-/// Fills the position group of `out` for one island.
-CAROM_API void evaluate_positions(const Assembly& assembly, Index island, const StateView& state,
+/// Fills the position group of `out` for one component.
+CAROM_API void evaluate_positions(const Assembly& assembly, Index component, const StateView& state,
                                   Evaluation& out);
 
-/// A computation for a block, done while its data are in the cache; called with its place in the island.
+/// A computation for a block, done while its data are in the cache; called with its place in the component.
 using BlockTask = FunctionRef<void(const Block&, Index)>;
 
-/// Additional computations for each block of an island.
+/// Additional computations for each block of a component.
 struct BlockTasks {
   BlockTask first = {};  ///< before its loads are evaluated
   BlockTask last = {};   ///< after all of them are evaluated
 };
 
-/// Zeroes the given arrays over one island and adds the loads of all its elements. The position group of
+/// Zeroes the given arrays over one component and adds the loads of all its elements. The position group of
 /// `evaluation` must be up to date. Arrays may coincide.
-CAROM_API void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
+CAROM_API void evaluate_loads(const Assembly& assembly, Index component, const StateView& state,
                               const Evaluation& evaluation, const Loads& loads,
                               const Workers& workers = Workers(), const BlockTasks& tasks = {});
 
 /// Loads on the inner blocks only: zeroes the given arrays over the touched blocks and adds the loads of the
 /// loading ones. Only the loads on the inner blocks are then complete, with the same rounding as by
 /// evaluate_loads().
-CAROM_API void evaluate_loads_within(const Assembly& assembly, Index island, const Surroundings& blocks,
+CAROM_API void evaluate_loads_within(const Assembly& assembly, Index component, const Surroundings& blocks,
                                      const StateView& state, const Evaluation& evaluation,
                                      const Loads& loads);
 
 /// evaluate_loads(), and adds the potential energies of the elements to `stored`.
-CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
-                                             const Evaluation& evaluation, const Loads& loads,
-                                             StoredEnergies& stored, const Workers& workers = Workers(),
+CAROM_API void evaluate_loads_and_potentials(const Assembly& assembly, Index component,
+                                             const StateView& state, const Evaluation& evaluation,
+                                             const Loads& loads, StoredEnergies& stored,
+                                             const Workers& workers = Workers(),
                                              const BlockTasks& tasks = {});
 
 /// evaluate_loads(), then evaluate_loads_and_potentials() at the state that `second_tasks.first` computes,
-/// block by block as soon as the first evaluation no longer needs the block: for large islands, whose data
+/// block by block as soon as the first evaluation no longer needs the block: for large components, whose data
 /// are then read from memory once instead of twice. The rounding of sums differs from that of the two
 /// functions.
-CAROM_API void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
+CAROM_API void evaluate_loads_twice(const Assembly& assembly, Index component, const StateView& state,
                                     const Evaluation& evaluation, const Loads& first,
                                     const BlockTasks& first_tasks, const Loads& second,
                                     const BlockTasks& second_tasks, StoredEnergies& stored,
                                     const Workers& workers = Workers());
 
-/// Adds the kinetic energy of one island.
-CAROM_API void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state,
+/// Adds the kinetic energy of one component.
+CAROM_API void add_kinetic_energy(const Assembly& assembly, Index component, const StateView& state,
                                   StoredEnergies& out);
 
-/// Zeroes the given arrays over one island and adds the mean loads of all its elements over a step
+/// Zeroes the given arrays over one component and adds the mean loads of all its elements over a step
 /// (ForceKind::evaluate_mean).
-CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step,
+CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index component, const StepContext& step,
                                    const Loads& loads, const Workers& workers = Workers(),
                                    const BlockTasks& tasks = {});
 
-/// True if mean loads or inner losses of elements of an island depend on the state in the middle of the step.
-[[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index island);
+/// True if mean loads or inner losses of elements of a component depend on the state in the middle of the
+/// step.
+[[nodiscard]] CAROM_API bool uses_middle(const Assembly& assembly, Index component);
 
-/// Advances the internal variables of one island to the end of a step (ForceKind::advance_internal). Returns
-/// the first element for which that failed, an invalid identity if there is none.
-[[nodiscard]] CAROM_API ElementId advance_internals(const Assembly& assembly, Index island,
+/// Advances the internal variables of one component to the end of a step (ForceKind::advance_internal).
+/// Returns the first element for which that failed, an invalid identity if there is none.
+[[nodiscard]] CAROM_API ElementId advance_internals(const Assembly& assembly, Index component,
                                                     const StepContext& step, double* z);
 
-/// Energy lost inside the elements of one island over a step [J].
-[[nodiscard]] CAROM_API double internal_loss(const Assembly& assembly, Index island, const StepContext& step);
+/// Energy lost inside the elements of one component over a step [J].
+[[nodiscard]] CAROM_API double internal_loss(const Assembly& assembly, Index component,
+                                             const StepContext& step);
 
-/// Position group and the sum of all loads (Evaluation::force) of one island.
-CAROM_API void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out);
+/// Position group and the sum of all loads (Evaluation::force) of one component.
+CAROM_API void evaluate(const Assembly& assembly, Index component, const StateView& state, Evaluation& out);
 
-/// Adds the potential energies of one island. The position group of `evaluation` must be up to date.
-CAROM_API void add_potentials(const Assembly& assembly, Index island, const StateView& state,
+/// Adds the potential energies of one component. The position group of `evaluation` must be up to date.
+CAROM_API void add_potentials(const Assembly& assembly, Index component, const StateView& state,
                               const Evaluation& evaluation, StoredEnergies& out);
 
-/// Adds the stored energies of one island. The position group of `evaluation` must be up to date.
-CAROM_API void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
+/// Adds the stored energies of one component. The position group of `evaluation` must be up to date.
+CAROM_API void add_stored_energies(const Assembly& assembly, Index component, const StateView& state,
                                    const Evaluation& evaluation, StoredEnergies& out);
 
-/// Stored energies of all islands. \param evaluation a workspace, whose position group is brought up to date
+/// Stored energies of all components. \param evaluation a workspace, whose position group is brought up to
+/// date
 [[nodiscard]] CAROM_API StoredEnergies stored_energies(const Assembly& assembly, const StateView& state,
                                                        Evaluation& evaluation);
 

@@ -12,8 +12,8 @@ Evaluation make_evaluation(const Assembly& assembly) {
   return evaluation;
 }
 
-void evaluate_positions(const Assembly& assembly, Index island, const StateView& state, Evaluation& out) {
-  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
+void evaluate_positions(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
+  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
     if (kind.has_orientation()) kind.rotations(slots, state.q + q, out.rotation.data() + rotation);
   });
 }
@@ -27,21 +27,21 @@ void zero(Range v, const Loads& loads) {
   if (loads.external != loads.conservative) clear(loads.external);
 }
 
-/// Calls f(kind, elements, index of the kind) for the kinds that act in an island.
+/// Calls f(kind, elements, index of the kind) for the kinds that act in a component.
 template <class F>
-void for_kinds(const Assembly& assembly, Index island, F&& f) {
+void for_kinds(const Assembly& assembly, Index component, F&& f) {
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(island, kind);
+    const Range elements = assembly.elements(component, kind);
     if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, kind);
   }
 }
 
-/// A way through the blocks of an island, on which f(kind, elements, bodies, run) adds loads; the run is
-/// counted from the first of the island, the bridges come as one more.
+/// A way through the blocks of a component, on which f(kind, elements, bodies, run) adds loads; the run is
+/// counted from the first of the component, the bridges come as one more.
 template <class F>
 struct Pass {
   const Assembly& assembly;
-  const Island& all;
+  const Component& all;
   const Loads& loads;
   const BlockTasks& tasks;
   const F& f;
@@ -61,9 +61,9 @@ struct Pass {
     }
   }
   void bridge() const {
-    const auto island = static_cast<Index>(&all - assembly.islands().data());
+    const auto component = static_cast<Index>(&all - assembly.components().data());
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      const Range elements = assembly.bridges(island, kind);
+      const Range elements = assembly.bridges(component, kind);
       if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.runs.size());
     }
   }
@@ -75,13 +75,13 @@ struct Pass {
   void for_bridged(const Workers& workers, G&& g) const {
     workers.for_each(all.blocks.size(), [&](Index part) {
       const Index index = all.blocks.begin + part;
-      if (assembly.blocks()[index].bridged) g(index);
+      if (assembly.blocks()[index].loaded_across_runs) g(index);
     });
   }
 };
 
 template <class F>
-Pass(const Assembly&, const Island&, const Loads&, const BlockTasks&, const F&) -> Pass<F>;
+Pass(const Assembly&, const Component&, const Loads&, const BlockTasks&, const F&) -> Pass<F>;
 
 /// Run by run, bridges last.
 template <class F>
@@ -93,8 +93,8 @@ void go(const Pass<F>& pass, const Workers& workers) {
     for (Index index = run.begin; index < run.end; ++index) {
       pass.open(index);
       pass.load(index);
-      for (; to_close <= index && blocks[to_close].closed_by <= index; ++to_close) {
-        if (!blocks[to_close].bridged) pass.close(to_close);
+      for (; to_close <= index && blocks[to_close].last_loading_block <= index; ++to_close) {
+        if (!blocks[to_close].loaded_across_runs) pass.close(to_close);
       }
     }
   });
@@ -114,14 +114,14 @@ void go_twice(const Pass<First>& first, const Pass<Second>& second, const Worker
     const Range run = first.assembly.runs()[first.all.runs.begin + i];
     Index to_follow = run.begin, to_close = run.begin;
     for (Index index = run.begin; index < run.end; ++index) {
-      if (!blocks[index].bridged) first.open(index);
+      if (!blocks[index].loaded_across_runs) first.open(index);
       first.load(index);
-      for (; to_follow <= index && blocks[to_follow].closed_by <= index; ++to_follow) {
+      for (; to_follow <= index && blocks[to_follow].last_loading_block <= index; ++to_follow) {
         first.close(to_follow);
         second.open(to_follow);
         second.load(to_follow);
-        for (; to_close <= to_follow && blocks[to_close].closed_by <= to_follow; ++to_close) {
-          if (!blocks[to_close].bridged) second.close(to_close);
+        for (; to_close <= to_follow && blocks[to_close].last_loading_block <= to_follow; ++to_close) {
+          if (!blocks[to_close].loaded_across_runs) second.close(to_close);
         }
       }
     }
@@ -132,22 +132,22 @@ void go_twice(const Pass<First>& first, const Pass<Second>& second, const Worker
 
 }  // namespace
 
-void evaluate_loads(const Assembly& assembly, Index island, const StateView& state,
+void evaluate_loads(const Assembly& assembly, Index component, const StateView& state,
                     const Evaluation& evaluation, const Loads& loads, const Workers& workers,
                     const BlockTasks& tasks) {
   const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
+    kind.evaluate({assembly, state, evaluation, component, bodies}, elements, loads);
   };
-  go(Pass{assembly, assembly.islands()[island], loads, tasks, add}, workers);
+  go(Pass{assembly, assembly.components()[component], loads, tasks, add}, workers);
 }
 
-void evaluate_loads_within(const Assembly& assembly, Index island, const Surroundings& blocks,
+void evaluate_loads_within(const Assembly& assembly, Index component, const Surroundings& blocks,
                            const StateView& state, const Evaluation& evaluation, const Loads& loads) {
   const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, loads);
+    kind.evaluate({assembly, state, evaluation, component, bodies}, elements, loads);
   };
   const BlockTasks nothing;
-  const Pass pass{assembly, assembly.islands()[island], loads, nothing, add};
+  const Pass pass{assembly, assembly.components()[component], loads, nothing, add};
   for (const Index block : blocks.touched) pass.open(block);
   for (const Index block : blocks.loading) pass.load(block);
 }
@@ -165,12 +165,12 @@ void add_parts(const Parts& parts, Index runs, StoredEnergies& stored) {
 
 }  // namespace
 
-void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const StateView& state,
+void evaluate_loads_and_potentials(const Assembly& assembly, Index component, const StateView& state,
                                    const Evaluation& evaluation, const Loads& loads, StoredEnergies& stored,
                                    const Workers& workers, const BlockTasks& tasks) {
-  const Island& all = assembly.islands()[island];
+  const Component& all = assembly.components()[component];
   const auto add_to = [&](const ForceKind& kind, Range elements, Range bodies, StoredEnergies& sum) {
-    const EvaluationContext at{assembly, state, evaluation, island, bodies};
+    const EvaluationContext at{assembly, state, evaluation, component, bodies};
     sum[kind.stored_as()] += kind.evaluate_with_potential(at, elements, loads);
   };
   if (all.blocks.size() == 1) {
@@ -188,17 +188,17 @@ void evaluate_loads_and_potentials(const Assembly& assembly, Index island, const
   add_parts(parts, all.runs.size(), stored);
 }
 
-void evaluate_loads_twice(const Assembly& assembly, Index island, const StateView& state,
+void evaluate_loads_twice(const Assembly& assembly, Index component, const StateView& state,
                           const Evaluation& evaluation, const Loads& first, const BlockTasks& first_tasks,
                           const Loads& second, const BlockTasks& second_tasks, StoredEnergies& stored,
                           const Workers& workers) {
-  const Island& all = assembly.islands()[island];
+  const Component& all = assembly.components()[component];
   Parts parts{};
   const auto add_first = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
-    kind.evaluate({assembly, state, evaluation, island, bodies}, elements, first);
+    kind.evaluate({assembly, state, evaluation, component, bodies}, elements, first);
   };
   const auto add_second = [&](const ForceKind& kind, Range elements, Range bodies, Index run) {
-    const EvaluationContext at{assembly, state, evaluation, island, bodies};
+    const EvaluationContext at{assembly, state, evaluation, component, bodies};
     parts[run][kind.stored_as()] += kind.evaluate_with_potential(at, elements, second);
   };
   go_twice(Pass{assembly, all, first, first_tasks, add_first},
@@ -206,28 +206,28 @@ void evaluate_loads_twice(const Assembly& assembly, Index island, const StateVie
   add_parts(parts, all.runs.size(), stored);
 }
 
-void evaluate_mean_loads(const Assembly& assembly, Index island, const StepContext& step, const Loads& loads,
-                         const Workers& workers, const BlockTasks& tasks) {
+void evaluate_mean_loads(const Assembly& assembly, Index component, const StepContext& step,
+                         const Loads& loads, const Workers& workers, const BlockTasks& tasks) {
   const auto add = [&](const ForceKind& kind, Range elements, Range bodies, Index) {
     const auto within = [bodies](const EvaluationContext& at) {
-      return EvaluationContext{at.assembly, at.state, at.evaluation, at.island, bodies};
+      return EvaluationContext{at.assembly, at.state, at.evaluation, at.component, bodies};
     };
     const EvaluationContext start = within(step.start), end = within(step.end), middle = within(step.middle);
     kind.evaluate_mean({start, end, middle, step.step}, elements, loads);
   };
-  go(Pass{assembly, assembly.islands()[island], loads, tasks, add}, workers);
+  go(Pass{assembly, assembly.components()[component], loads, tasks, add}, workers);
 }
 
-bool uses_middle(const Assembly& assembly, Index island) {
+bool uses_middle(const Assembly& assembly, Index component) {
   bool uses = false;
-  for_kinds(assembly, island,
+  for_kinds(assembly, component,
             [&](const ForceKind& kind, Range, Index) { uses = uses || kind.uses_middle(); });
   return uses;
 }
 
-ElementId advance_internals(const Assembly& assembly, Index island, const StepContext& step, double* z) {
+ElementId advance_internals(const Assembly& assembly, Index component, const StepContext& step, double* z) {
   ElementId failed;
-  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index index) {
+  for_kinds(assembly, component, [&](const ForceKind& kind, Range elements, Index index) {
     if (failed.valid() || kind.internal_size() == 0) return;
     const Index stopped = kind.advance_internal(step, elements, z);
     if (stopped != elements.end) failed = assembly.element_id(index, stopped);
@@ -235,45 +235,46 @@ ElementId advance_internals(const Assembly& assembly, Index island, const StepCo
   return failed;
 }
 
-double internal_loss(const Assembly& assembly, Index island, const StepContext& step) {
+double internal_loss(const Assembly& assembly, Index component, const StepContext& step) {
   double loss = 0.0;
-  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
+  for_kinds(assembly, component, [&](const ForceKind& kind, Range elements, Index) {
     if (kind.internal_size() > 0) loss += kind.internal_loss(step, elements);
   });
   return loss;
 }
 
-void add_kinetic_energy(const Assembly& assembly, Index island, const StateView& state, StoredEnergies& out) {
-  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+void add_kinetic_energy(const Assembly& assembly, Index component, const StateView& state,
+                        StoredEnergies& out) {
+  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
     out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
   });
 }
 
-void evaluate(const Assembly& assembly, Index island, const StateView& state, Evaluation& out) {
-  evaluate_positions(assembly, island, state, out);
+void evaluate(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
+  evaluate_positions(assembly, component, state, out);
   double* const force = out.force.data();
-  evaluate_loads(assembly, island, state, out, {force, force, force});
+  evaluate_loads(assembly, component, state, out, {force, force, force});
 }
 
-void add_stored_energies(const Assembly& assembly, Index island, const StateView& state,
+void add_stored_energies(const Assembly& assembly, Index component, const StateView& state,
                          const Evaluation& evaluation, StoredEnergies& out) {
-  add_kinetic_energy(assembly, island, state, out);
-  add_potentials(assembly, island, state, evaluation, out);
+  add_kinetic_energy(assembly, component, state, out);
+  add_potentials(assembly, component, state, evaluation, out);
 }
 
 StoredEnergies stored_energies(const Assembly& assembly, const StateView& state, Evaluation& evaluation) {
   StoredEnergies stored;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state, evaluation);
-    add_stored_energies(assembly, island, state, evaluation, stored);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state, evaluation);
+    add_stored_energies(assembly, component, state, evaluation, stored);
   }
   return stored;
 }
 
-void add_potentials(const Assembly& assembly, Index island, const StateView& state,
+void add_potentials(const Assembly& assembly, Index component, const StateView& state,
                     const Evaluation& evaluation, StoredEnergies& out) {
-  const EvaluationContext at{assembly, state, evaluation, island};
-  for_kinds(assembly, island, [&](const ForceKind& kind, Range elements, Index) {
+  const EvaluationContext at{assembly, state, evaluation, component};
+  for_kinds(assembly, component, [&](const ForceKind& kind, Range elements, Index) {
     out[kind.stored_as()] += kind.potential(at, elements);
   });
 }

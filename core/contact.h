@@ -56,16 +56,16 @@ struct Contact {
   static constexpr int max_rows = 3;
   static constexpr int max_columns = 6;
 
-  ContactKey key;         ///< identity
-  Index body = none;      ///< in the order of assembly
-  Index v = 0;            ///< first velocity of the body
-  int columns = 0;        ///< velocities of the body
-  Index other_v = 0;      ///< of a stop: first velocity of the second body
-  int other_columns = 0;  ///< its velocities; 0 where there is no second body
-  int rows = 0;           ///< 2 in the plane and of friction in a joint, 3 in space, 1 of a stop
-  Index rub = none;       ///< of friction in a joint: its number in the finder
-  double pressed = 0.0;   ///< then: `friction` times this is the largest force [N, N m] or impulse
-  double gap = 0.0;       ///< negative where violated [m]
+  ContactKey key;               ///< identity
+  Index body = none;            ///< in the order of assembly
+  Index v = 0;                  ///< first velocity of the body
+  int columns = 0;              ///< velocities of the body
+  Index other_v = 0;            ///< of a stop: first velocity of the second body
+  int other_columns = 0;        ///< its velocities; 0 where there is no second body
+  int rows = 0;                 ///< 2 in the plane and of friction in a joint, 3 in space, 1 of a stop
+  Index dry_friction = none;    ///< of friction in a joint: its number in the detector
+  double friction_bound = 0.0;  ///< then: `friction` times this is the largest force [N, N m] or impulse
+  double gap = 0.0;             ///< negative where violated [m]
   /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
   /// with which it may still approach at its end [m/s]. Else 0.
   double allowed_approach = 0.0;
@@ -84,9 +84,9 @@ struct Contact {
                                   ///< same as obstacle_velocity [m/s]
 
   /// True of friction in a joint.
-  [[nodiscard]] bool rubs() const { return rub != none; }
+  [[nodiscard]] bool has_dry_friction() const { return dry_friction != none; }
   /// First row that is one.
-  [[nodiscard]] int begin_row() const { return rubs() ? 1 : 0; }
+  [[nodiscard]] int begin_row() const { return has_dry_friction() ? 1 : 0; }
   /// Row of the map from the body's velocities to the contact velocity.
   [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
   [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }

@@ -24,7 +24,7 @@ EvaluationContext DifferenceDerivatives::moved() {
     at_.assembly.body_kinds()[slot.kind]->rotations({slot.slot, slot.slot + 1}, q_.data() + slot.q,
                                                     evaluation_.rotation.data() + slot.rotation);
   }
-  return {at_.assembly, {at_.state.time, q_.data(), v_.data(), z_.data()}, evaluation_, at_.island};
+  return {at_.assembly, {at_.state.time, q_.data(), v_.data(), z_.data()}, evaluation_, at_.component};
 }
 
 void DifferenceDerivatives::loads(const ForceKind& kind, Index element, std::vector<double>& out) {
@@ -138,7 +138,7 @@ void append_derivatives(const EvaluationContext& at, std::vector<LoadDerivative>
   std::optional<DifferenceDerivatives> differences;
   for (Index kind = 0; kind < at.assembly.force_kinds().size(); ++kind) {
     const ForceKind& force = *at.assembly.force_kinds()[kind];
-    const Range elements = force.is_field() ? Range{} : at.assembly.elements(at.island, kind);
+    const Range elements = force.is_field() ? Range{} : at.assembly.elements(at.component, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       if (force.has_derivatives()) {
         force.derivatives(at, element, out);

@@ -64,8 +64,8 @@ private:
   std::vector<double> ahead_, behind_, faster_, slower_;
 };
 
-/// Appends the derivatives of the loads of all elements of an island but fields, which depend on nothing: in
-/// closed form where they are given, else by central differences.
+/// Appends the derivatives of the loads of all elements of a component but fields, which depend on nothing:
+/// in closed form where they are given, else by central differences.
 CAROM_API void append_derivatives(const EvaluationContext& at, std::vector<LoadDerivative>& out);
 
 /// Derivatives of the loads of one element by central differences.

@@ -51,7 +51,7 @@ public:
   std::string draw() {
     text_ =
         "graph carom {\n  node [fontname=\"sans-serif\"];\n  edge [fontname=\"sans-serif\", fontsize=10];\n";
-    draw_islands();
+    draw_components();
     draw_elements();
     draw_joints();
     draw_obstacles();
@@ -60,13 +60,14 @@ public:
   }
 
 private:
-  void draw_islands() {
+  void draw_components() {
     if (system_.bodies().empty()) return;
     const Assembly assembly(system_);
-    for (std::size_t i = 0; i < assembly.islands().size(); ++i) {
-      const Range bodies = assembly.islands()[i].bodies;
+    for (std::size_t i = 0; i < assembly.components().size(); ++i) {
+      const Range bodies = assembly.components()[i].bodies;
       const std::string number = std::to_string(i);
-      text_ += "  subgraph cluster_" + number + " {\n    label=\"island " + number + "\"; color=lightgrey;\n";
+      text_ +=
+          "  subgraph cluster_" + number + " {\n    label=\"component " + number + "\"; color=lightgrey;\n";
       std::vector<BodyId> ids;
       for (Index body = bodies.begin; body < bodies.end; ++body) ids.push_back(assembly.layout()->id(body));
       std::sort(ids.begin(), ids.end());  // the order in which they came

@@ -40,7 +40,7 @@ public:
   /// Internal variables of the element, as many as its internal_size.
   [[nodiscard]] const double* internal() const { return internal_; }
 
-  /// Places of an end in the arrays. Throws ModelError for a body outside the element's island, and for a
+  /// Places of an end in the arrays. Throws ModelError for a body outside the element's component, and for a
   /// point off the centre of a body without orientation.
   [[nodiscard]] Attachment<D> attach(const End<D>& end) const {
     if (end.body != ground && slot(end.body).rotation == none && !end.point.isZero(0.0))

@@ -11,8 +11,8 @@ EvaluationContext::EvaluationContext(const Assembly& of, const StateView& at, co
       layout(*of.layout()),
       state(at),
       evaluation(derived),
-      island(within),
-      reach(of.islands()[within].bodies),
+      component(within),
+      reach(of.components()[within].bodies),
       bodies(of_field) {}
 
 void EvaluationContext::refuse_unnamed(BodyId body) const {

@@ -2,7 +2,7 @@
 
 /// \file
 /// Interface of a kind of force elements. Elements of one kind are stored together; every call is for the
-/// elements of one island.
+/// elements of one component.
 
 #include <carom/core/energy_term.h>
 #include <carom/core/evaluation.h>
@@ -23,19 +23,20 @@ struct GuardMotion;
 
 /// State at which elements are evaluated.
 struct CAROM_API EvaluationContext {
-  /// \param island the elements belong to \param bodies for a field, those of the island that it acts on
+  /// \param component the elements belong to \param bodies for a field, those of the component that it acts
+  /// on
   EvaluationContext(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
-                    Index island, Range bodies = {});
+                    Index component, Range bodies = {});
 
   const Assembly& assembly;      ///< the model
   const Layout& layout;          ///< places of its bodies
   StateView state;               ///< the state
   const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
-  Index island;                  ///< the island the elements belong to
-  Range reach;                   ///< all bodies of the island
-  Range bodies;                  ///< for a field, the bodies of the island that it acts on; all if empty
+  Index component;               ///< the component the elements belong to
+  Range reach;                   ///< all bodies of the component
+  Range bodies;                  ///< for a field, the bodies of the component that it acts on; all if empty
 
-  /// Throws the ModelError of an element that looks at a body outside its island.
+  /// Throws the ModelError of an element that looks at a body outside its component.
   [[noreturn]] void refuse_unnamed(BodyId body) const;
   /// Throws the ModelError of a body without orientation, of which one was asked.
   [[noreturn]] void refuse_unoriented(BodyId body) const;
@@ -77,9 +78,9 @@ public:
   [[nodiscard]] virtual int dimension() const = 0;
   /// Number of elements.
   [[nodiscard]] virtual Index size() const = 0;
-  /// True if each element acts on every body (gravity); such elements join no islands.
+  /// True if each element acts on every body (gravity); such elements join no components.
   [[nodiscard]] virtual bool is_field() const { return false; }
-  /// True if evaluate() and potential() may be called for a part of an island at a time, with elements that
+  /// True if evaluate() and potential() may be called for a part of a component at a time, with elements that
   /// act within it (a field: on EvaluationContext::bodies), and on several threads at once.
   [[nodiscard]] virtual bool works_in_parts() const { return !is_field(); }
   /// Appends the bodies an element acts on (ground included, nothing for a field).
@@ -97,7 +98,7 @@ public:
   /// Form of energy that potential() counts as.
   [[nodiscard]] virtual StoredEnergy stored_as() const { return StoredEnergy::potential; }
 
-  /// Adds the loads of a range of elements on the bodies of one island.
+  /// Adds the loads of a range of elements on the bodies of one component.
   virtual void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const = 0;
   /// Potential energy of a range of elements [J].
   [[nodiscard]] virtual double potential(const EvaluationContext& at, Range elements) const = 0;

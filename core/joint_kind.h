@@ -163,9 +163,9 @@ public:
   /// Name of a unilateral row in messages, e.g. "upper".
   [[nodiscard]] virtual std::string_view limit_label(Index /*which*/) const { return {}; }
   /// True if joints of this kind have dry friction along the coordinate of the joint that they act on.
-  [[nodiscard]] virtual bool rubs() const { return false; }
+  [[nodiscard]] virtual bool has_dry_friction() const { return false; }
   /// The friction of a joint.
-  [[nodiscard]] virtual JointRub rub(Index /*joint*/) const { return {}; }
+  [[nodiscard]] virtual JointRub dry_friction(Index /*joint*/) const { return {}; }
   /// Load of the multipliers of the rows of a joint on its body `to`; for dry friction, that of the friction.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;

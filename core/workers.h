@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Threads for loops over parts of an island. The result of a loop must not depend on which thread computes
+/// Threads for loops over parts of a component. The result of a loop must not depend on which thread computes
 /// which part, so it is the same bit for bit for any number of threads.
 
 #include <carom/core/export.h>

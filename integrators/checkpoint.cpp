@@ -175,8 +175,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   const bool pending = companion.history.known > 0 && companion.history.pending;
   if (pending) {
     last.go_on(companion.history.step, state.v.size());
-    last.take_down({0, static_cast<Index>(state.v.size())}, companion.history.before.data(),
-                   companion.loads.total.data());
+    last.record_change({0, static_cast<Index>(state.v.size())}, companion.history.before.data(),
+                       companion.loads.total.data());
   }
   for (int i = 0; i < companion.history.known; ++i) {
     const LoadHistory& from = i == 0 && pending ? last : companion.history;
@@ -186,7 +186,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
   out.add(std::uint64_t{companion.iterations.entries().size()});
   for (const IterationMemory::Entry& entry : companion.iterations.entries()) {
-    out.add(std::uint64_t{entry.island});
+    out.add(std::uint64_t{entry.component});
     out.add(std::uint64_t{static_cast<std::uint8_t>(entry.solved)});
     out.add(entry.steps);
   }
@@ -268,14 +268,14 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for (int& sweeps : history.sweeps) in.get(sweeps);
   const std::size_t remembered = in.count();
   for (std::size_t i = 0; i < remembered; ++i) {
-    std::uint64_t island = 0, solved = 0;
+    std::uint64_t component = 0, solved = 0;
     IterationMemory::Entry entry;
-    in.get(island);
+    in.get(component);
     in.get(solved);
     in.get(entry.steps);
-    entry.island = static_cast<Index>(island);
+    entry.component = static_cast<Index>(component);
     entry.solved = static_cast<Iteration>(solved);
-    if (island >= none || solved >= iteration_count || !other.iterations.append(entry)) {
+    if (component >= none || solved >= iteration_count || !other.iterations.append(entry)) {
       in.damaged("an iteration is unknown");
     }
   }

@@ -1,4 +1,4 @@
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/dynamics/total_momentum.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
@@ -18,12 +18,12 @@ namespace {
 double deepest_penetration(const Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   const StateView state = simulation.state().view();
-  const ContactFinder finder(assembly);
+  const Detector detector(assembly);
   Evaluation evaluation = make_evaluation(assembly);
   std::vector<Contact> contacts;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state, evaluation);
-    finder.find(island, state, evaluation, 0.0, contacts);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state, evaluation);
+    detector.find(component, state, evaluation, 0.0, contacts);
   }
   double deepest = 0.0;
   for (const Contact& contact : contacts) deepest = std::max(deepest, -contact.gap);

@@ -10,7 +10,7 @@ void write_findings(Log& log, std::span<const ModelFinding> findings) {
   }
 }
 
-void write_step_news(Log& log, const StepReport& report, const ContactFinder& finder) {
+void write_step_news(Log& log, const StepReport& report, const Detector& detector) {
   if (!log.enabled(LogLevel::warning)) return;
   const std::string when = "t = " + to_text(report.time) + " s: ";
   const double impact_gain = report.energy_gain - report.lasting_gain;
@@ -19,17 +19,17 @@ void write_step_news(Log& log, const StepReport& report, const ContactFinder& fi
   }
   for (const ContactRecord& contact : report.contacts) {
     if (contact.outcome != Outcome::several_solutions) continue;
-    log.write(LogLevel::warning, when + "contact of " + finder.name(contact.key) +
+    log.write(LogLevel::warning, when + "contact of " + detector.name(contact.key) +
                                      " has several solutions; the one with the smallest impulse was taken");
   }
 }
 
-void write_event_news(Log& log, std::span<const EventRecord> events, const ContactFinder& finder) {
+void write_event_news(Log& log, std::span<const EventRecord> events, const Detector& detector) {
   for (const EventRecord& event : events) {
     const auto write = [&](LogLevel level, const std::string& what) {
       if (!log.enabled(level)) return;
-      log.write(level,
-                "t = " + to_text(event.time) + " s: contact of " + finder.name(event.contact) + ": " + what);
+      log.write(level, "t = " + to_text(event.time) + " s: contact of " + detector.name(event.contact) +
+                           ": " + what);
     };
     const auto state_of = [&] {
       return "W_nn - s mu W_nt = " + to_text(event.stiffness) +

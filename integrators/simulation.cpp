@@ -5,7 +5,7 @@
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/event_driven/event_driver.h>
-#include <carom/integrators/mode_takeover.h>
+#include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/time_resolution.h>
@@ -48,8 +48,8 @@ struct Simulation::Impl {
         driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
       }
     }
-    [[nodiscard]] const ContactFinder& finder() const {
-      return stepper ? stepper->finder() : driver->finder();
+    [[nodiscard]] const Detector& detector() const {
+      return stepper ? stepper->detector() : driver->detector();
     }
 
     std::unique_ptr<TimeStepper> stepper;  // null in the event-driven mode
@@ -105,7 +105,7 @@ struct Simulation::Impl {
   /// Times nearer to each other than this are one [s].
   [[nodiscard]] double closeness() const {
     if (const auto* options = std::get_if<TimeStepping>(&mode)) return snap * options->step;
-    // Islands can go to any time; only what rounding makes of k intervals is not to be told apart.
+    // Components can go to any time; only what rounding makes of k intervals is not to be told apart.
     return 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(state.time));
   }
   /// Distance of the times of a grid on which step() stops [s].
@@ -247,9 +247,9 @@ void Simulation::Impl::write_to_log(std::size_t told) {
     findings_written = true;
     write_findings(log, report.findings);
   }
-  const ContactFinder& finder = model->machines.finder();
-  write_step_news(log, report, finder);
-  write_event_news(log, std::span(events).subspan(told), finder);
+  const Detector& detector = model->machines.detector();
+  write_step_news(log, report, detector);
+  write_event_news(log, std::span(events).subspan(told), detector);
 }
 
 Simulation::Simulation(System system, Mode mode)
@@ -398,7 +398,8 @@ void Simulation::switch_to(Mode mode) {
   const Assembly& assembly = self.model->assembly;
   Impl::Machines machines(assembly, mode, self.stop);
   if (machines.driver && self.model->machines.stepper) {
-    take_over(assembly, machines.driver->finder(), self.state, self.companion, self.report, self.events);
+    prepare_for_events(assembly, machines.driver->detector(), self.state, self.companion, self.report,
+                       self.events);
   }
   if (machines.driver && self.model->machines.driver) machines.driver->demand_start(self.state);
   if (machines.stepper && self.model->machines.driver) {
@@ -431,7 +432,7 @@ JointReaction Simulation::reaction(JointId joint) const {
                      "; allowed: a joint of this model");
   }
   const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
-  if (kind.rows() == 0 && !kind.rubs()) {
+  if (kind.rows() == 0 && !kind.has_dry_friction()) {
     throw ModelError("reaction of a joint: " + system.name(joint) +
                      " only limits; allowed: a joint that binds (impacts of a stop are events)");
   }
@@ -467,7 +468,7 @@ void Simulation::clear_events() {
 }
 
 std::string Simulation::name(const ContactKey& key) const {
-  return impl_->model->machines.finder().name(key);
+  return impl_->model->machines.detector().name(key);
 }
 Log& Simulation::log() { return impl_->log; }
 void Simulation::show_progress(bool on) { impl_->progress = on; }

@@ -1,17 +1,19 @@
 #pragma once
 
 /// \file
-/// Kinds of planar joints that are sums of constraint parts (bindings). A joint is described by
+/// Kinds of planar joints that are sums of constraint parts. A joint is described by
 ///
-///     std::vector<Binding> bindings(const PartCheck& check) const;    // checks, then lists its parts,
+///     std::vector<ConstraintPart> constraints(const PartCheck& check) const;    // checks, then lists its
+///     parts,
 ///                                                                     // always the same two ends
-///     Binding coordinate(const PartCheck& check) const;               // optional: its gap is the coordinate
+///     ConstraintPart coordinate(const PartCheck& check) const;               // optional: its gap is the
+///     coordinate
 ///
 /// and by the number of rows, `static constexpr Index row_count`.
 
 #include <carom/core/joint_kind.h>
 #include <carom/core/part.h>
-#include <carom/joints/binding.h>
+#include <carom/joints/constraint_part.h>
 
 #include <memory>
 #include <span>
@@ -20,9 +22,9 @@
 
 namespace carom::planar {
 
-/// All joints of one kind that is a sum of bindings.
+/// All joints of one kind that is a sum of constraint parts.
 template <class P>
-class BindingKind final : public JointKind {
+class CompositeJointKind final : public JointKind {
 public:
   static constexpr bool with_coordinate = requires(const P& part, const PartCheck& check) {
     part.coordinate(check);
@@ -35,18 +37,18 @@ public:
 
   /// Checks and stores a joint. Throws ModelError.
   void add(const P& part, const PartCheck& check) {
-    std::vector<Binding> bindings = part.bindings(check);
-    if constexpr (with_coordinate) bindings.push_back(part.coordinate(check));
-    check_bindings(check, bindings, stored);
-    table_.add(bindings);
+    std::vector<ConstraintPart> constraints = part.constraints(check);
+    if constexpr (with_coordinate) constraints.push_back(part.coordinate(check));
+    check_constraint_parts(check, constraints, stored);
+    table_.add(constraints);
   }
 
   [[nodiscard]] std::unique_ptr<JointKind> clone() const override {
-    return std::make_unique<BindingKind>(*this);
+    return std::make_unique<CompositeJointKind>(*this);
   }
   [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
                                                     const Layout& layout) const override {
-    auto copy = std::make_unique<BindingKind>();
+    auto copy = std::make_unique<CompositeJointKind>();
     copy->table_ = table_.arranged(order, layout);
     return copy;
   }
@@ -86,18 +88,18 @@ public:
 
 private:
   static constexpr Index stored = row_count + (with_coordinate ? 1 : 0);
-  BindingTable table_;  // the coordinate behind the rows
+  ConstraintPartTable table_;  // the coordinate behind the rows
 };
 
 }  // namespace carom::planar
 
 namespace carom {
 
-/// A joint without its own kind is a sum of bindings.
+/// A joint without its own kind is a sum of constraint parts.
 template <class P>
   requires(P::role == Role::joint && !requires { typename P::Kind; })
 struct KindOf<P> {
-  using type = planar::BindingKind<P>;
+  using type = planar::CompositeJointKind<P>;
 };
 
 }  // namespace carom

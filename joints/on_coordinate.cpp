@@ -38,7 +38,7 @@ void check_coordinate(const PartCheck& check, JointId joint) {
       "a joint with a coordinate (revolute, prismatic, point on line, rolling)";
   if (!kind.has_coordinate()) check.refuse("joint", system.name(joint), allowed);
   // Nothing that turns, nothing to push.
-  if (dynamic_cast<const planar::BindingKind<planar::Revolute>*>(&kind) == nullptr) return;
+  if (dynamic_cast<const planar::CompositeJointKind<planar::Revolute>*>(&kind) == nullptr) return;
   const std::vector<BodyId> ends = bodies_of(system, joint);
   if (std::none_of(ends.begin(), ends.end(), [&](BodyId body) { return system.has_orientation(body); })) {
     check.refuse("joint", system.name(joint) + ", of particles, which do not turn", allowed);

@@ -8,13 +8,13 @@ namespace carom::planar {
 
 namespace {
 
-Binding line_binding(const End<2>& from, const End<2>& to, const Vec<2>& axis) {
-  Binding binding;
-  binding.form = Binding::Form::axis_of_from;
-  binding.from = from;
-  binding.to = to;
-  binding.axis = axis;
-  return binding;
+ConstraintPart line_constraint(const End<2>& from, const End<2>& to, const Vec<2>& axis) {
+  ConstraintPart constraint;
+  constraint.form = ConstraintPart::Form::axis_of_from;
+  constraint.from = from;
+  constraint.to = to;
+  constraint.axis = axis;
+  return constraint;
 }
 
 /// The vector between the ends as described, in the frame of `from` [m].
@@ -26,10 +26,11 @@ Vec<2> described_distance(const System& system, const End<2>& from, const End<2>
 }
 
 /// The distance along an axis, less `zero` or, if that is not given, what it is as described.
-Binding along(const PartCheck& check, const End<2>& from, const End<2>& to, const Vec<2>& axis, double zero) {
-  Binding binding = line_binding(from, to, axis);
-  binding.offset = std::isnan(zero) ? described_distance(check.system(), from, to).dot(axis) : zero;
-  return binding;
+ConstraintPart along(const PartCheck& check, const End<2>& from, const End<2>& to, const Vec<2>& axis,
+                     double zero) {
+  ConstraintPart constraint = line_constraint(from, to, axis);
+  constraint.offset = std::isnan(zero) ? described_distance(check.system(), from, to).dot(axis) : zero;
+  return constraint;
 }
 
 Vec<2> across(const Vec<2>& axis) { return {-axis[1], axis[0]}; }
@@ -40,7 +41,7 @@ void check_zero(const PartCheck& check, double zero) {
 
 }  // namespace
 
-std::vector<Binding> Prismatic::bindings(const PartCheck& check) const {
+std::vector<ConstraintPart> Prismatic::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
   check_turning_end(check, from.body, "from");
   check_turning_end(check, to.body, "to");
@@ -51,35 +52,35 @@ std::vector<Binding> Prismatic::bindings(const PartCheck& check) const {
   if (std::isnan(angle)) {
     turn = described_place(check.system(), to.body).angle - described_place(check.system(), from.body).angle;
   }
-  return {line_binding(from, to, across(unit)), angle_binding(from.body, to.body, turn)};
+  return {line_constraint(from, to, across(unit)), angle_constraint(from.body, to.body, turn)};
 }
 
-Binding Prismatic::coordinate(const PartCheck& check) const {
+ConstraintPart Prismatic::coordinate(const PartCheck& check) const {
   return along(check, from, to, checked_axis(check, axis, "axis"), zero_distance);
 }
 
-std::vector<Binding> PointOnLine::bindings(const PartCheck& check) const {
+std::vector<ConstraintPart> PointOnLine::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
   // A line must be held at its angle: a particle cannot take the moment.
   check_turning_end(check, from.body, "from");
   check_zero(check, zero_distance);
-  return {line_binding(from, to, across(checked_axis(check, axis, "axis")))};
+  return {line_constraint(from, to, across(checked_axis(check, axis, "axis")))};
 }
 
-Binding PointOnLine::coordinate(const PartCheck& check) const {
+ConstraintPart PointOnLine::coordinate(const PartCheck& check) const {
   return along(check, from, to, checked_axis(check, axis, "axis"), zero_distance);
 }
 
-std::vector<Binding> Rolling::bindings(const PartCheck& check) const {
+std::vector<ConstraintPart> Rolling::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
   check_turning_end(check, from.body, "from");
   check.oriented_body(to.body, "to");
   const Vec<2> unit = checked_axis(check, normal, "normal");
   check.positive(radius, "radius", "m");
-  Binding apart = line_binding(from, to, unit);
+  ConstraintPart apart = line_constraint(from, to, unit);
   apart.offset = radius;
   // The place where the disc touches stands still on the line: turned clockwise it goes along the tangent.
-  Binding roll = coordinate(check);
+  ConstraintPart roll = coordinate(check);
   roll.turn_to = radius;
   roll.turn_from = -radius;
   const System& system = check.system();
@@ -87,7 +88,7 @@ std::vector<Binding> Rolling::bindings(const PartCheck& check) const {
   return {apart, roll};
 }
 
-Binding Rolling::coordinate(const PartCheck& check) const {
+ConstraintPart Rolling::coordinate(const PartCheck& check) const {
   const Vec<2> unit = checked_axis(check, normal, "normal");
   return along(check, from, to, Vec<2>(unit[1], -unit[0]), std::numeric_limits<double>::quiet_NaN());
 }

@@ -28,10 +28,10 @@ struct CAROM_API Prismatic {
                                                             ///< unless given, as described
   double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
 
-  /// Its constraint parts (bindings). Throws ModelError for an invalid end, axis or angle.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for an invalid end, axis or angle.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
   /// The distance along the axis.
-  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+  [[nodiscard]] ConstraintPart coordinate(const PartCheck& check) const;
 };
 
 /// A pin in a slot: the end of `to` stays on a line fixed to `from`; both may turn. Its coordinate is that of
@@ -48,10 +48,10 @@ struct CAROM_API PointOnLine {
                                                                     ///< any length > 0 (required)
   double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
 
-  /// Its constraint parts (bindings). Throws ModelError for an invalid end or axis.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for an invalid end or axis.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
   /// The distance along the axis.
-  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+  [[nodiscard]] ConstraintPart coordinate(const PartCheck& check) const;
 };
 
 /// Rolling without slip: a disc of `to` with its centre at the end of `to` rolls on a line fixed to `from`
@@ -70,10 +70,10 @@ struct CAROM_API Rolling {
                                                                    ///< any length > 0 (required)
   double radius = std::numeric_limits<double>::quiet_NaN();        ///< of the disc [m] (required)
 
-  /// Its constraint parts (bindings). Throws ModelError for an invalid end, normal or radius.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for an invalid end, normal or radius.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
   /// The distance along the line.
-  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+  [[nodiscard]] ConstraintPart coordinate(const PartCheck& check) const;
 };
 
 }  // namespace carom::planar

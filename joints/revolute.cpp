@@ -15,48 +15,48 @@ double relative_angle(const PartCheck& check, double given, BodyId from, BodyId 
 
 }  // namespace
 
-std::vector<Binding> point_bindings(const End<2>& from, const End<2>& to) {
-  std::vector<Binding> bindings(2);
+std::vector<ConstraintPart> point_constraints(const End<2>& from, const End<2>& to) {
+  std::vector<ConstraintPart> constraints(2);
   for (int i = 0; i < 2; ++i) {
-    Binding& binding = bindings[static_cast<std::size_t>(i)];
-    binding.form = Binding::Form::fixed_axis;
-    binding.from = from;
-    binding.to = to;
-    binding.axis = Vec<2>::Unit(i);
+    ConstraintPart& constraint = constraints[static_cast<std::size_t>(i)];
+    constraint.form = ConstraintPart::Form::fixed_axis;
+    constraint.from = from;
+    constraint.to = to;
+    constraint.axis = Vec<2>::Unit(i);
   }
-  return bindings;
+  return constraints;
 }
 
-Binding angle_binding(BodyId from, BodyId to, double offset) {
-  Binding binding;
-  binding.form = Binding::Form::angles;
-  binding.from = End<2>(from);
-  binding.to = End<2>(to);
-  binding.turn_from = -1.0;
-  binding.turn_to = 1.0;
-  binding.offset = offset;
-  return binding;
+ConstraintPart angle_constraint(BodyId from, BodyId to, double offset) {
+  ConstraintPart constraint;
+  constraint.form = ConstraintPart::Form::angles;
+  constraint.from = End<2>(from);
+  constraint.to = End<2>(to);
+  constraint.turn_from = -1.0;
+  constraint.turn_to = 1.0;
+  constraint.offset = offset;
+  return constraint;
 }
 
-std::vector<Binding> Revolute::bindings(const PartCheck& check) const {
+std::vector<ConstraintPart> Revolute::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
   if (std::isinf(zero_angle)) check.finite(zero_angle, "zero_angle", "rad");
-  return point_bindings(from, to);
+  return point_constraints(from, to);
 }
 
-Binding Revolute::coordinate(const PartCheck& check) const {
-  return angle_binding(from.body, to.body,
-                       relative_angle(check, zero_angle, from.body, to.body, "zero_angle"));
+ConstraintPart Revolute::coordinate(const PartCheck& check) const {
+  return angle_constraint(from.body, to.body,
+                          relative_angle(check, zero_angle, from.body, to.body, "zero_angle"));
 }
 
-std::vector<Binding> Weld::bindings(const PartCheck& check) const {
+std::vector<ConstraintPart> Weld::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
   check_turning_end(check, from.body, "from");
   check_turning_end(check, to.body, "to");
-  std::vector<Binding> bindings = point_bindings(from, to);
-  bindings.push_back(
-      angle_binding(from.body, to.body, relative_angle(check, angle, from.body, to.body, "angle")));
-  return bindings;
+  std::vector<ConstraintPart> constraints = point_constraints(from, to);
+  constraints.push_back(
+      angle_constraint(from.body, to.body, relative_angle(check, angle, from.body, to.body, "angle")));
+  return constraints;
 }
 
 }  // namespace carom::planar

@@ -13,9 +13,9 @@ namespace carom::planar {
 
 /// The conditions that two ends coincide, along the axes of the fixed frame: their multipliers are the force
 /// on `to` [N].
-[[nodiscard]] CAROM_API std::vector<Binding> point_bindings(const End<2>& from, const End<2>& to);
+[[nodiscard]] CAROM_API std::vector<ConstraintPart> point_constraints(const End<2>& from, const End<2>& to);
 /// The angle of `to` relative to `from` minus `offset`.
-[[nodiscard]] CAROM_API Binding angle_binding(BodyId from, BodyId to, double offset);
+[[nodiscard]] CAROM_API ConstraintPart angle_constraint(BodyId from, BodyId to, double offset);
 
 /// A pin: the two ends coincide. Its coordinate is the angle of `to` relative to `from`, full turns counted;
 /// it is zero in the described positions unless `zero_angle` sets another zero.
@@ -29,10 +29,10 @@ struct CAROM_API Revolute {
   double zero_angle =
       std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` at coordinate 0 [rad]
 
-  /// Its constraint parts (bindings). Throws ModelError for invalid ends.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for invalid ends.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
   /// Its angle; 0 for particles, which have none.
-  [[nodiscard]] Binding coordinate(const PartCheck& check) const;
+  [[nodiscard]] ConstraintPart coordinate(const PartCheck& check) const;
 };
 
 /// A weld: the two ends coincide and the angle between the bodies is fixed, as described unless `angle` is
@@ -46,8 +46,8 @@ struct CAROM_API Weld {
   End<2> to{};                                              ///< a rigid body or ground (required)
   double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` [rad]
 
-  /// Its constraint parts (bindings). Throws ModelError for invalid ends.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for invalid ends.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
 };
 
 }  // namespace carom::planar

@@ -22,8 +22,8 @@ struct CAROM_API Rod {
   End<2> to{};                                               ///< a body or ground (required)
   double length = std::numeric_limits<double>::quiet_NaN();  ///< [m]; as described unless given
 
-  /// Its constraint parts (bindings). Throws ModelError for an invalid end or length.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for an invalid end or length.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
 };
 
 /// A pair of gears: a_to + ratio a_from, angles relative to the carrier, keeps its value in the described
@@ -39,8 +39,8 @@ struct CAROM_API Gear {
   double ratio = std::numeric_limits<double>::quiet_NaN();  ///< r_from/r_to, not 0 (required)
   BodyId carrier = ground;                                  ///< carries both axles: a rigid body or ground
 
-  /// Its constraint parts (bindings). Throws ModelError for an invalid body or ratio.
-  [[nodiscard]] std::vector<Binding> bindings(const PartCheck& check) const;
+  /// Its constraint parts. Throws ModelError for an invalid body or ratio.
+  [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
 };
 
 }  // namespace carom::planar

@@ -13,18 +13,18 @@ void LoadedModel::update() {
   for (std::vector<double>* array : {&conservative, &dissipative, &external}) {
     array->assign(assembly.layout()->v_size(), 0.0);
   }
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    evaluate_loads(assembly, island, state.view(), evaluation,
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    evaluate_loads(assembly, component, state.view(), evaluation,
                    {conservative.data(), dissipative.data(), external.data()});
   }
 }
 
 StoredEnergies LoadedModel::energies() {
   StoredEnergies sum;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    add_stored_energies(assembly, island, state.view(), evaluation, sum);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    add_stored_energies(assembly, component, state.view(), evaluation, sum);
   }
   return sum;
 }

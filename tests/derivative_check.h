@@ -25,11 +25,11 @@ inline Eigen::MatrixXd load_derivatives(const LoadedModel& model, By way) {
   const auto size = static_cast<Eigen::Index>(model.state.v.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, 2 * size);
   std::vector<carom::LoadDerivative> entries;
-  for (carom::Index island = 0; island < model.assembly.islands().size(); ++island) {
-    const carom::EvaluationContext at{model.assembly, model.state.view(), model.evaluation, island};
+  for (carom::Index component = 0; component < model.assembly.components().size(); ++component) {
+    const carom::EvaluationContext at{model.assembly, model.state.view(), model.evaluation, component};
     for (carom::Index kind = 0; kind < model.assembly.force_kinds().size(); ++kind) {
       const carom::ForceKind& force = *model.assembly.force_kinds()[kind];
-      const carom::Range elements = model.assembly.elements(island, kind);
+      const carom::Range elements = model.assembly.elements(component, kind);
       for (carom::Index element = elements.begin; element < elements.end; ++element) {
         if (way == By::element) {
           EXPECT_TRUE(force.has_derivatives()) << force.label();

@@ -32,7 +32,7 @@ std::string joint_name(const System& system, const FeatureKey& key) {
   const JointKind* const kind = system.joint_kinds().kind_ever(key.serial);
   if (kind == nullptr) refuse("of", key);
   std::string name = system.name(JointId{key.serial, system.token()});
-  if (kind->rubs()) return name;
+  if (kind->has_dry_friction()) return name;
   if (key.feature >= kind->limits()) refuse("of", key);
   return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
 }

@@ -17,7 +17,7 @@
 namespace carom {
 
 /// The contacts of the step before that turning may have opened, and by how much. A workspace:
-/// ContactFinder::remember() fills it at the start of every step.
+/// Detector::remember() fills it at the start of every step.
 class CAROM_API LastingContacts {
 public:
   /// Gaps up to this many times h^2 d count as opened by turning. The steady gap is h^2 d. From 0 a contact

@@ -31,12 +31,12 @@ double step_of_half(double stiffness, double damping) {
 /// Collects the derivatives of one element after the other. Allocates only while elements grow.
 class Rater {
 public:
-  Rater(const Assembly& assembly, Index island)
+  Rater(const Assembly& assembly, Index component)
       : assembly_(assembly),
-        first_(assembly.islands()[island].v.begin),
-        sums_(assembly.islands()[island].v.size()),
+        first_(assembly.components()[component].v.begin),
+        sums_(assembly.components()[component].v.size()),
         body_of_(sums_.stiffness.size()) {
-    const Range bodies = assembly.islands()[island].bodies;
+    const Range bodies = assembly.components()[component].bodies;
     for (Index body = bodies.begin; body < bodies.end; ++body) {
       const BodySlot& slot = assembly.layout()->bodies()[body];
       const BodyKind& kind = *assembly.body_kinds()[slot.kind];
@@ -99,7 +99,8 @@ public:
   void finish(CouplingRating& rating, double step) const {
     double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t row = 0; row < sums_.stiffness.size(); ++row) {
-      rating.island_rate = std::max(rating.island_rate, rate(sums_.stiffness[row], sums_.damping[row], step));
+      rating.component_rate =
+          std::max(rating.component_rate, rate(sums_.stiffness[row], sums_.damping[row], step));
       smallest = std::min(smallest, step_of_half(sums_.stiffness[row], sums_.damping[row]));
     }
     rating.contracting_step = std::isfinite(smallest) ? smallest : 0.0;
@@ -136,16 +137,16 @@ private:
 
 }  // namespace
 
-CouplingRating rate_couplings(const Assembly& assembly, Index island, const StateView& state,
+CouplingRating rate_couplings(const Assembly& assembly, Index component, const StateView& state,
                               const Evaluation& evaluation, double step) {
-  const EvaluationContext at{assembly, state, evaluation, island};
+  const EvaluationContext at{assembly, state, evaluation, component};
   CouplingRating rating;
-  Rater rater(assembly, island);
+  Rater rater(assembly, component);
   std::vector<LoadDerivative> entries;
   std::optional<DifferenceDerivatives> differences;
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& force = *assembly.force_kinds()[kind];
-    const Range elements = force.is_field() ? Range{} : assembly.elements(island, kind);
+    const Range elements = force.is_field() ? Range{} : assembly.elements(component, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       entries.clear();
       if (force.has_derivatives()) {
@@ -167,13 +168,13 @@ CouplingRating rate_couplings(const Assembly& assembly, Index island, const Stat
 
 namespace {
 
-/// The first element of the island that `is_bad`, a function of (kind, element, context).
+/// The first element of the component that `is_bad`, a function of (kind, element, context).
 template <class F>
-ElementId find_element(const Assembly& assembly, Index island, const StateView& state,
+ElementId find_element(const Assembly& assembly, Index component, const StateView& state,
                        const Evaluation& evaluation, F&& is_bad) {
-  const EvaluationContext at{assembly, state, evaluation, island};
+  const EvaluationContext at{assembly, state, evaluation, component};
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(island, kind);
+    const Range elements = assembly.elements(component, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       if (is_bad(*assembly.force_kinds()[kind], Range{element, element + 1}, at)) {
         return assembly.element_id(kind, element);
@@ -185,11 +186,11 @@ ElementId find_element(const Assembly& assembly, Index island, const StateView& 
 
 }  // namespace
 
-ElementId find_non_finite(const Assembly& assembly, Index island, const StateView& state,
+ElementId find_non_finite(const Assembly& assembly, Index component, const StateView& state,
                           const Evaluation& evaluation) {
-  const Range v = assembly.islands()[island].v;
+  const Range v = assembly.components()[component].v;
   std::vector<double> force(assembly.layout()->v_size(), 0.0);
-  return find_element(assembly, island, state, evaluation,
+  return find_element(assembly, component, state, evaluation,
                       [&](const ForceKind& kind, Range element, const EvaluationContext& at) {
                         std::fill(force.begin() + v.begin, force.begin() + v.end, 0.0);
                         kind.evaluate(at, element, {force.data(), force.data(), force.data()});
@@ -198,9 +199,9 @@ ElementId find_non_finite(const Assembly& assembly, Index island, const StateVie
                       });
 }
 
-ElementId find_non_finite_potential(const Assembly& assembly, Index island, const StateView& state,
+ElementId find_non_finite_potential(const Assembly& assembly, Index component, const StateView& state,
                                     const Evaluation& evaluation) {
-  return find_element(assembly, island, state, evaluation,
+  return find_element(assembly, component, state, evaluation,
                       [](const ForceKind& kind, Range element, const EvaluationContext& at) {
                         return !std::isfinite(kind.potential(at, element));
                       });

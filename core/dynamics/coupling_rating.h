@@ -11,25 +11,25 @@
 
 namespace carom {
 
-/// The coupling that limits the contraction most, and a step at which the island contracts.
+/// The coupling that limits the contraction most, and a step at which the component contracts.
 struct CouplingRating {
   ElementId worst{};              ///< invalid if no element depends on position or velocity
   double rate = 0.0;              ///< its own rho at the step asked about
-  double island_rate = 0.0;       ///< rho of all elements together
+  double component_rate = 0.0;    ///< rho of all elements together
   double contracting_step = 0.0;  ///< step at which rho of all elements is 1/2 [s]; 0 if any step contracts
 };
 
-/// Rates the couplings of one island at a state. The position group of `evaluation` must be up to date.
-[[nodiscard]] CAROM_API CouplingRating rate_couplings(const Assembly& assembly, Index island,
+/// Rates the couplings of one component at a state. The position group of `evaluation` must be up to date.
+[[nodiscard]] CAROM_API CouplingRating rate_couplings(const Assembly& assembly, Index component,
                                                       const StateView& state, const Evaluation& evaluation,
                                                       double step);
 
-/// The first element of the island whose loads are not finite at the state; invalid if there is none.
-[[nodiscard]] CAROM_API ElementId find_non_finite(const Assembly& assembly, Index island,
+/// The first element of the component whose loads are not finite at the state; invalid if there is none.
+[[nodiscard]] CAROM_API ElementId find_non_finite(const Assembly& assembly, Index component,
                                                   const StateView& state, const Evaluation& evaluation);
 
-/// The first element of the island whose potential is not finite at the state; invalid if there is none.
-[[nodiscard]] CAROM_API ElementId find_non_finite_potential(const Assembly& assembly, Index island,
+/// The first element of the component whose potential is not finite at the state; invalid if there is none.
+[[nodiscard]] CAROM_API ElementId find_non_finite_potential(const Assembly& assembly, Index component,
                                                             const StateView& state,
                                                             const Evaluation& evaluation);
 

@@ -7,11 +7,11 @@
 
 namespace carom {
 
-ElementId find_without_direction(const Assembly& assembly, Index island, const StateView& state,
+ElementId find_without_direction(const Assembly& assembly, Index component, const StateView& state,
                                  const Evaluation& evaluation, double fastest) {
-  const EvaluationContext at{assembly, state, evaluation, island};
+  const EvaluationContext at{assembly, state, evaluation, component};
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(island, kind);
+    const Range elements = assembly.elements(component, kind);
     const Index found = assembly.force_kinds()[kind]->first_without_direction(at, elements, fastest);
     if (found != elements.end) return assembly.element_id(kind, found);
   }
@@ -32,9 +32,9 @@ std::string tell_without_direction(const Assembly& assembly, ElementId element) 
 
 void demand_directions(const Assembly& assembly, const State& state) {
   Evaluation evaluation = make_evaluation(assembly);
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    const ElementId found = find_without_direction(assembly, island, state.view(), evaluation,
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    const ElementId found = find_without_direction(assembly, component, state.view(), evaluation,
                                                    std::numeric_limits<double>::infinity());
     if (!found.valid()) continue;
     throw ModelError(tell_without_direction(assembly, found) +

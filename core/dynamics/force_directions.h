@@ -14,7 +14,7 @@ namespace carom {
 /// The first element of a component whose force has a size but no direction
 /// (ForceKind::first_without_direction); invalid if there is none. The position group of `evaluation` must be
 /// up to date. \param fastest ends that part faster give the line themselves [m/s]
-[[nodiscard]] CAROM_API ElementId find_without_direction(const Assembly& assembly, Index island,
+[[nodiscard]] CAROM_API ElementId find_without_direction(const Assembly& assembly, Index component,
                                                          const StateView& state, const Evaluation& evaluation,
                                                          double fastest);
 

@@ -16,7 +16,7 @@ struct ImplicitSolver::Factors {
   using Matrix = Eigen::SparseMatrix<double>;
 
   const Assembly* assembly = nullptr;
-  Index island = none;
+  Index component = none;
   Range v;
   std::vector<LoadDerivative> entries;
   std::vector<Eigen::Triplet<double>> triplets;
@@ -77,15 +77,15 @@ ImplicitSolver::~ImplicitSolver() = default;
 ImplicitSolver::ImplicitSolver(ImplicitSolver&&) noexcept = default;
 ImplicitSolver& ImplicitSolver::operator=(ImplicitSolver&&) noexcept = default;
 
-ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index island, const StateView& state,
-                                               const Evaluation& evaluation, double step,
-                                               const Border* joints, bool make_definite) {
+ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index component,
+                                               const StateView& state, const Evaluation& evaluation,
+                                               double step, const Border* joints, bool make_definite) {
   Factors& self = *factors_;
   self.assembly = &assembly;
-  self.island = island;
-  self.v = assembly.islands()[island].v;
+  self.component = component;
+  self.v = assembly.components()[component].v;
   self.entries.clear();
-  append_derivatives({assembly, state, evaluation, island}, self.entries);
+  append_derivatives({assembly, state, evaluation, component}, self.entries);
 
   const auto index = [&](Index i) { return static_cast<int>(i - self.v.begin); };
   self.triplets.clear();
@@ -101,7 +101,7 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index i
   }
   const auto first_mass = static_cast<std::ptrdiff_t>(self.triplets.size());
   std::vector<double> unit, image;
-  assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
     const Index size = kind.v_size();
     unit.assign(size, 0.0);
     image.resize(size);
@@ -173,7 +173,7 @@ void ImplicitSolver::add_stiffness_times(double scale, const double* v, double* 
 }
 
 void ImplicitSolver::apply_mass(const double* v, double* p) const {
-  factors_->assembly->for_bodies(factors_->island,
+  factors_->assembly->for_bodies(factors_->component,
                                  [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
                                    kind.apply_mass(slots, v + first, p + first);
                                  });

@@ -1,14 +1,14 @@
 #pragma once
 
 /// \file
-/// The matrix of a linearised step of one island,
+/// The matrix of a linearised step of one component,
 ///     A = M - (h/2) C - (h^2/4) K,   K, C the derivatives of the loads by position and velocity,
 /// symmetrised: its factors guide an iteration, they do not decide where it ends. Where joints bind bodies,
 /// with rows G at the end of the step and those along which they push, Gm, it is bordered by them,
 ///     A x - Gm^T l = f,   G x = -r.
 
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 
 #include <memory>
@@ -28,27 +28,27 @@ public:
 
   /// The rows of joints at the end of the step, and those along which they push.
   struct Border {
-    const IslandJoints& held;
-    const IslandJoints& pushing;
+    const JointConstraints& held;
+    const JointConstraints& pushing;
   };
   /// What came of factor().
   enum class Outcome { definite, indefinite, singular };
 
   /// Linearises the loads at a state and factors. The position group of `evaluation` must be up to date. A
   /// matrix A that is not definite can be solved with, but not in contact problems.
-  /// \param joints of the island, both placed; null: none
+  /// \param joints of the component, both placed; null: none
   /// \param make_definite add as much of the mass matrix to A as makes it definite
-  [[nodiscard]] Outcome factor(const Assembly& assembly, Index island, const StateView& state,
+  [[nodiscard]] Outcome factor(const Assembly& assembly, Index component, const StateView& state,
                                const Evaluation& evaluation, double step, const Border* joints,
                                bool make_definite = false);
-  /// f becomes x over the velocities of the island, `f` beginning with the first of them.
+  /// f becomes x over the velocities of the component, `f` beginning with the first of them.
   /// \param r of the joints; null: zero
   void solve(double* f, const double* r = nullptr) const;
   /// y += scale K v, arrays over all velocities of the model.
   void add_stiffness_times(double scale, const double* v, double* y) const;
-  /// p = M v over the island, arrays over all velocities of the model.
+  /// p = M v over the component, arrays over all velocities of the model.
   void apply_mass(const double* v, double* p) const;
-  /// p -= A v over the island, arrays over all velocities of the model.
+  /// p -= A v over the component, arrays over all velocities of the model.
   void subtract_matrix(const double* v, double* p) const;
 
 private:

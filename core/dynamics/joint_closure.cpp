@@ -1,6 +1,6 @@
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/joint_constraints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,8 @@ double largest(const std::vector<double>& numbers, Range range, double least) {
 }
 
 /// Joints whose rows take part in the dependence of one row on others.
-std::vector<JointId> partners(const IslandJoints& joints, std::size_t row, std::span<const double> vector) {
+std::vector<JointId> partners(const JointConstraints& joints, std::size_t row,
+                              std::span<const double> vector) {
   // Against the row itself; the rest is rounding.
   constexpr double takes_part = 1e-6;
   std::vector<JointId> found;
@@ -41,13 +42,13 @@ std::vector<JointId> partners(const IslandJoints& joints, std::size_t row, std::
   return found;
 }
 
-std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
+std::vector<JointId> partners(JointConstraints& joints, std::size_t row) {
   std::vector<double> vector;
   joints.factors().dependence(row, vector);
   return partners(joints, row, vector);
 }
 
-[[noreturn]] void refuse(const Assembly& assembly, IslandJoints& joints, std::size_t row, double off,
+[[noreturn]] void refuse(const Assembly& assembly, JointConstraints& joints, std::size_t row, double off,
                          const char* what, const char* unit) {
   const System& system = assembly.system();
   const JointId joint = joints.joint(row);
@@ -64,7 +65,7 @@ std::vector<JointId> partners(IslandJoints& joints, std::size_t row) {
 }
 
 /// Demands that forces of joints which bound friction are unique.
-void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints& joints) {
+void demand_unique_pressure(const Assembly& assembly, Index component, JointConstraints& joints) {
   const System& system = assembly.system();
   std::vector<std::size_t> dependent;
   for (std::size_t row = 0; row < joints.size(); ++row) {
@@ -73,17 +74,17 @@ void demand_unique_pressure(const Assembly& assembly, Index island, IslandJoints
   if (dependent.empty()) return;
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
-    if (!kind.rubs()) continue;
-    const Range range = assembly.joints(island, k);
+    if (!kind.has_dry_friction()) continue;
+    const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
-      if (kind.rub(slot).coefficient == 0.0) continue;
+      if (kind.dry_friction(slot).coefficient == 0.0) continue;
       const JointId bearing = kind.on_joint(slot);
       for (const std::size_t row : dependent) {
         std::vector<JointId> taking_part = partners(joints, row);
         taking_part.push_back(joints.joint(row));
         if (std::find(taking_part.begin(), taking_part.end(), bearing) == taking_part.end()) continue;
         std::string message = system.name(assembly.joint_id(k, slot)) + ": coefficient is " +
-                              to_text(kind.rub(slot).coefficient) + ", and forces of " +
+                              to_text(kind.dry_friction(slot).coefficient) + ", and forces of " +
                               system.name(bearing) + " are not unique: redundant are";
         for (const JointId joint : taking_part) {
           message += (joint == taking_part.front() ? " " : ", ") + system.name(joint);
@@ -104,7 +105,8 @@ std::size_t worst_row(std::span<const double> off) {
   return worst;
 }
 
-/// Numbers over the whole model that islands share: made for each they would cost the square of their number.
+/// Numbers over the whole model that components share: made for each they would cost the square of their
+/// number.
 struct ClosureWork {
   explicit ClosureWork(const Assembly& assembly, const State& state)
       : lengths(assembly.length_scales()),
@@ -119,21 +121,21 @@ struct ClosureWork {
   std::vector<double> change, moved;
 };
 
-void close_island(const Assembly& assembly, Index island, ClosureWork& work, State& state,
-                  JointClosure& closure) {
-  IslandJoints joints(assembly, island);
+void close_component(const Assembly& assembly, Index component, ClosureWork& work, State& state,
+                     JointClosure& closure) {
+  JointConstraints joints(assembly, component);
   if (joints.empty()) return;
-  const Island& range = assembly.islands()[island];
+  const Component& range = assembly.components()[component];
   const Layout& layout = *assembly.layout();
   for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
     const BodySlot slot = layout.bodies()[body];
-    if (assembly.system().keeps_place(layout.id(body))) joints.hold_still({slot.v, slot.v + slot.v_size});
+    if (assembly.system().keeps_place(layout.id(body))) joints.fix({slot.v, slot.v + slot.v_size});
   }
   Evaluation& evaluation = work.evaluation;
   const std::vector<double>& lengths = work.lengths;
   const auto locate = [&] {
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    joints.locate({state.view(), evaluation.rotation.data()});
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    joints.update_and_factor({state.view(), evaluation.rotation.data()});
   };
   std::vector<double> off(joints.size());
   const std::vector<double>& start = work.start;
@@ -152,13 +154,13 @@ void close_island(const Assembly& assembly, Index island, ClosureWork& work, Sta
     }
     best = std::min(best, left);
     std::fill(change.begin() + range.v.begin, change.begin() + range.v.end, 0.0);
-    joints.hold(JointLevel::displacement, change.data());
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    joints.project(JointLevel::displacement, change.data());
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
       kind.advance(slots, state.q.data() + q, change.data() + v, moved.data() + q);
     });
     std::copy(moved.begin() + range.q.begin, moved.begin() + range.q.end, state.q.begin() + range.q.begin);
   }
-  demand_unique_pressure(assembly, island, joints);
+  demand_unique_pressure(assembly, component, joints);
   // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
   for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
     const BodySlot slot = layout.bodies()[body];
@@ -174,8 +176,8 @@ void close_island(const Assembly& assembly, Index island, ClosureWork& work, Sta
   find_off();
   if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
   const std::vector<double>& before = work.before;
-  joints.hold(JointLevel::velocity, state.v.data());
-  joints.hold(JointLevel::velocity, state.v.data());  // what rounding left
+  joints.project(JointLevel::velocity, state.v.data());
+  joints.project(JointLevel::velocity, state.v.data());  // what rounding left
   find_off();
   const std::size_t worst = worst_row(off);
   const double left = off[worst];
@@ -194,8 +196,8 @@ JointClosure close_joints(const Assembly& assembly, State& state) {
   JointClosure closure;
   if (assembly.joint_kinds().empty()) return closure;
   ClosureWork work(assembly, state);
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    close_island(assembly, island, work, state, closure);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    close_component(assembly, component, work, state, closure);
   }
   return closure;
 }
@@ -205,11 +207,11 @@ Mobility mobility(const Assembly& assembly, const State& state) {
   Mobility result;
   result.velocities = assembly.layout()->v_size();
   Evaluation evaluation = make_evaluation(assembly);
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    IslandJoints joints(assembly, island);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    JointConstraints joints(assembly, component);
     if (joints.empty()) continue;
-    evaluate_positions(assembly, island, state.view(), evaluation);
-    joints.locate({state.view(), evaluation.rotation.data()});
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    joints.update_and_factor({state.view(), evaluation.rotation.data()});
     result.rows += static_cast<Index>(joints.size());
     for (std::size_t row = 0; row < joints.size(); ++row) {
       if (joints.factors().pivot(row) >= dependent_pivot) {

@@ -31,11 +31,11 @@ void PrescribedJoints::demand_continuous(double from, double to) {
   }
 }
 
-std::string driven_by(const Assembly& assembly, Index island) {
+std::string driven_by(const Assembly& assembly, Index component) {
   std::string text;
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
-    const Range range = assembly.joints(island, k);
+    const Range range = assembly.joints(component, k);
     for (Index joint = range.begin; joint < range.end; ++joint) {
       text += (text.empty() ? "; bodies are driven by " : ", ") +
               assembly.system().name(assembly.joint_id(k, joint));

@@ -36,7 +36,7 @@ private:
   std::vector<Law> laws_;
 };
 
-/// "; bodies are driven by driver 'hoist'", for messages; empty where those of an island are not.
-[[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, Index island);
+/// "; bodies are driven by driver 'hoist'", for messages; empty where those of a component are not.
+[[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, Index component);
 
 }  // namespace carom

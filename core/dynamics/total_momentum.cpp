@@ -30,8 +30,8 @@ TotalMomentum total_momentum(const Assembly& assembly, const State& state) {
   const Layout& layout = *assembly.layout();
   const auto dimension = static_cast<Index>(layout.dimension());
   std::vector<double> momentum(state.v.size());
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       kind.apply_mass(slots, state.v.data() + v, momentum.data() + v);
     });
   }

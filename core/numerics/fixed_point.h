@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// When is a fixed-point iteration finished? One judge for all islands.
+/// When is a fixed-point iteration finished? One judge for all components.
 
 #include <carom/core/export.h>
 

@@ -1,4 +1,4 @@
-// Problem: islands at their own pace, one state for everybody else.
+// Problem: components at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/event_driver.h>
@@ -40,13 +40,13 @@ void check_options(const EventDriven& options) {
 EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
-      finder_(assembly),
+      detector_(assembly),
       prescribed_(assembly),
       work_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    islands_.push_back(std::make_unique<IslandDriver>(assembly, finder_, options_, island, work_));
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    components_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, work_));
   }
 }
 
@@ -67,13 +67,13 @@ auto EventDriver::within_limit(double time, F&& look) const {
 
 void EventDriver::demand_start(const State& state) {
   within_limit(state.time, [&] {
-    for (auto& island : islands_) island->demand_start(state);
+    for (auto& component : components_) component->demand_start(state);
   });
 }
 
 void EventDriver::start(const State& state, const Companion& companion) {
   within_limit(state.time, [&] {
-    for (auto& island : islands_) island->start(state, companion.modes);
+    for (auto& component : components_) component->start(state, companion.modes);
   });
   counted_ = work_.flows.counts();
   started_ = true;
@@ -83,13 +83,13 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
                           std::vector<EventRecord>& events) {
   demand_continuous_laws(state.time, target);
   if (!started_) start(state, companion);
-  news_.flows = {};
-  news_.events.clear();
-  news_.joint_impulses.clear();
-  news_.counts = {};
-  news_.energy_gain = news_.shift = 0.0;
+  balance_.flows = {};
+  balance_.events.clear();
+  balance_.joint_impulses.clear();
+  balance_.counts = {};
+  balance_.energy_gain = balance_.shift = 0.0;
   try {
-    for (auto& island : islands_) island->advance(target, news_);
+    for (auto& component : components_) component->advance(target, balance_);
   } catch (...) {
     started_ = false;
     work_.chain.reset_statistics();
@@ -97,7 +97,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   }
   trial_.time = target;
   modes_.clear();
-  for (auto& island : islands_) island->write(trial_, modes_);
+  for (auto& component : components_) component->write(trial_, modes_);
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
   order_events();
@@ -109,30 +109,30 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   report.findings = std::move(findings);
   report.contacts = std::move(contacts);
   report.joint_impulses = std::move(joints);
-  report.joint_impulses.assign(news_.joint_impulses.begin(), news_.joint_impulses.end());
+  report.joint_impulses.assign(balance_.joint_impulses.begin(), balance_.joint_impulses.end());
   report.time = target;
   report.step = target - state.time;
-  report.energy_gain = news_.energy_gain;
-  report.projected = news_.shift;
-  report_contacts(news_, report);
-  companion.ledger.book(news_.flows, stored);
+  report.energy_gain = balance_.energy_gain;
+  report.projected = balance_.shift;
+  report_contacts(balance_, report);
+  companion.ledger.book(balance_.flows, stored);
   companion.modes.swap(modes_);
   count(companion);
   state.q.swap(trial_.q);
   state.v.swap(trial_.v);
   state.z.swap(trial_.z);
   state.time = target;
-  if (options_.record_events) events.insert(events.end(), news_.events.begin(), news_.events.end());
+  if (options_.record_events) events.insert(events.end(), balance_.events.begin(), balance_.events.end());
 }
 
 void EventDriver::demand_continuous_laws(double from, double to) {
   try {
     if (!prescribed_.empty()) prescribed_.demand_continuous(from, to);
-    if (!finder_.has_moving_obstacles()) return;
+    if (!detector_.has_moving_obstacles()) return;
     if (places_after_.time() == from) std::swap(places_, places_after_);
-    finder_.place(from, places_);
-    finder_.place(to, places_after_);
-    finder_.demand_continuous(places_, places_after_);
+    detector_.place(from, places_);
+    detector_.place(to, places_after_);
+    detector_.demand_continuous(places_, places_after_);
   } catch (const SolverError& error) {
     SolverFailure failure = error.failure();
     failure.time = from;
@@ -148,9 +148,9 @@ void EventDriver::fail_energy(double from, double to) {
   failure.time = from;
   failure.step = to - from;
   std::string message = "event-driven at t = " + to_text(to) + " s: ";
-  for (Index island = 0; island < assembly_->islands().size(); ++island) {
-    evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-    const ElementId cause = find_non_finite_potential(*assembly_, island, trial_.view(), evaluation_);
+  for (Index component = 0; component < assembly_->components().size(); ++component) {
+    evaluate_positions(*assembly_, component, trial_.view(), evaluation_);
+    const ElementId cause = find_non_finite_potential(*assembly_, component, trial_.view(), evaluation_);
     if (cause.valid()) failure.parts.push_back(assembly_->system().name(cause));
   }
   message += failure.parts.empty() ? "an energy is too large to be counted"
@@ -161,34 +161,34 @@ void EventDriver::fail_energy(double from, double to) {
 JointReaction EventDriver::reaction(const State& state, const Companion& companion, JointId joint) {
   if (!started_) start(state, companion);
   const JointTable::Place place = assembly_->layout()->joints()->place(joint.serial);
-  Index island = 0;
+  Index component = 0;
   const auto within = [&](Index i) {
     const Range range = assembly_->joints(i, place.kind);
     return place.slot >= range.begin && place.slot < range.end;
   };
-  while (!within(island)) ++island;
+  while (!within(component)) ++component;
   return within_limit(state.time, [&] {
-    return islands_[island]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+    return components_[component]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
 }
 
-/// Islands were gone through one after the other; their events are told in time, then by island.
+/// Components were gone through one after the other; their events are told in time, then by component.
 void EventDriver::order_events() {
   const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
-  if (std::is_sorted(news_.events.begin(), news_.events.end(), earlier)) return;
-  order_.resize(news_.events.size());
+  if (std::is_sorted(balance_.events.begin(), balance_.events.end(), earlier)) return;
+  order_.resize(balance_.events.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-    const double first = news_.events[a].time, second = news_.events[b].time;
+    const double first = balance_.events[a].time, second = balance_.events[b].time;
     return first < second || (first == second && a < b);
   });
   ordered_.clear();
-  for (const std::size_t place : order_) ordered_.push_back(news_.events[place]);
-  news_.events.swap(ordered_);
+  for (const std::size_t place : order_) ordered_.push_back(balance_.events[place]);
+  balance_.events.swap(ordered_);
 }
 
-void EventDriver::report_contacts(const DriverNews& news, StepReport& report) const {
-  for (const EventRecord& event : news.events) {
+void EventDriver::report_contacts(const EventBalance& balance, StepReport& report) const {
+  for (const EventRecord& event : balance.events) {
     const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
                            event.kind == EventKind::impact_without_collision;
     if (!impulsive) continue;
@@ -215,16 +215,17 @@ void EventDriver::report_contacts(const DriverNews& news, StepReport& report) co
 void EventDriver::count(Companion& companion) {
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
-  for (std::size_t kind = 0; kind < event_kind_count; ++kind) statistics.events[kind] += news_.counts[kind];
-  for (const EventRecord& event : news_.events) {
+  for (std::size_t kind = 0; kind < event_kind_count; ++kind)
+    statistics.events[kind] += balance_.counts[kind];
+  for (const EventRecord& event : balance_.events) {
     if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++statistics.impacts;
     if (event.outcome == Outcome::several_solutions) ++statistics.several_solutions;
     if (event.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
     statistics.worst_residual = std::max(statistics.worst_residual, event.residual);
   }
-  if (news_.energy_gain > 0.0) {
+  if (balance_.energy_gain > 0.0) {
     ++statistics.energy_gains;
-    statistics.energy_gained += news_.energy_gain;
+    statistics.energy_gained += balance_.energy_gain;
   }
   const FlowCounts now = work_.flows.counts();
   statistics.flow_steps += now.steps - counted_.steps;

@@ -1,14 +1,14 @@
 #pragma once
 
 /// \file
-/// The machine of the event-driven mode: all islands of a model, each at its own pace, met at times asked
+/// The machine of the event-driven mode: all components of a model, each at its own pace, met at times asked
 /// for.
 
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/island_driver.h>
+#include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/step_report.h>
@@ -18,7 +18,7 @@
 
 namespace carom {
 
-/// Advances states of one assembly. Islands are ahead of the state by what their last step covers; that is
+/// Advances states of one assembly. Components are ahead of the state by what their last step covers; that is
 /// memory only: from any state the same motion follows within the tolerance.
 class CAROM_API EventDriver {
 public:
@@ -39,10 +39,10 @@ public:
   /// The state was changed from outside: start anew from it.
   void forget() { started_ = false; }
 
-  /// The flows that islands share.
+  /// The flows that components share.
   [[nodiscard]] const FlowPool& flows() const { return work_.flows; }
   /// Names of contacts.
-  [[nodiscard]] const ContactFinder& finder() const { return finder_; }
+  [[nodiscard]] const Detector& detector() const { return detector_; }
 
 private:
   void start(const State& state, const Companion& companion);
@@ -52,19 +52,19 @@ private:
   void demand_continuous_laws(double from, double to);
   [[noreturn]] void fail_energy(double from, double to);
   void order_events();
-  void report_contacts(const DriverNews& news, StepReport& report) const;
+  void report_contacts(const EventBalance& balance, StepReport& report) const;
 
   const Assembly* assembly_;
   EventDriven options_;
-  ContactFinder finder_;
+  Detector detector_;
   PrescribedJoints prescribed_;
   ObstaclePlaces places_, places_after_;  // at the ends of an advance
   DriverWorkspace work_;
-  std::vector<std::unique_ptr<IslandDriver>> islands_;
+  std::vector<std::unique_ptr<ClockGroup>> components_;
   Evaluation evaluation_;
   State trial_;
   ContactModes modes_;
-  DriverNews news_;
+  EventBalance balance_;
   std::vector<EventRecord> ordered_;
   std::vector<std::size_t> order_;
   FlowCounts counted_;  // of the flows, told so far

@@ -31,7 +31,7 @@ bool GuardSearch::passes_at_once(const Passage& passage, const GuardMotion& star
          passage.sign * start.first <= 0.0;
 }
 
-GuardSearch::Passage GuardSearch::first(const IslandGuards& guards, const StepLook& start,
+GuardSearch::Passage GuardSearch::first(const ComponentGuards& guards, const StepLook& start,
                                         const StepLook& end, StepLooks& looks, StepLooker& looker,
                                         double noise, double until) const {
   // Bisections of a guard without derivatives: its looks are as many as longest_step lets them be.

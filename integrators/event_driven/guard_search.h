@@ -5,7 +5,7 @@
 /// a step.
 
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/island_guards.h>
+#include <carom/integrators/event_driven/component_guards.h>
 #include <carom/integrators/event_driven/step_looks.h>
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace carom {
 
-/// Follows the guards of one island. A guard that is nearer to zero than `noise` is on the side that it was
-/// on before: what stays there makes no events, and only what comes out on the other side has passed.
+/// Follows the guards of one component. A guard that is nearer to zero than `noise` is on the side that it
+/// was on before: what stays there makes no events, and only what comes out on the other side has passed.
 class CAROM_API GuardSearch {
 public:
   /// A guard that passes zero.
@@ -36,7 +36,7 @@ public:
   [[nodiscard]] bool passes_at_once(const Passage& passage, const GuardMotion& start, double rounding) const;
   /// The first passage in a step. \param start, end what is seen at its ends \param until of no interest
   /// behind
-  [[nodiscard]] Passage first(const IslandGuards& guards, const StepLook& start, const StepLook& end,
+  [[nodiscard]] Passage first(const ComponentGuards& guards, const StepLook& start, const StepLook& end,
                               StepLooks& looks, StepLooker& looker, double noise, double until) const;
 
 private:

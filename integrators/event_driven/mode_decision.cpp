@@ -18,19 +18,19 @@ constexpr int most_rounds = 20;
 
 }  // namespace
 
-Decision ModeDecision::decide(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+Decision ModeDecision::decide(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
                               const double* acceleration, SolverChain& chain) {
   slides_.assign(candidates.size(), {});
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
-    if (candidate.slippery) {
+    if (candidate.frictionless) {
       slides_[i].sign = 1.0;
     } else if (candidate.slip != 0.0) {
       slides_[i].sign = std::copysign(1.0, candidate.slip);
     } else if (candidate.breaks) {
       slides_[i].sign = -std::copysign(1.0, candidate.push);
     }
-    slides_[i].out = candidate.lifts;
+    slides_[i].out = candidate.releases;
   }
   zero_.assign(assembly.layout()->v_size(), 0.0);
   Decision decision = Decision::failed;
@@ -42,7 +42,7 @@ Decision ModeDecision::decide(const Assembly& assembly, IslandMotion& motion, st
   return decision;
 }
 
-Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
                              const double* acceleration, SolverChain& chain) {
   contacts_.clear();
   taking_part_.clear();
@@ -71,8 +71,9 @@ Decision ModeDecision::solve(const Assembly& assembly, IslandMotion& motion, std
   }
   cluster_.set_free_velocity(acceleration);
   const bool presses =
-      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(),
-                                        [&](const Contact& contact) { return motion.bears(contact); });
+      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
+        return motion.depends_on_joint_force(contact);
+      });
   const bool solved =
       presses ? settle_bounds(motion, candidates, acceleration, chain) : cluster_.solve(chain).usable();
   const ContactReport& report = cluster_.report();
@@ -97,12 +98,12 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
     const std::size_t i = taking_part_[c];
     const ContactMode found = cluster_.modes()[c];
     // Friction in a joint never opens.
-    const bool rubs = contacts_[c].rubs();
-    if (rubs && slides_[i].sign == 0.0) {
+    const bool has_dry_friction = contacts_[c].has_dry_friction();
+    if (has_dry_friction && slides_[i].sign == 0.0) {
       candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
       continue;
     }
-    const double normal = rubs ? 1.0 : force[static_cast<std::size_t>(cluster_.first_row(c))];
+    const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(cluster_.first_row(c))];
     if (slides_[i].sign != 0.0) {
       candidates[i].mode = !(normal > 0.0)         ? ContactMode::open
                            : slides_[i].sign > 0.0 ? ContactMode::slip_positive
@@ -139,7 +140,7 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
                                      candidate.mode == ContactMode::slip_negative)) {
       slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
       changed = true;
-    } else if (candidate.slip == 0.0 && !candidate.slippery && !slide.back &&
+    } else if (candidate.slip == 0.0 && !candidate.frictionless && !slide.back &&
                candidate.mode != ContactMode::open &&
                slide.sign * rate(1) < -std::max(no_acceleration * size, exhausted)) {
       // One at a time: it may be what takes the others along.
@@ -158,7 +159,7 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
   const ContactProblem& problem = cluster_.problem();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
-    if (contacts_[c].rubs()) continue;
+    if (contacts_[c].has_dry_friction()) continue;
     const int row = cluster_.first_row(c);
     const double ratio = -slides_[i].sign * contacts_[c].friction;
     candidates[i].stiffness = problem.w(row, row);

@@ -6,13 +6,13 @@
 /// 0, written for accelerations; one that slips already rubs against its motion. What has no answer, or
 /// several, is Painleve's: it is told which contact and which quantity is to blame.
 
-#include <carom/contact/closed_contacts.h>
+#include <carom/contact/active_set.h>
 #include <carom/contact/contact_cluster.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/island_motion.h>
+#include <carom/integrators/event_driven/smooth_motion.h>
 
 #include <span>
 #include <vector>
@@ -26,11 +26,11 @@ struct Candidate {
   double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
   ContactMode present = ContactMode::open;  ///< before the decision
   ContactMode mode = ContactMode::open;     ///< decided
-  bool breaks = false;    ///< its friction is exhausted: it slips against `push`, unless that cannot be
-  bool slippery = false;  ///< without friction
-  bool lifts = false;     ///< its force has come to an end: it opens, unless that cannot be
-  double push = 0.0;      ///< the friction force that was exhausted [N],
-  double noise = 0.0;     ///< to this much
+  bool breaks = false;        ///< its friction is exhausted: it slips against `push`, unless that cannot be
+  bool frictionless = false;  ///< without friction
+  bool releases = false;      ///< its force has come to an end: it opens, unless that cannot be
+  double push = 0.0;          ///< the friction force that was exhausted [N],
+  double noise = 0.0;         ///< to this much
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
@@ -48,8 +48,8 @@ enum class Decision : std::uint8_t {
 class CAROM_API ModeDecision {
 public:
   /// \param acceleration of all bodies without contact
-  /// \param motion of their island, evaluated without contacts
-  Decision decide(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+  /// \param motion of their component, evaluated without contacts
+  Decision decide(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
                   const double* acceleration, SolverChain& chain);
   /// The last problem, and what is known of its answer.
   [[nodiscard]] const ContactCluster& cluster() const { return cluster_; }
@@ -60,7 +60,7 @@ private:
     bool out = false;   // taken as open
     bool back = false;  // was taken to break loose or slip and did not
   };
-  Decision solve(const Assembly& assembly, IslandMotion& motion, std::span<Candidate> candidates,
+  Decision solve(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
                  const double* acceleration, SolverChain& chain);
   bool revise(std::span<Candidate> candidates);
   void name_culprit(std::span<Candidate> candidates);
@@ -68,9 +68,9 @@ private:
   void take(std::span<Candidate> candidates, std::size_t solution);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
   // Bounds of friction that follow from forces (mode_decision_bounds.cpp):
-  bool settle_bounds(IslandMotion& motion, std::span<Candidate> candidates, const double* acceleration,
+  bool settle_bounds(SmoothMotion& motion, std::span<Candidate> candidates, const double* acceleration,
                      SolverChain& chain);
-  void complete_modes(IslandMotion& motion, std::span<Candidate> candidates);
+  void complete_modes(SmoothMotion& motion, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
   ContactCluster cluster_;
@@ -79,7 +79,7 @@ private:
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::vector<Slide> slides_;
   std::vector<double> zero_, acceleration_;
-  std::vector<ClosedContact> closed_;  // those that stay, in the order of contacts_
+  std::vector<ActiveContact> active_;  // those that stay, in the order of contacts_
   std::vector<ForceMargin> margins_;
 };
 

@@ -18,14 +18,14 @@ constexpr double no_acceleration = 1e-11, no_force = 1e-11;
 
 /// The contacts that stay closed, in their modes.
 void ModeDecision::list_closed(std::span<const Candidate> candidates) {
-  closed_.clear();
+  active_.clear();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Candidate& candidate = candidates[taking_part_[c]];
     if (candidate.mode == ContactMode::open) continue;
-    ClosedContact& closed = closed_.emplace_back();
+    ActiveContact& closed = active_.emplace_back();
     closed.pair = candidate.pair;
     closed.mode = candidate.mode;
-    closed.slippery = candidate.slippery;
+    closed.frictionless = candidate.frictionless;
     closed.at = contacts_[c];
     closed.friction = contacts_[c].friction;
   }
@@ -33,14 +33,14 @@ void ModeDecision::list_closed(std::span<const Candidate> candidates) {
 
 /// Modes that the answer does not tell. Contacts without force that do not part stay closed where they can
 /// carry some: of redundant contacts solvers load any.
-void ModeDecision::complete_modes(IslandMotion& motion, std::span<Candidate> candidates) {
+void ModeDecision::complete_modes(SmoothMotion& motion, std::span<Candidate> candidates) {
   double size = 0.0;
   for (const double b : cluster_.problem().vector()) size = std::max(size, std::abs(b));
   std::vector<std::size_t> added;  // candidates
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
     const std::size_t i = taking_part_[c];
-    if (contact.rubs() && candidates[i].slip == 0.0 && !candidates[i].breaks) {
+    if (contact.has_dry_friction() && candidates[i].slip == 0.0 && !candidates[i].breaks) {
       // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
       // bound is zero modes cannot be told from the force.
       const double along = contact.acceleration(1, acceleration_.data());
@@ -50,7 +50,7 @@ void ModeDecision::complete_modes(IslandMotion& motion, std::span<Candidate> can
         candidates[i].mode = along > 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
       }
     }
-    if (contact.rubs() || candidates[i].mode != ContactMode::open) continue;
+    if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
     const int normal = cluster_.first_row(c);
     if (cluster_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
     if (contact.acceleration(0, acceleration_.data()) > no_acceleration * size) continue;
@@ -66,20 +66,20 @@ void ModeDecision::complete_modes(IslandMotion& motion, std::span<Candidate> can
   list_closed(candidates);
   double change = 0.0;
   BoundIteration once;
-  const bool found = motion.update_bounds(closed_, margins_, once, change);
+  const bool found = motion.update_bounds(active_, margins_, once, change);
   double largest = 0.0;
-  for (const ClosedContact& closed : closed_) {
-    if (!closed.at.rubs()) largest = std::max(largest, std::abs(closed.normal));
+  for (const ActiveContact& closed : active_) {
+    if (!closed.at.has_dry_friction()) largest = std::max(largest, std::abs(closed.normal));
   }
   for (const std::size_t i : added) {
-    const auto closed = std::find_if(closed_.begin(), closed_.end(),
-                                     [&](const ClosedContact& at) { return at.pair == candidates[i].pair; });
+    const auto closed = std::find_if(active_.begin(), active_.end(),
+                                     [&](const ActiveContact& at) { return at.pair == candidates[i].pair; });
     if (!found || !(closed->normal > no_force * largest)) candidates[i].mode = ContactMode::open;
   }
 }
 
 /// Modes by the problem at given bounds, and bounds by the forces that the flow has in these modes, in turns.
-bool ModeDecision::settle_bounds(IslandMotion& motion, std::span<Candidate> candidates,
+bool ModeDecision::settle_bounds(SmoothMotion& motion, std::span<Candidate> candidates,
                                  const double* acceleration, SolverChain& chain) {
   BoundIteration iteration;
   for (int turn = 0; turn < BoundIteration::most_repetitions; ++turn) {
@@ -91,15 +91,15 @@ bool ModeDecision::settle_bounds(IslandMotion& motion, std::span<Candidate> cand
     list_closed(candidates);
     double change = 0.0;
     iteration.begin();
-    if (!motion.update_bounds(closed_, margins_, iteration, change)) return false;
+    if (!motion.update_bounds(active_, margins_, iteration, change)) return false;
     const bool settled = iteration.settled(change);
     const bool guesses = !settled && iteration.accelerates();
     std::size_t bound = 0, at = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       if (candidates[taking_part_[c]].mode == ContactMode::open) continue;
-      const ClosedContact& closed = closed_[at++];
-      if (!motion.bears(contacts_[c])) continue;
-      contacts_[c].pressed = guesses ? iteration.guess(bound++) : closed.at.pressed;
+      const ActiveContact& closed = active_[at++];
+      if (!motion.depends_on_joint_force(contacts_[c])) continue;
+      contacts_[c].friction_bound = guesses ? iteration.guess(bound++) : closed.at.friction_bound;
       cluster_.press(c);
     }
     if (settled) return true;

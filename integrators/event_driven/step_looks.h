@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Looks into a step of an island: whatever is watched there, seen at one time and kept, so that all
+/// Looks into a step of a component: whatever is watched there, seen at one time and kept, so that all
 /// quantities that ask for a time share one evaluation of the motion.
 
 #include <carom/core/export.h>

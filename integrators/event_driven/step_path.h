@@ -15,7 +15,7 @@ namespace carom {
 /// One end of a step.
 struct PathEnd {
   double time = 0.0;                 ///< [s]
-  std::vector<double> y;             ///< unknowns of an island: q, v and others
+  std::vector<double> y;             ///< unknowns of a component: q, v and others
   std::vector<double> acceleration;  ///< dv/dt
 };
 

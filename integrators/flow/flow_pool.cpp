@@ -1,4 +1,4 @@
-// Problem: few of many islands are in the middle of a step at any time, and what steps take is large.
+// Problem: few of many components are in the middle of a step at any time, and what steps take is large.
 
 #include <carom/integrators/flow/flow_pool.h>
 

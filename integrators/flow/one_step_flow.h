@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// A flow of our own for tiny islands: an embedded Runge-Kutta pair without any overhead.
+/// A flow of our own for tiny components: an embedded Runge-Kutta pair without any overhead.
 
 #include <carom/core/export.h>
 #include <carom/integrators/flow/flow.h>

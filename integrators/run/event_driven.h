@@ -16,12 +16,12 @@ namespace carom {
 struct EventDriven {
   double relative_tolerance = 1e-9;  ///< largest error of a step relative to each unknown, > 0
   /// Largest absolute error of a step, > 0: of positions [m] and velocities [m/s]; angles count times the
-  /// radius of gyration, works relative to the mass of their island times 1 m^2/s^2.
+  /// radius of gyration, works relative to the mass of their component times 1 m^2/s^2.
   double absolute_tolerance = 1e-11;
   FlowMethod method = FlowMethod::explicit_runge_kutta;  ///< of the smooth phases
 
   /// Output interval: step() stops and observers are called at its multiples, > 0 [s]. It does not change the
-  /// motion: every island has its own steps, and output states are computed within them.
+  /// motion: every component has its own steps, and output states are computed within them.
   double interval = 1e-2;
   /// Longest step where loads or obstacles depend on time, > 0 [s]. Changes between the stages of a step are
   /// not detected: it must be shorter than the shortest pulse of a load, and than the period of a prescribed
@@ -38,16 +38,16 @@ struct EventDriven {
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;
   /// After each step velocities are projected onto joints and closed contacts. A projection that changes them
-  /// by more than this part of the island's kinetic energy, beyond what the absolute tolerance explains, ends
-  /// the run with a SolverError that names the joints, > 0: the position is singular, or too near one.
+  /// by more than this part of the component's kinetic energy, beyond what the absolute tolerance explains,
+  /// ends the run with a SolverError that names the joints, > 0: the position is singular, or too near one.
   double largest_projection = 1e-6;
-  /// A run with more events per second of simulated time, over the last 1,000 events of an island, ends with
-  /// a SolverError, > 0 [1/s].
+  /// A run with more events per second of simulated time, over the last 1,000 events of a component, ends
+  /// with a SolverError, > 0 [1/s].
   double event_limit = 1e6;
-  /// More steps of the integrator than this per second of simulated time, over the last 10,000 of an island,
-  /// end a run with a SolverError that names its stiffest coupling, > 0 [1/s].
+  /// More steps of the integrator than this per second of simulated time, over the last 10,000 of a
+  /// component, end a run with a SolverError that names its stiffest coupling, > 0 [1/s].
   double step_limit = 1e9;
-  /// More evaluations of the motion of an island than this within one of its steps, its events or between
+  /// More evaluations of the motion of a component than this within one of its steps, its events or between
   /// two looks at it end a run with a SolverError, > 0.
   std::int64_t evaluation_limit = 10'000'000;
   /// Keep a record of every event (Simulation::events()).

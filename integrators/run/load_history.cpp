@@ -20,7 +20,7 @@ void LoadHistory::go_on(double next_step, std::size_t size) {
   pending = true;
 }
 
-void LoadHistory::take_down(Range v, const double* then, const double* now) {
+void LoadHistory::record_change(Range v, const double* then, const double* now) {
   // Differences of changes and their sum stay within floats; what does not is guessed as it is now.
   constexpr double largest = std::numeric_limits<float>::max() / 8.0;
   float* const change = changes[0].data();

@@ -23,13 +23,13 @@ struct CAROM_API LoadHistory {
                                                  ///< [N, N m]; empty before the first step
   bool pending = false;  ///< the last change is that from `before` to the present loads, changes[0] is void
   std::vector<double> before;  ///< loads at the start of the last step if it is pending [N, N m]
-  std::vector<int> sweeps;     ///< of the last step, by island; empty if there was none
+  std::vector<int> sweeps;     ///< of the last step, by component; empty if there was none
 
   /// A step was made: its change is pending, and the oldest forgotten. \param next_step its length [s]
   /// \param size number of velocities
   void go_on(double next_step, std::size_t size);
   /// Takes the change from `then` to `now` down as the last one, over the velocities `v`.
-  void take_down(Range v, const double* then, const double* now);
+  void record_change(Range v, const double* then, const double* now);
   /// Guesses loads over the velocities `v` after `next_step` [s] by the polynomial through those of the last
   /// steps; none of them may be pending there.
   void guess(Range v, double next_step, const double* now, double* guess) const;

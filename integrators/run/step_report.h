@@ -59,13 +59,13 @@ struct ControlReport {
 struct StepReport {
   double time = 0.0;  ///< at its end [s]
   double step = 0.0;  ///< its length [s]
-  /// Which solved the step; where islands differ the one farthest from the fixed-point iteration, in the
+  /// Which solved the step; where components differ the one farthest from the fixed-point iteration, in the
   /// order of the enumeration.
   Iteration iteration = Iteration::fixed_point;
-  int fallbacks = 0;           ///< iterations that were given up for another one, summed over islands
-  int sweeps = 0;              ///< of the iteration that solved the step, the most over all islands
-  int local_sweeps = 0;        ///< sweeps before, of the bodies near contacts only; the most over all islands
-  double contraction = 0.0;    ///< ratio of successive changes, the largest over islands (0: none seen)
+  int fallbacks = 0;     ///< iterations that were given up for another one, summed over components
+  int sweeps = 0;        ///< of the iteration that solved the step, the most over all components
+  int local_sweeps = 0;  ///< sweeps before, of the bodies near contacts only; the most over all components
+  double contraction = 0.0;    ///< ratio of successive changes, the largest over components (0: none seen)
   ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
   /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
@@ -75,7 +75,7 @@ struct StepReport {
   double projected = 0.0;     ///< largest displacement by which a body was moved out of obstacles [m]
   ControlReport control;      ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
-  /// Impulses of all joints, including their reactions to contact; by island, then by kind. In the
+  /// Impulses of all joints, including their reactions to contact; by component, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
   std::vector<JointImpulse> joint_impulses;
   /// Findings of System::check() in the model, at the start or the last edit; the same in every step.
@@ -104,7 +104,7 @@ struct Statistics {
   double deepest_gap = 0.0;               ///< the most negative gap found [m]
   double worst_residual = 0.0;            ///< the largest certificate of a contact problem
   EventCounts events{};                   ///< of the event-driven mode, by kind
-  std::int64_t flow_steps = 0;            ///< of its integrators, over all islands
+  std::int64_t flow_steps = 0;            ///< of its integrators, over all components
   std::int64_t flow_evaluations = 0;      ///< of rates, likewise
   std::int64_t flow_restarts = 0;         ///< likewise
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Bounds of the work on an island, so that no run goes on for ever without getting anywhere.
+/// Bounds of the work on a component, so that no run goes on for ever without getting anywhere.
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
@@ -37,10 +37,10 @@ private:
   double since_ = 0.0;  // start of the window [s]
 };
 
-/// Evaluations since an island last got on: within one step of its flow, one event, one look at it.
+/// Evaluations since a component last got on: within one step of its flow, one event, one look at it.
 class CAROM_API EvaluationLimit {
 public:
-  /// Thrown where there were too many; who knows the island makes a SolverError of it.
+  /// Thrown where there were too many; who knows the component makes a SolverError of it.
   class CAROM_API Reached : public Error {
   public:
     Reached() : Error("too many evaluations") {}
@@ -51,7 +51,7 @@ public:
   /// \param stop asked at every evaluation, may be null; must outlive this
   EvaluationLimit(std::int64_t most, const StopRequest* stop) : most_(most), stop_(stop) {}
 
-  /// The island got on.
+  /// The component got on.
   void restart() { made_ = 0; }
   /// Counts one more. Throws Reached, Cancelled.
   void take() {

@@ -12,16 +12,16 @@ namespace {
 
 /// Gaps are brought to this depth: rounding of the coordinates, on the closed side so that a resting body
 /// remains in contact.
-double rounding_depth(const Assembly& assembly, Index island, const State& state) {
-  const Range q = assembly.islands()[island].q;
+double rounding_depth(const Assembly& assembly, Index component, const State& state) {
+  const Range q = assembly.components()[component].q;
   double size = 1.0;
   for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(state.q[i]));
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
 /// The largest gap of the joints.
-double off(IslandJoints& joints, const State& state, const Evaluation& evaluation) {
-  joints.place_gaps({state.view(), evaluation.rotation.data()});
+double off(JointConstraints& joints, const State& state, const Evaluation& evaluation) {
+  joints.update_gaps({state.view(), evaluation.rotation.data()});
   double worst = 0.0;
   for (std::size_t row = 0; row < joints.size(); ++row) worst = std::max(worst, std::abs(joints.gap(row)));
   return worst;
@@ -29,13 +29,13 @@ double off(IslandJoints& joints, const State& state, const Evaluation& evaluatio
 
 }  // namespace
 
-/// Contacts near enough to matter, of those that are asked for (both lists are in the finder's order).
-void GapProjection::find(Index island, const ContactFinder& finder, const ObstaclePlaces& places,
+/// Contacts near enough to matter, of those that are asked for (both lists are in the detector's order).
+void GapProjection::find(Index component, const Detector& detector, const ObstaclePlaces& places,
                          const Which& which, double margin, const State& state,
                          const Evaluation& evaluation) {
   found_.clear();
   contacts_.clear();
-  finder.find(island, state.view(), evaluation, places, nullptr, margin, found_);
+  detector.find(component, state.view(), evaluation, places, nullptr, margin, found_);
   if (which.all) {
     contacts_ = found_;
     return;
@@ -50,24 +50,24 @@ void GapProjection::find(Index island, const ContactFinder& finder, const Obstac
   }
 }
 
-GapProjection::Result GapProjection::project(const Assembly& assembly, Index island,
-                                             const ContactFinder& finder, const ObstaclePlaces& places,
+GapProjection::Result GapProjection::project(const Assembly& assembly, Index component,
+                                             const Detector& detector, const ObstaclePlaces& places,
                                              const Which& which, SolverChain& chain, State& state,
-                                             Evaluation& evaluation, IslandJoints& joints) {
+                                             Evaluation& evaluation, JointConstraints& joints) {
   // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
   constexpr int most_passes = 20;
-  const double depth = rounding_depth(assembly, island, state);
-  const Island& range = assembly.islands()[island];
+  const double depth = rounding_depth(assembly, component, state);
+  const Component& range = assembly.components()[component];
   if (lengths_.size() != state.v.size()) lengths_ = assembly.length_scales();
   unmoved_.assign(state.q.begin(), state.q.end());
   displacement_.assign(state.v.size(), 0.0);
   Result result;
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
-    find(island, finder, places, which, 2.0 * result.shift, state, evaluation);
+    find(component, detector, places, which, 2.0 * result.shift, state, evaluation);
     // Bodies that joints bind come last, and together.
     const auto owner = [&](const Contact& contact) {
-      return assembly.is_bound(contact.body) ? none : contact.body;
+      return assembly.is_jointed(contact.body) ? none : contact.body;
     };
     std::stable_sort(contacts_.begin(), contacts_.end(),
                      [&](const Contact& a, const Contact& b) { return owner(a) < owner(b); });
@@ -79,7 +79,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
       while (last < contacts_.size() && owner(contacts_[last]) == owner(contacts_[first])) ++last;
       const std::span<const Contact> of_body(contacts_.data() + first, last - first);
       const BodySlot body = assembly.layout()->bodies()[of_body.front().body];
-      const bool bound = assembly.is_bound(of_body.front().body);
+      const bool bound = assembly.is_jointed(of_body.front().body);
       const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
       const bool moved = std::any_of(displacement_.begin() + own.begin, displacement_.begin() + own.end,
                                      [](double number) { return number != 0.0; });
@@ -97,7 +97,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
       const bool loose = bound && moved && off(joints, state, evaluation) > 2.0 * depth;
       if (deep || open || loose) {
         const bool better =
-            bound ? move_bound(assembly, island, of_body, chain, state, evaluation, depth, joints)
+            bound ? move_bound(assembly, component, of_body, chain, state, evaluation, depth, joints)
                   : move_body(assembly, of_body, chain, state, depth);
         improved = better || improved;
       }
@@ -108,7 +108,7 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index isl
     for (Index i = range.v.begin; i < range.v.end; ++i) {
       result.shift = std::max(result.shift, std::abs(displacement_[i]) * lengths_[i]);
     }
-    evaluate_positions(assembly, island, state.view(), evaluation);
+    evaluate_positions(assembly, component, state.view(), evaluation);
   }
   return result;
 }
@@ -152,12 +152,12 @@ bool GapProjection::move_body(const Assembly& assembly, std::span<const Contact>
   return true;
 }
 
-bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span<const Contact> contacts,
+bool GapProjection::move_bound(const Assembly& assembly, Index component, std::span<const Contact> contacts,
                                SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
-                               IslandJoints& joints) {
+                               JointConstraints& joints) {
   const std::size_t size = state.v.size();
   const auto rows = static_cast<int>(contacts.size());
-  joints.locate({state.view(), evaluation.rotation.data()});
+  joints.update_and_factor({state.view(), evaluation.rotation.data()});
   of_joints_.resize(joints.size());
   joints.residuals(JointLevel::change, displacement_.data(), of_joints_.data());
   for (std::size_t i = 0; i < joints.size(); ++i) of_joints_[i] = joints.gap(i) - of_joints_[i];
@@ -170,7 +170,7 @@ bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     double* const response = response_.data() + i * size;
     contacts[i].add_transposed(0, 1.0, response);
-    joints.respond(response);
+    joints.constrained_response(response);
     problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data()) +
                            contacts[i].times(0, towards_.data());
   }
@@ -183,10 +183,10 @@ bool GapProjection::move_bound(const Assembly& assembly, Index island, std::span
   problem_.group();
   if (!chain.solve(problem_, multipliers_).usable()) return false;
   const auto& bodies = assembly.layout()->bodies();
-  const Range all = assembly.islands()[island].bodies;
+  const Range all = assembly.components()[component].bodies;
   moved_.resize(state.q.size());
   for (Index body = all.begin; body < all.end; ++body) {
-    if (!assembly.is_bound(body)) continue;
+    if (!assembly.is_jointed(body)) continue;
     const BodySlot slot = bodies[body];
     for (Index k = slot.v; k < slot.v + slot.v_size; ++k) {
       displacement_[k] = towards_[k];

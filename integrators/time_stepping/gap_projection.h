@@ -6,14 +6,14 @@
 /// estimate d the gaps are taken as linear; the multipliers y of the next estimate d' = M^-1 G^T y solve
 ///     W y + g(q + d) - G d >= 0,  y >= 0,  complementary,   W = G M^-1 G^T.
 /// Where joints bind the bodies, with rows J and gaps j, they move together: M^-1 leaves room for K of
-/// core/dynamics/island_joints.h, and  d' = K G^T y + d0  with the smallest d0 for which  J d0 = J d - j(q +
-/// d).
+/// core/dynamics/joint_constraints.h, and  d' = K G^T y + d0  with the smallest d0 for which  J d0 = J d -
+/// j(q + d).
 
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 
 #include <span>
@@ -21,7 +21,7 @@
 
 namespace carom {
 
-/// Moves the bodies of one island. Keeps memory only.
+/// Moves the bodies of one component. Keeps memory only.
 class CAROM_API GapProjection {
 public:
   /// Outcome of a projection.
@@ -35,29 +35,29 @@ public:
   };
   /// Gaps that are to be opened.
   struct Which {
-    std::span<const Contact> taking_part{};  ///< these, in the order of the finder,
+    std::span<const Contact> taking_part{};  ///< these, in the order of the detector,
     bool all = false;                        ///< or all, those that a displacement closes included
   };
 
   /// Moves bodies until the gaps asked for are at most rounding below zero; those that keep a body from
   /// falling back end there, still closed. Obstacles are at `places`. The position group of `evaluation` must
   /// be up to date, and is so afterwards.
-  /// \param joints of the island; may be empty
-  Result project(const Assembly& assembly, Index island, const ContactFinder& finder,
+  /// \param joints of the component; may be empty
+  Result project(const Assembly& assembly, Index component, const Detector& detector,
                  const ObstaclePlaces& places, const Which& which, SolverChain& chain, State& state,
-                 Evaluation& evaluation, IslandJoints& joints);
+                 Evaluation& evaluation, JointConstraints& joints);
 
 private:
-  void find(Index island, const ContactFinder& finder, const ObstaclePlaces& places, const Which& which,
+  void find(Index component, const Detector& detector, const ObstaclePlaces& places, const Which& which,
             double margin, const State& state, const Evaluation& evaluation);
   /// Makes a better estimate for one body; false if there is none.
   bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
                  State& state, double depth);
 
-  /// Likewise for all bodies of an island that joints bind.
-  bool move_bound(const Assembly& assembly, Index island, std::span<const Contact> contacts,
+  /// Likewise for all bodies of a component that joints bind.
+  bool move_bound(const Assembly& assembly, Index component, std::span<const Contact> contacts,
                   SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
-                  IslandJoints& joints);
+                  JointConstraints& joints);
 
   std::vector<Contact> found_, contacts_;
   ContactProblem problem_;

@@ -10,7 +10,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       options_(options),
       stop_(stop),
       workers_(std::max(options.threads, 1)),
-      finder_(assembly),
+      detector_(assembly),
       prescribed_(assembly),
       trial_(assembly.layout()),
       evaluation_(make_evaluation(assembly)) {
@@ -23,27 +23,27 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
     loads_need_rotations_ = loads_need_rotations_ || kind->needs_rotations();
   }
   if (assembly.layout()->rotation_size() == 0) loads_need_rotations_ = false;  // none of particles
-  contacts_need_rotations_ = finder_.needs_rotations();
+  contacts_need_rotations_ = detector_.needs_rotations();
   start_needs_rotations_ = contacts_need_rotations_ || loads_need_rotations_;
   if (books_dissipative_) dissipative_.resize(size);
   if (books_external_) external_.resize(size);
   rounding_.resize(size);
-  ratings_.resize(assembly.islands().size());
-  rated_contraction_.assign(assembly.islands().size(), -1.0);
+  ratings_.resize(assembly.components().size());
+  rated_contraction_.assign(assembly.components().size(), -1.0);
   prepare_joints();
-  sort_islands();
-  guesses_ = std::any_of(needed_sweeps_.begin(), needed_sweeps_.end(),
-                         [](Sweeps needed) { return needed != Sweeps::unneeded; });
+  classify_components();
+  guesses_ = std::any_of(coupling_class_.begin(), coupling_class_.end(),
+                         [](CouplingClass needed) { return needed != CouplingClass::constant_loads; });
   if (mean_rule() || assembly.layout()->z_size() > 0 || !joints_.empty()) {
-    middle_ = State(assembly.layout());
+    midpoint_ = State(assembly.layout());
     middle_evaluation_.rotation.resize(assembly.layout()->rotation_size());
   }
-  taken_down_.resize(assembly.blocks().size());
-  sweeps_.resize(assembly.islands().size());
+  recorded_.resize(assembly.blocks().size());
+  sweeps_.resize(assembly.components().size());
   Index most_blocks = 1, most_runs = 1;
-  for (const Island& island : assembly.islands()) {
-    most_blocks = std::max(most_blocks, island.blocks.size());
-    most_runs = std::max(most_runs, island.runs.size());
+  for (const Component& component : assembly.components()) {
+    most_blocks = std::max(most_blocks, component.blocks.size());
+    most_runs = std::max(most_runs, component.runs.size());
   }
   chains_.resize(most_runs);
   block_clusters_.resize(most_blocks);
@@ -59,11 +59,11 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   flows_ = {};
   stored_ = {};
   coupling_work_ = {};
-  projected_ = 0.0;
-  held_ = 0.0;
+  energy_position_projection_ = 0.0;
+  energy_velocity_projection_ = 0.0;
   report_.contacts.clear();
   report_.joint_impulses.clear();
-  rubbing_modes_.clear();
+  joint_friction_modes_.clear();
   report_.time = end_time;
   report_.step = step;
   report_.iteration = Iteration::fixed_point;
@@ -76,18 +76,18 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   report_.energy_gain = report_.lasting_gain = 0.0;
   report_.projected = 0.0;
   report_.control = {};
-  if (finder_.has_moving_obstacles() || !prescribed_.empty()) place_obstacles(state, step, end_time);
+  if (detector_.has_moving_obstacles() || !prescribed_.empty()) place_obstacles(state, step, end_time);
   start_loads(state, companion);
   remember_contacts(companion, step);
   for (SolverChain& chain : chains_) {
     if (chain.statistics().problems > 0) chain.reset_statistics();  // of a step that failed
   }
-  const auto islands = static_cast<Index>(assembly_->islands().size());
+  const auto components = static_cast<Index>(assembly_->components().size());
   iterations_.clear();
   open_history(companion);
   try {
-    for (Index island = 0; island < islands; ++island) {
-      advance_island(island, state, companion, step);
+    for (Index component = 0; component < components; ++component) {
+      advance_component(component, state, companion, step);
     }
   } catch (...) {
     close_history(companion);
@@ -99,213 +99,214 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 void TimeStepper::place_obstacles(const State& state, double step, double end_time) {
   try {
     prescribed_.demand_continuous(state.time, end_time);
-    if (!finder_.has_moving_obstacles()) return;
+    if (!detector_.has_moving_obstacles()) return;
     if (places_after_.time() == state.time) std::swap(places_, places_after_);
-    finder_.place(state.time, places_);
-    finder_.place(end_time, places_after_);
-    finder_.demand_continuous(places_, places_after_);
+    detector_.place(state.time, places_);
+    detector_.place(end_time, places_after_);
+    detector_.demand_continuous(places_, places_after_);
   } catch (const SolverError& error) {
     fail_motion(error, state, step);
   }
 }
 
-void TimeStepper::advance_island(Index island, const State& state, const Companion& companion, double step) {
-  if (start_needs_rotations_) evaluate_positions(*assembly_, island, state.view(), start_);
+void TimeStepper::advance_component(Index component, const State& state, const Companion& companion,
+                                    double step) {
+  if (start_needs_rotations_) evaluate_positions(*assembly_, component, state.view(), start_);
   FixedPointJudge judge(options_.tolerance, options_.max_sweeps);
   if (automatic()) iteration_ = Iteration::fixed_point;
   tentative_ = false;
-  if (automatic() && needed_sweeps_[island] != Sweeps::unneeded) {
-    iterate_somehow(island, state, companion, step, judge);
+  if (automatic() && coupling_class_[component] != CouplingClass::constant_loads) {
+    iterate_somehow(component, state, companion, step, judge);
   } else {
-    find_contacts(island, state);
-    if (!iterate(island, state, companion, step, judge)) {
-      fail_contraction(island, state, companion, step, judge);
+    find_contacts(component, state);
+    if (!iterate(component, state, companion, step, judge)) {
+      fail_contraction(component, state, companion, step, judge);
     }
   }
-  const bool with_joints = jointed(island);
+  const bool with_joints = jointed(component);
   const double contraction = judge.contraction();
 
-  book_couplings(island, state, step);
-  if (with_joints) book_joints(island, state, step);
-  book_contacts(island, state, step);
-  if (options_.project_gaps) project(island, state, companion, step);
-  rate(island, state, step, contraction);
+  book_couplings(component, state, step);
+  if (with_joints) book_joints(component, state, step);
+  book_contacts(component, state, step);
+  if (options_.project_gaps) project(component, state, companion, step);
+  rate(component, state, step, contraction);
   report_.iteration = std::max(report_.iteration, iteration_);
   report_.sweeps = std::max(report_.sweeps, judge.sweeps());
   report_.contraction = std::max(report_.contraction, contraction);
 }
 
-bool TimeStepper::iterate(Index island, const State& state, const Companion& companion, double step,
+bool TimeStepper::iterate(Index component, const State& state, const Companion& companion, double step,
                           FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
-  if (needed_sweeps_[island] == Sweeps::unneeded) {
-    advance_under_constant_loads(island, state, companion, step);
-    sweeps_[island] = 1;
+  if (coupling_class_[component] == CouplingClass::constant_loads) {
+    advance_under_constant_loads(component, state, companion, step);
+    sweeps_[component] = 1;
     return judge.judge(0.0, 0.0) == Verdict::converged;
   }
   const bool implicit = iteration_ == Iteration::linearly_implicit;
-  const bool with_joints = jointed(island);
-  start_iteration(island, state, step);
-  if (in_one_pass(island)) {
-    settle_contacts(island, state, companion, step);
+  const bool with_joints = jointed(component);
+  start_iteration(component, state, step);
+  if (is_streamable(component)) {
+    presolve_around_contacts(component, state, companion, step);
   } else {
-    guess_loads(island, companion, step);
+    guess_loads(component, companion, step);
   }
-  if (implicit) start_implicit(island, state, companion, step);
+  if (implicit) start_implicit(component, state, companion, step);
 
   const std::vector<int>& before = history_->sweeps;
-  const int expected = before.size() == sweeps_.size() ? before[island] : 1;
+  const int expected = before.size() == sweeps_.size() ? before[component] : 1;
   for (;;) {
     if (stop_ != nullptr) stop_->check();
-    SweepsMade made = sweep_on(island, state, companion, step, expected, judge);
+    SweepsMade made = sweep_on(component, state, companion, step, expected, judge);
     if (made == SweepsMade::failed) return false;
     // Newton's method has its own change: that of the loads is magnified where couplings are stiff.
-    SweepChange change = implicit ? implicit_change(island, step) : largest(changes_, island);
+    SweepChange change = implicit ? implicit_change(component, step) : largest(changes_, component);
     if (with_joints) {
-      const SweepChange seen = joint_change(island, step);
+      const SweepChange seen = joint_change(component, step);
       change.take(seen.change, seen.size);
-      change.size *= joints_[island].magnified;
+      change.size *= joints_[component].roundoff_growth;
     }
     Verdict verdict = implicit || with_joints ? judge.judge(change.change, change.size)
                                               : judge.judge_ahead(change.change, change.size);
     // Its first is that from t_j: small or not, it says nothing of the guess.
     if (implicit && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
     if (verdict == Verdict::failed) return false;
-    if (verdict == Verdict::converged || made == SweepsMade::one_too_many) {
-      sweeps_[island] = judge.sweeps() - (made == SweepsMade::one_too_many ? 1 : 0);
-      if (with_joints && settle_joints(island, state, companion, step)) {
-        follow_iterate(island, state, step);
+    if (verdict == Verdict::converged || made == SweepsMade::converged_one_early) {
+      sweeps_[component] = judge.sweeps() - (made == SweepsMade::converged_one_early ? 1 : 0);
+      if (with_joints && converge_joints(component, state, companion, step)) {
+        follow_iterate(component, state, step);
         made = SweepsMade::total;
       }
       if (made == SweepsMade::total) {
-        evaluate_iterate(island, state, companion, step, LoadsAsked::by_cause, false);
+        evaluate_iterate(component, state, companion, step, LoadsAsked::by_cause, false);
       }
       return true;
     }
-    improve_guess(island, judge);
+    improve_guess(component, judge);
   }
 }
 
 /// Loads by cause, with potentials, cost more than their sum; they are wanted of the last iterate only, which
 /// is expected after as many sweeps as in the last step.
-TimeStepper::SweepsMade TimeStepper::sweep_on(Index island, const State& state, const Companion& companion,
+TimeStepper::SweepsMade TimeStepper::sweep_on(Index component, const State& state, const Companion& companion,
                                               double step, int expected, FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
   const bool guessing = judge.sweeps() == 0;
-  const Index first_block = assembly_->islands()[island].blocks.begin;
+  const Index first_block = assembly_->components()[component].blocks.begin;
   const auto sweep_first = [&](const Block& block, Index part) {
     if (guessing && settled_[part] == 0) guess_block(first_block + part, companion, step);
-    solve_contacts(island, block, part, state, companion, step);
-    sweep(island, block, part, state, companion, step);
+    solve_contacts(component, block, part, state, companion, step);
+    sweep(component, block, part, state, companion, step);
   };
-  if (in_one_pass(island) && iteration_ == Iteration::fixed_point &&
-      assembly_->islands()[island].blocks.size() > 1 && judge.sweeps() + 2 == expected) {
-    sweep_twice(island, state, companion, step, sweep_first);
-    demand_solved(island, state, companion, step, judge.sweeps() + 2);
-    const SweepChange earlier = largest(earlier_changes_, island);
+  if (is_streamable(component) && iteration_ == Iteration::fixed_point &&
+      assembly_->components()[component].blocks.size() > 1 && judge.sweeps() + 2 == expected) {
+    sweep_fused(component, state, companion, step, sweep_first);
+    demand_solved(component, state, companion, step, judge.sweeps() + 2);
+    const SweepChange earlier = largest(earlier_changes_, component);
     switch (judge.judge_ahead(earlier.change, earlier.size)) {
       case Verdict::failed:
         return SweepsMade::failed;
       case Verdict::converged:
-        return SweepsMade::one_too_many;
+        return SweepsMade::converged_one_early;
       case Verdict::go_on:
         return SweepsMade::by_cause;
     }
   }
   BlockTask first;
-  if (in_one_pass(island)) {
+  if (is_streamable(component)) {
     first = sweep_first;
   } else {
-    sweep_all(island, state, companion, step);
-    follow_iterate(island, state, step);
+    sweep_all(component, state, companion, step);
+    follow_iterate(component, state, step);
   }
   const bool by_cause = judge.sweeps() + 1 >= expected;
   const bool implicit = iteration_ == Iteration::linearly_implicit;
-  evaluate_iterate(island, state, companion, step, by_cause ? LoadsAsked::by_cause : LoadsAsked::total,
+  evaluate_iterate(component, state, companion, step, by_cause ? LoadsAsked::by_cause : LoadsAsked::total,
                    !implicit, first);
-  if (in_one_pass(island)) demand_solved(island, state, companion, step, judge.sweeps() + 1);
+  if (is_streamable(component)) demand_solved(component, state, companion, step, judge.sweeps() + 1);
   return by_cause ? SweepsMade::by_cause : SweepsMade::total;
 }
 
-void TimeStepper::start_iteration(Index island, const State& state, double step) {
-  const Range v = assembly_->islands()[island].v;
-  const Range z = assembly_->islands()[island].z;
+void TimeStepper::start_iteration(Index component, const State& state, double step) {
+  const Range v = assembly_->components()[component].v;
+  const Range z = assembly_->components()[component].z;
   std::copy(state.z.begin() + z.begin, state.z.begin() + z.end, trial_.z.begin() + z.begin);
   swept_ = false;
-  if (jointed(island)) start_joints(island, state, step);
+  if (jointed(component)) start_joints(component, state, step);
   if (iteration_ == Iteration::anderson) anderson_.start(v.size());
 }
 
-void TimeStepper::sort_islands() {
+void TimeStepper::classify_components() {
   const Assembly& assembly = *assembly_;
-  needed_sweeps_.assign(assembly.islands().size(), Sweeps::several);
+  coupling_class_.assign(assembly.components().size(), CouplingClass::iterated);
   if (options_.iteration == Iteration::linearly_implicit || mean_rule() || loads_need_rotations_) return;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    if (jointed(island) || !assembly.islands()[island].z.empty()) continue;
-    needed_sweeps_[island] = Sweeps::unneeded;
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    if (jointed(component) || !assembly.components()[component].z.empty()) continue;
+    coupling_class_[component] = CouplingClass::constant_loads;
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      if (assembly.elements(island, kind).empty() || assembly.force_kinds()[kind]->is_constant()) continue;
-      needed_sweeps_[island] = Sweeps::in_one_pass;
+      if (assembly.elements(component, kind).empty() || assembly.force_kinds()[kind]->is_constant()) continue;
+      coupling_class_[component] = CouplingClass::streamable;
     }
   }
 }
 
-void TimeStepper::sweep_all(Index island, const State& state, const Companion& companion, double step) {
+void TimeStepper::sweep_all(Index component, const State& state, const Companion& companion, double step) {
   const bool implicit = iteration_ == Iteration::linearly_implicit;
-  if (jointed(island)) {
-    if (implicit) guess_implicit(island, state, step);
-    sweep_joints(island, state, companion, step);
+  if (jointed(component)) {
+    if (implicit) guess_implicit(component, state, step);
+    sweep_joints(component, state, companion, step);
     return;
   }
   if (implicit) {
-    solve_implicit(island, state, step);
+    solve_implicit(component, state, step);
   } else {
-    solve_contacts(island, state, companion, step);
+    solve_contacts(component, state, companion, step);
   }
-  sweep(island, state, companion, step);
+  sweep(component, state, companion, step);
 }
 
 /// What follows from the iterate before its loads: rotations, internal variables, the state halfway where
 /// it is looked at.
-void TimeStepper::follow_iterate(Index island, const State& state, double step) {
+void TimeStepper::follow_iterate(Index component, const State& state, double step) {
   const Assembly& assembly = *assembly_;
-  if (loads_need_rotations_) evaluate_positions(assembly, island, trial_.view(), evaluation_);
-  const Island& range = assembly.islands()[island];
+  if (loads_need_rotations_) evaluate_positions(assembly, component, trial_.view(), evaluation_);
+  const Component& range = assembly.components()[component];
   if (!range.z.empty()) {
-    const ElementId failed = with_step(island, state, step, [&](const StepContext& at) {
-      return advance_internals(assembly, island, at, trial_.z.data());
+    const ElementId failed = with_step(component, state, step, [&](const StepContext& at) {
+      return advance_internals(assembly, component, at, trial_.z.data());
     });
     if (failed.valid()) fail_internal(failed, state, step);
   }
-  if (!(mean_rule() || !range.z.empty()) || !uses_middle(assembly, island)) return;
-  place_middle(island, state, step);
-  for (Index i = range.z.begin; i < range.z.end; ++i) middle_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
-  if (loads_need_rotations_) evaluate_positions(assembly, island, middle_.view(), middle_evaluation_);
+  if (!(mean_rule() || !range.z.empty()) || !uses_middle(assembly, component)) return;
+  place_middle(component, state, step);
+  for (Index i = range.z.begin; i < range.z.end; ++i) midpoint_.z[i] = 0.5 * (state.z[i] + trial_.z[i]);
+  if (loads_need_rotations_) evaluate_positions(assembly, component, midpoint_.view(), middle_evaluation_);
 }
 
-void TimeStepper::place_middle(Index island, const State& state, double step) {
-  const Range v_range = assembly_->islands()[island].v;
-  middle_.time = state.time + 0.5 * step;
+void TimeStepper::place_middle(Index component, const State& state, double step) {
+  const Range v_range = assembly_->components()[component].v;
+  midpoint_.time = state.time + 0.5 * step;
   for (Index i = v_range.begin; i < v_range.end; ++i) {
-    middle_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
+    midpoint_.v[i] = 0.5 * step * 0.5 * (state.v[i] + trial_.v[i]);
   }
-  assembly_->for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    kind.advance(slots, state.q.data() + q, middle_.v.data() + v, middle_.q.data() + q);
+  assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.advance(slots, state.q.data() + q, midpoint_.v.data() + v, midpoint_.q.data() + q);
   });
-  for (Index i = v_range.begin; i < v_range.end; ++i) middle_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
+  for (Index i = v_range.begin; i < v_range.end; ++i) midpoint_.v[i] = 0.5 * (state.v[i] + trial_.v[i]);
 }
 
-void TimeStepper::rate(Index island, const State& state, double step, double contraction) {
+void TimeStepper::rate(Index component, const State& state, double step, double contraction) {
   // Rated once, and again when the iteration has come to contract twice as badly.
   constexpr double worsening = 2.0;
-  if (rated_contraction_[island] < 0.0 || contraction > worsening * rated_contraction_[island]) {
-    evaluate_positions(*assembly_, island, state.view(), evaluation_);
-    ratings_[island] = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
-    rated_contraction_[island] = contraction;
+  if (rated_contraction_[component] < 0.0 || contraction > worsening * rated_contraction_[component]) {
+    evaluate_positions(*assembly_, component, state.view(), evaluation_);
+    ratings_[component] = rate_couplings(*assembly_, component, state.view(), evaluation_, step);
+    rated_contraction_[component] = contraction;
   }
-  if (ratings_[island].rate > report_.worst_coupling_rate) {
-    report_.worst_coupling = ratings_[island].worst;
-    report_.worst_coupling_rate = ratings_[island].rate;
+  if (ratings_[component].rate > report_.worst_coupling_rate) {
+    report_.worst_coupling = ratings_[component].worst;
+    report_.worst_coupling_rate = ratings_[component].rate;
   }
 }
 

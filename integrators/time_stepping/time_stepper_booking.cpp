@@ -30,7 +30,7 @@ double work(const double* a, const double* b, const State& start, const State& e
 
 /// The total is that of the impulse that acted; its parts by cause are those of the loads that it led to,
 /// what the iteration left open counts as conservative.
-TimeStepper::Works TimeStepper::works(Index island, const Block& block, const State& state,
+TimeStepper::Works TimeStepper::works(Index component, const Block& block, const State& state,
                                       const Companion& companion, double step) const {
   const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
     if (at_end.empty()) return 0.0;
@@ -41,94 +41,96 @@ TimeStepper::Works TimeStepper::works(Index island, const Block& block, const St
   sums.total = work(start_of_sum(companion), evaluation_.force.data(), state, trial_, block.v, step);
   sums.dissipative = of_cause(companion.loads.dissipative, dissipative_);
   sums.external = of_cause(companion.loads.external, external_);
-  assembly_->for_bodies(island, block.bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
-  });
+  assembly_->for_bodies(component, block.bodies,
+                        [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+                          sums.kinetic += kind.kinetic_energy(slots, trial_.v.data() + v);
+                        });
   return sums;
 }
 
-void TimeStepper::book_couplings(Index island, const State& state, double step) {
+void TimeStepper::book_couplings(Index component, const State& state, double step) {
   const Assembly& assembly = *assembly_;
   for (std::size_t i = 0; i < stored_energy_count; ++i) stored_.values[i] += evaluated_energies_.values[i];
   double total = 0.0, dissipative = 0.0, external = 0.0;
-  for (Index part = 0; part < assembly.islands()[island].blocks.size(); ++part) {
+  for (Index part = 0; part < assembly.components()[component].blocks.size(); ++part) {
     stored_[StoredEnergy::kinetic] += works_[part].kinetic;
     total += works_[part].total;
     dissipative += works_[part].dissipative;
     external += works_[part].external;
   }
   double inside = 0.0;
-  if (!assembly.islands()[island].z.empty()) {
-    inside = with_step(island, state, step,
-                       [&](const StepContext& at) { return internal_loss(assembly, island, at); });
+  if (!assembly.components()[component].z.empty()) {
+    inside = with_step(component, state, step,
+                       [&](const StepContext& at) { return internal_loss(assembly, component, at); });
   }
   // Potentials enter the ledger unseen by any sweep.
-  if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(island, state, step);
+  if (!std::isfinite(dissipative + external + inside + stored_.total())) fail_account(component, state, step);
   coupling_work_.add(total - dissipative - external + inside);
   flows_[EnergyFlow::dashpot] += inside - dissipative;
   flows_[EnergyFlow::external] += external;
 }
 
-void TimeStepper::project(Index island, const State& state, const Companion& companion, double step) {
+void TimeStepper::project(Index component, const State& state, const Companion& companion, double step) {
   if (contacts_.empty()) return;
   const Assembly& assembly = *assembly_;
-  evaluate_positions(assembly, island, trial_.view(), evaluation_);
-  IslandJoints none_there;
-  IslandJoints& joints = jointed(island) ? joints_[island].end : none_there;
-  const GapProjection::Result result = projection_.project(
-      assembly, island, finder_, places_after_, {contacts_}, chains_.front(), trial_, evaluation_, joints);
+  evaluate_positions(assembly, component, trial_.view(), evaluation_);
+  JointConstraints none_there;
+  JointConstraints& joints = jointed(component) ? joints_[component].end : none_there;
+  const GapProjection::Result result =
+      projection_.project(assembly, component, detector_, places_after_, {contacts_}, chains_.front(), trial_,
+                          evaluation_, joints);
   if (result.left != nullptr) fail_projection(*result.left, state, step);
   if (!result.moved) return;
   report_.projected = std::max(report_.projected, result.shift);
-  if (jointed(island)) hold_velocities(island);
+  if (jointed(component)) hold_velocities(component);
   const StoredEnergies before = evaluated_energies_;
   if (mean_rule()) {
     // The mean loads are those that acted.
     evaluated_energies_ = {};
-    add_potentials(assembly, island, trial_.view(), evaluation_, evaluated_energies_);
+    add_potentials(assembly, component, trial_.view(), evaluation_, evaluated_energies_);
   } else {
-    evaluate_iterate(island, state, companion, step, LoadsAsked::by_cause, false);
+    evaluate_iterate(component, state, companion, step, LoadsAsked::by_cause, false);
   }
-  projected_ += before.potential() - evaluated_energies_.potential();
+  energy_position_projection_ += before.potential() - evaluated_energies_.potential();
   for (std::size_t i = 0; i < stored_energy_count; ++i) {
     stored_.values[i] += evaluated_energies_.values[i] - before.values[i];
   }
 }
 
 /// Velocities that the joints allow where bodies have been moved to.
-void TimeStepper::hold_velocities(Index island) {
+void TimeStepper::hold_velocities(Index component) {
   const Assembly& assembly = *assembly_;
   const auto kinetic = [&] {
     double sum = 0.0;
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       sum += kind.kinetic_energy(slots, trial_.v.data() + v);
     });
     return sum;
   };
-  IslandJoints& joints = joints_[island].end;
+  JointConstraints& joints = joints_[component].end;
   const double before = kinetic();
-  joints.locate({trial_.view(), evaluation_.rotation.data()});
-  joints.hold(JointLevel::velocity, trial_.v.data());
-  joints.hold(JointLevel::velocity, trial_.v.data());  // what rounding left
+  joints.update_and_factor({trial_.view(), evaluation_.rotation.data()});
+  joints.project(JointLevel::velocity, trial_.v.data());
+  joints.project(JointLevel::velocity, trial_.v.data());  // what rounding left
   const double after = kinetic();
-  held_ += before - after;
+  energy_velocity_projection_ += before - after;
   stored_[StoredEnergy::kinetic] += after - before;
 }
 
-void TimeStepper::book_contacts(Index island, const State& state, double step) {
+void TimeStepper::book_contacts(Index component, const State& state, double step) {
   after_ = trial_.v.data();
-  if (jointed(island) && joints_[island].struck) {
-    const Range v = assembly_->islands()[island].v;
+  if (jointed(component) && joints_[component].struck) {
+    const Range v = assembly_->components()[component].v;
     std::copy(trial_.v.begin() + v.begin, trial_.v.begin() + v.end, allowed_.begin() + v.begin);
-    allow_at_start(joints_[island], allowed_.data());
+    allow_at_start(joints_[component], allowed_.data());
     after_ = allowed_.data();
   }
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     const ContactCluster& cluster = clusters_[i];
     ContactWork work;
     for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
-      if (cluster.contacts()[contact].rubs()) {
-        book_rubbing(cluster, contact, work);
+      if (cluster.contacts()[contact].has_dry_friction()) {
+        book_joint_friction(cluster, contact, work);
       } else {
         book_contact(cluster, contact, work);
       }
@@ -139,7 +141,7 @@ void TimeStepper::book_contacts(Index island, const State& state, double step) {
 
 void TimeStepper::book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
   record(cluster, contact);
-  if (finder_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
+  if (detector_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
   const ContactRecord& entry = report_.contacts.back();
   sum.impact = sum.impact || entry.impact;
   for (int direction = 0; direction < entry.directions; ++direction) {
@@ -185,13 +187,13 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
 }
 
 /// Friction in a joint, along its row at the start or halfway; the velocities halfway are at hand.
-void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
+void TimeStepper::book_joint_friction(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
   const Contact& at = cluster.contacts()[contact];
   const auto place = static_cast<std::size_t>(cluster.first_row(contact) + 1);
   JointReaction reaction;
   const double moment = cluster.impulses()[place];
   const double mean_rate = after_ == trial_.v.data()
-                               ? at.times(1, middle_.v.data())
+                               ? at.times(1, midpoint_.v.data())
                                : 0.5 * (cluster.before()[place] + at.velocity_after(1, after_));
   reaction.moment = moment;
   flows_[EnergyFlow::joint_friction] -= moment * mean_rate;
@@ -200,7 +202,7 @@ void TimeStepper::book_rubbing(const ContactCluster& cluster, std::size_t contac
   report_.joint_impulses.push_back(
       {JointId{at.key.of.serial, assembly_->system().token()}, reaction, trial_.time});
   const ContactMode mode = cluster.modes()[contact];
-  rubbing_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
+  joint_friction_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
 void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
@@ -230,9 +232,9 @@ void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
 }
 
 void TimeStepper::commit(State& state, Companion& companion, double end_time, StepReport& report) {
-  flows_[EnergyFlow::projection] = projected_ + held_;
-  flows_[EnergyFlow::coupling_discretisation] =
-      -(stored_.potential() + projected_ - companion.ledger.potential() + coupling_work_.value());
+  flows_[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
+  flows_[EnergyFlow::coupling_discretisation] = -(stored_.potential() + energy_position_projection_ -
+                                                  companion.ledger.potential() + coupling_work_.value());
   std::swap(state.q, trial_.q);
   std::swap(state.v, trial_.v);
   std::swap(state.z, trial_.z);
@@ -245,7 +247,7 @@ void TimeStepper::commit(State& state, Companion& companion, double end_time, St
   state.time = end_time;
   companion.ledger.book(flows_, stored_);
 
-  companion.modes = rubbing_modes_;
+  companion.modes = joint_friction_modes_;
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
   statistics.sweeps += report_.sweeps;

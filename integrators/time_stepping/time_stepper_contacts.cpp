@@ -13,8 +13,8 @@ namespace carom {
 
 /// A gap was opened by the step before, which the one at hand may be a small part of.
 void TimeStepper::remember_contacts(const Companion& companion, double step) {
-  finder_.remember(companion.modes, std::max(step, companion.history.step), lasting_);
-  if (!finder_.has_static_friction()) return;
+  detector_.remember(companion.modes, std::max(step, companion.history.step), lasting_);
+  if (!detector_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : companion.modes) {
     if (mode == ContactMode::stick) sticking_.push_back(key);
@@ -22,29 +22,29 @@ void TimeStepper::remember_contacts(const Companion& companion, double step) {
   std::sort(sticking_.begin(), sticking_.end());
 }
 
-void TimeStepper::find_contacts(Index island, const State& state) {
+void TimeStepper::find_contacts(Index component, const State& state) {
   contacts_.clear();
   clusters_in_use_ = 0;
-  finder_.find(island, state.view(), start_, places_, &places_after_, 0.0, contacts_, &lasting_);
-  finder_.find_rubbing(island, state.view(), start_, contacts_);
+  detector_.find(component, state.view(), start_, places_, &places_after_, 0.0, contacts_, &lasting_);
+  detector_.find_joint_friction(component, state.view(), start_, contacts_);
   if (contacts_.empty()) return;
-  if (finder_.has_static_friction()) {
+  if (detector_.has_static_friction()) {
     for (Contact& contact : contacts_) {
       if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
       contact.friction = contact.law.sticking_friction();
     }
   }
   // Friction in joints comes last.
-  if (contacts_.back().rubs()) {
+  if (contacts_.back().has_dry_friction()) {
     share_impact_restitution(contacts_, state.v.data(), options_.capture_speed);
   }
-  response_.resize(trial_.v.size());
+  dv_impulses_.resize(trial_.v.size());
   free_.resize(trial_.v.size());
-  if (iteration_ == Iteration::linearly_implicit || jointed(island)) {
+  if (iteration_ == Iteration::linearly_implicit || jointed(component)) {
     add_cluster(state, 0, contacts_.size());  // bodies answer together, those of all blocks
-    const Island& all = assembly_->islands()[island];
+    const Component& all = assembly_->components()[component];
     std::fill_n(block_clusters_.begin(), all.blocks.size(), Range{0, 1});
-    std::fill(response_.begin() + all.v.begin, response_.begin() + all.v.end, 0.0);
+    std::fill(dv_impulses_.begin() + all.v.begin, dv_impulses_.begin() + all.v.end, 0.0);
     return;
   }
   // Obstacles go their own way, so contacts share a problem where they share a body; they come ordered by
@@ -55,19 +55,20 @@ void TimeStepper::find_contacts(Index island, const State& state) {
     add_cluster(state, first, last);
     first = last;
   }
-  share_out_clusters(island);
+  share_out_clusters(component);
 }
 
 /// Clusters come in the order of their bodies, of which each has one.
-void TimeStepper::share_out_clusters(Index island) {
-  const Range blocks = assembly_->islands()[island].blocks;
+void TimeStepper::share_out_clusters(Index component) {
+  const Range blocks = assembly_->components()[component].blocks;
   Index next = 0;
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
     while (next < clusters_in_use_ && clusters_[next].contacts().front().body < block.bodies.end) ++next;
     block_clusters_[part] = {first, next};
-    if (next > first) std::fill(response_.begin() + block.v.begin, response_.begin() + block.v.end, 0.0);
+    if (next > first)
+      std::fill(dv_impulses_.begin() + block.v.begin, dv_impulses_.begin() + block.v.end, 0.0);
   }
 }
 
@@ -76,18 +77,19 @@ void TimeStepper::add_cluster(const State& state, std::size_t first, std::size_t
   clusters_[clusters_in_use_++].build(*assembly_, {contacts_.data() + first, last - first}, state.v.data());
 }
 
-void TimeStepper::solve_contacts(Index island, const State& state, const Companion& companion, double step) {
+void TimeStepper::solve_contacts(Index component, const State& state, const Companion& companion,
+                                 double step) {
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (!solve(clusters_[i], chains_.front(), state, companion, step)) {
-      fail_contact(island, clusters_[i], state, step);
+      fail_contact(component, clusters_[i], state, step);
     }
   }
 }
 
-void TimeStepper::solve_contacts(Index island, const Block& block, Index part, const State& state,
+void TimeStepper::solve_contacts(Index component, const Block& block, Index part, const State& state,
                                  const Companion& companion, double step) {
   if (!touched(part)) return;
-  SolverChain& chain = chains_[block.run - assembly_->islands()[island].runs.begin];
+  SolverChain& chain = chains_[block.run - assembly_->components()[component].runs.begin];
   for (Index i = block_clusters_[part].begin; i < block_clusters_[part].end; ++i) {
     static_cast<void>(solve(clusters_[i], chain, state, companion, step));
   }
@@ -99,42 +101,44 @@ bool TimeStepper::solve(ContactCluster& cluster, SolverChain& chain, const State
   const double* const load0 = start_of_sum(companion);
   const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body];
   for (Index k = body.v; k < body.v + body.v_size; ++k) {
-    response_[k] = half * (load0[k] + evaluation_.force[k]);
+    dv_impulses_[k] = half * (load0[k] + evaluation_.force[k]);
   }
   assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1},
-                                                         response_.data() + body.v, free_.data() + body.v);
+                                                         dv_impulses_.data() + body.v, free_.data() + body.v);
   for (Index k = body.v; k < body.v + body.v_size; ++k) {
     free_[k] += static_cast<double>(companion.rounding[k]) + state.v[k];
-    response_[k] = 0.0;
+    dv_impulses_[k] = 0.0;
   }
   cluster.set_free_velocity(free_.data());
   if (!cluster.solve(chain).usable()) return false;
-  cluster.apply(response_.data());
+  cluster.apply(dv_impulses_.data());
   return true;
 }
 
 /// Contact upsets the loads around it and, within a step, hardly any others. So few bodies would make all of
-/// the island sweep more often. Upset is a block of which another sweep would change more than the tolerance.
-void TimeStepper::settle_contacts(Index island, const State& state, const Companion& companion, double step) {
-  constexpr Index small_part = 4;  // of the island: for more, sweeps of these blocks do not pay
+/// the component sweep more often. Upset is a block of which another sweep would change more than the
+/// tolerance.
+void TimeStepper::presolve_around_contacts(Index component, const State& state, const Companion& companion,
+                                           double step) {
+  constexpr Index small_part = 4;  // of the component: for more, sweeps of these blocks do not pay
   constexpr int most_sweeps = 8;
   enum : std::uint8_t { untouched, guessed, settled };
-  const Range blocks = assembly_->islands()[island].blocks;
+  const Range blocks = assembly_->components()[component].blocks;
   std::fill_n(settled_.begin(), blocks.size(), std::uint8_t{untouched});
   if (clusters_in_use_ == 0 || blocks.size() < small_part) return;
   if (iteration_ != Iteration::fixed_point) return;
   const auto block_at = [&](Index index) -> const Block& { return assembly_->blocks()[index]; };
   const auto sweep_at = [&](Index index) {
     const Index part = index - blocks.begin;
-    solve_contacts(island, block_at(index), part, state, companion, step);
-    sweep(island, block_at(index), part, state, companion, step);
+    solve_contacts(component, block_at(index), part, state, companion, step);
+    sweep(component, block_at(index), part, state, companion, step);
   };
   Surroundings& upset = upset_;
   upset.inner.clear();
   for (Index part = 0; part < blocks.size(); ++part) {
     if (touched(part)) upset.inner.push_back(blocks.begin + part);
   }
-  double* const total = evaluated_.data();
+  double* const total = loads_end_.data();
   FixedPointJudge judge(options_.tolerance, most_sweeps);
   while (!upset.inner.empty() && assembly_->surround(upset)) {
     std::swap(upset.inner, upset.touched);
@@ -148,10 +152,10 @@ void TimeStepper::settle_contacts(Index island, const State& state, const Compan
       }
       sweep_at(index);
     }
-    evaluate_loads_within(*assembly_, island, upset, trial_.view(), evaluation_, {total, total, total});
+    evaluate_loads_within(*assembly_, component, upset, trial_.view(), evaluation_, {total, total, total});
     SweepChange largest;
     std::erase_if(upset.inner, [&](Index index) {
-      const SweepChange next = next_change(island, block_at(index), step);
+      const SweepChange next = next_change(component, block_at(index), step);
       largest.take(next.change, next.size);
       improve_guess(block_at(index));
       settled_[index - blocks.begin] = settled;
@@ -165,13 +169,13 @@ void TimeStepper::settle_contacts(Index island, const State& state, const Compan
   for (Index part = 0; part < blocks.size(); ++part) settled_[part] = settles && settled_[part] == settled;
 }
 
-void TimeStepper::demand_solved(Index island, const State& state, const Companion& companion, double step,
+void TimeStepper::demand_solved(Index component, const State& state, const Companion& companion, double step,
                                 int sweeps) {
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (clusters_[i].report().usable()) continue;
     const ContactCluster failed = clusters_[i];
-    find_culprit(island, state, companion, step, sweeps);
-    fail_contact(island, failed, state, step);
+    find_cause(component, state, companion, step, sweeps);
+    fail_contact(component, failed, state, step);
   }
 }
 

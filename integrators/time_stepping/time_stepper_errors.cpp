@@ -27,11 +27,11 @@ SolverFailure failure_at(const State& state, double step) {
   return failure;
 }
 
-SolverFailure failure_of(const ContactCluster& cluster, const ContactFinder& finder, const State& state,
+SolverFailure failure_of(const ContactCluster& cluster, const Detector& detector, const State& state,
                          double step) {
   SolverFailure failure = failure_at(state, step);
   failure.residual = cluster.report().residual;
-  for (const Contact& contact : cluster.contacts()) failure.parts.push_back(finder.name(contact.key));
+  for (const Contact& contact : cluster.contacts()) failure.parts.push_back(detector.name(contact.key));
   failure.problem = std::make_shared<const ContactProblem>(cluster.problem());
   return failure;
 }
@@ -86,62 +86,62 @@ void check_options(const TimeStepping& options) {
   check_failure_directory(options.failure_directory, "time stepping");
 }
 
-void TimeStepper::demand_finite_loads(Index island, const StateView& at, const State& state, double step) {
-  evaluate_positions(*assembly_, island, at, evaluation_);
-  const ElementId culprit = find_non_finite(*assembly_, island, at, evaluation_);
-  if (!culprit.valid()) return;
+void TimeStepper::demand_finite_loads(Index component, const StateView& at, const State& state, double step) {
+  evaluate_positions(*assembly_, component, at, evaluation_);
+  const ElementId cause = find_non_finite(*assembly_, component, at, evaluation_);
+  if (!cause.valid()) return;
   SolverFailure failure = failure_at(state, step);
-  failure.parts.push_back(assembly_->system().name(culprit));
+  failure.parts.push_back(assembly_->system().name(cause));
   const std::string message =
       place(state, step) + "the loads of " + failure.parts.front() + " are not finite";
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::find_culprit(Index island, const State& state, const Companion& companion, double step,
-                               int sweeps) {
-  const Range q = assembly_->islands()[island].q;
-  const Range v = assembly_->islands()[island].v;
-  demand_finite_loads(island, state.view(), state, step);
+void TimeStepper::find_cause(Index component, const State& state, const Companion& companion, double step,
+                             int sweeps) {
+  const Range q = assembly_->components()[component].q;
+  const Range v = assembly_->components()[component].v;
+  demand_finite_loads(component, state.view(), state, step);
   // The same sweeps once more, looking at the loads of every element between them. Loads may overflow only
   // because the iteration diverged; then no element is to blame.
-  start_iteration(island, state, step);
-  guess_loads(island, companion, step);
+  start_iteration(component, state, step);
+  guess_loads(component, companion, step);
   for (int i = 0; i < sweeps; ++i) {
-    sweep_all(island, state, companion, step);
+    sweep_all(component, state, companion, step);
     if (!all_finite(trial_.q, q) || !all_finite(trial_.v, v)) return;
-    demand_finite_loads(island, trial_.view(), state, step);
-    follow_iterate(island, state, step);
-    evaluate_iterate(island, state, companion, step, LoadsAsked::total, false);
-    evaluation_.force = evaluated_;
+    demand_finite_loads(component, trial_.view(), state, step);
+    follow_iterate(component, state, step);
+    evaluate_iterate(component, state, companion, step, LoadsAsked::total, false);
+    evaluation_.force = loads_end_;
   }
 }
 
-void TimeStepper::fail_contraction(Index island, const State& state, const Companion& companion, double step,
-                                   const FixedPointJudge& judge) {
+void TimeStepper::fail_contraction(Index component, const State& state, const Companion& companion,
+                                   double step, const FixedPointJudge& judge) {
   // The bound of the rating is pessimistic by itself; the rest is room for forces that stiffen on the way.
   constexpr double caution = 0.9;
   std::vector<std::string> jumping;
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (!clusters_[i].changed_modes()) continue;
-    for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(finder_.name(contact.key));
+    for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(detector_.name(contact.key));
   }
   const bool implicit = iteration_ == Iteration::linearly_implicit;
   if (!std::isfinite(judge.change())) {
     if (implicit) {
-      demand_finite_loads(island, state.view(), state, step);
+      demand_finite_loads(component, state.view(), state, step);
       // The iterates are lost as a whole; a law of time shows itself in the configuration of the start too.
       StateView at_end = state.view();
       at_end.time = trial_.time;
-      demand_finite_loads(island, at_end, state, step);
+      demand_finite_loads(component, at_end, state, step);
     } else {
-      find_culprit(island, state, companion, step, judge.sweeps());
+      find_cause(component, state, companion, step, judge.sweeps());
     }
   }
 
   SolverFailure failure = failure_at(state, step);
   failure.residual = judge.change();
-  evaluate_positions(*assembly_, island, state.view(), evaluation_);
-  const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
+  evaluate_positions(*assembly_, component, state.view(), evaluation_);
+  const CouplingRating rating = rate_couplings(*assembly_, component, state.view(), evaluation_, step);
   std::string message = place(state, step) + "the " + std::string(to_string(iteration_)) +
                         " iteration does not contract after " + std::to_string(judge.sweeps()) +
                         " sweeps (last change " + to_text(judge.change()) + " m)";
@@ -151,22 +151,22 @@ void TimeStepper::fail_contraction(Index island, const State& state, const Compa
     failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * step);
     message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
   }
-  if (jointed(island)) {
+  if (jointed(component)) {
     double violation = 0.0;
-    const JointId joint = worst_joint(island, violation);
+    const JointId joint = worst_joint(component, violation);
     if (joint.valid()) {
       failure.parts.push_back(assembly_->system().name(joint));
       message += "; of the joints " + failure.parts.back() + " is violated most, by " + to_text(violation);
     }
   }
-  if (rating.island_rate >= 1.0) {
+  if (rating.component_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
     if (!implicit && !automatic()) message += ", as would the linearly implicit iteration";
   } else {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the force elements contract (rate " +
-               to_text(rating.island_rate) + " together), so a force jumps or stiffens";
-    if (jointed(island)) {
+               to_text(rating.component_rate) + " together), so a force jumps or stiffens";
+    if (jointed(component)) {
       failure.suggested_step = 0.5 * step;
       message += ", or the joints turn far within the step or are near a singular position";
     }
@@ -183,14 +183,15 @@ void TimeStepper::fail_motion(const SolverError& error, const State& state, doub
   throw SolverError(place(state, step) + error.what(), std::move(failure));
 }
 
-void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, const State& state, double step) {
-  SolverFailure failure = failure_of(cluster, finder_, state, step);
+void TimeStepper::fail_contact(Index component, const ContactCluster& cluster, const State& state,
+                               double step) {
+  SolverFailure failure = failure_of(cluster, detector_, state, step);
   const auto b = cluster.problem().vector();
   const bool finite = std::all_of(b.begin(), b.end(), [](double number) { return std::isfinite(number); });
   // Loads that are not finite reach the contact first; the iterate before, if there was one, is still there.
   if (!finite) {
-    demand_finite_loads(island, state.view(), state, step);
-    if (swept_) demand_finite_loads(island, trial_.view(), state, step);
+    demand_finite_loads(component, state.view(), state, step);
+    if (swept_) demand_finite_loads(component, trial_.view(), state, step);
   }
   std::string message = place(state, step) + "contact problem of " + listed(failure.parts) + ": ";
   if (cluster.report().usable()) {
@@ -198,20 +199,20 @@ void TimeStepper::fail_contact(Index island, const ContactCluster& cluster, cons
   } else {
     message += to_string(cluster.report().outcome);
     if (!cluster.report().reason.empty()) message.append(" (").append(cluster.report().reason).append(")");
-    message += ", residual " + to_text(cluster.report().residual) + driven_by(*assembly_, island);
+    message += ", residual " + to_text(cluster.report().residual) + driven_by(*assembly_, component);
   }
   if (!tentative_) message += write_failure(options_.failure_directory, failure, message);
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::fail_account(Index island, const State& state, double step) {
-  demand_finite_loads(island, trial_.view(), state, step);
-  evaluate_positions(*assembly_, island, trial_.view(), evaluation_);
-  const ElementId culprit = find_non_finite_potential(*assembly_, island, trial_.view(), evaluation_);
+void TimeStepper::fail_account(Index component, const State& state, double step) {
+  demand_finite_loads(component, trial_.view(), state, step);
+  evaluate_positions(*assembly_, component, trial_.view(), evaluation_);
+  const ElementId cause = find_non_finite_potential(*assembly_, component, trial_.view(), evaluation_);
   SolverFailure failure = failure_at(state, step);
   std::string message = place(state, step);
-  if (culprit.valid()) {
-    failure.parts.push_back(assembly_->system().name(culprit));
+  if (cause.valid()) {
+    failure.parts.push_back(assembly_->system().name(cause));
     message += "the potential of " + failure.parts.front() + " is not finite";
   } else {
     message += "an energy is too large to be counted";
@@ -227,10 +228,10 @@ void TimeStepper::fail_internal(ElementId element, const State& state, double st
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::fail_linearisation(Index island, const State& state, double step, const char* why) {
-  evaluate_positions(*assembly_, island, state.view(), evaluation_);
-  const CouplingRating rating = rate_couplings(*assembly_, island, state.view(), evaluation_, step);
-  demand_finite_loads(island, state.view(), state, step);
+void TimeStepper::fail_linearisation(Index component, const State& state, double step, const char* why) {
+  evaluate_positions(*assembly_, component, state.view(), evaluation_);
+  const CouplingRating rating = rate_couplings(*assembly_, component, state.view(), evaluation_, step);
+  demand_finite_loads(component, state.view(), state, step);
   SolverFailure failure = failure_at(state, step);
   failure.suggested_step = 0.5 * step;
   std::string message = place(state, step) + "the matrix of the linearly implicit iteration " + why;
@@ -244,7 +245,7 @@ void TimeStepper::fail_linearisation(Index island, const State& state, double st
 void TimeStepper::fail_projection(const Contact& left, const State& state, double step) const {
   SolverFailure failure = failure_at(state, step);
   failure.residual = -left.gap;
-  failure.parts.push_back(finder_.name(left.key));
+  failure.parts.push_back(detector_.name(left.key));
   const std::string message = place(state, step) + "project_gaps: no displacement brings " +
                               failure.parts.front() + " out, gap " + to_text(left.gap) + " m";
   throw SolverError(message, std::move(failure));
@@ -252,7 +253,7 @@ void TimeStepper::fail_projection(const Contact& left, const State& state, doubl
 
 void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                               double step) const {
-  SolverFailure failure = failure_of(cluster, finder_, state, step);
+  SolverFailure failure = failure_of(cluster, detector_, state, step);
   std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " +
                         to_text(gain) + " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
   message += write_failure(options_.failure_directory, failure, message);

@@ -23,38 +23,38 @@ namespace carom {
 /// Whether anything but friction in joints takes part.
 bool TimeStepper::strikes() const {
   return std::any_of(contacts_.begin(), contacts_.end(),
-                     [](const Contact& contact) { return !contact.rubs(); });
+                     [](const Contact& contact) { return !contact.has_dry_friction(); });
 }
 
-void TimeStepper::solve_joint_contacts(Index island, const State& state, double step) {
+void TimeStepper::solve_joint_contacts(Index component, const State& state, double step) {
   ContactCluster& cluster = clusters_.front();
-  JointWork& work = joints_[island];
+  JointWork& work = joints_[component];
   if (work.struck) {
     // The guess of Newton's method couples bodies by more than their joints.
     if (iteration_ == Iteration::linearly_implicit) cluster.couple(work.start);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (contacts_[c].rubs()) cluster.press(c);
+      if (contacts_[c].has_dry_friction()) cluster.press(c);
     }
   } else {
-    place_rubbing(island);
+    update_friction_rows(component);
     cluster.couple(work.mean);
   }
-  const Range v = assembly_->islands()[island].v;
+  const Range v = assembly_->components()[component].v;
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
   if (work.struck) allow_at_start(work, scratch_.data());
   cluster.set_free_velocity(scratch_.data());
-  const PressedContacts pressed{.cluster = cluster,
-                                .contacts = contacts_,
-                                .pressure = work.pressure,
-                                .at = {middle_.view(), middle_evaluation_.rotation.data()},
-                                .duration = step,
-                                .multipliers = [this, island] {
-                                  add_contacts_to_joints(island);
-                                  return joints_[island].total.data();
-                                }};
-  if (!work.pressed.solve(pressed, chains_.front())) fail_contact(island, cluster, state, step);
-  std::fill(struck_.begin() + v.begin, struck_.begin() + v.end, 0.0);
-  cluster.apply_coupled(struck_.data());
+  const FrictionBoundProblem pressed{.cluster = cluster,
+                                     .contacts = contacts_,
+                                     .pressure = work.pressure,
+                                     .at = {midpoint_.view(), middle_evaluation_.rotation.data()},
+                                     .duration = step,
+                                     .multipliers = [this, component] {
+                                       add_contacts_to_joints(component);
+                                       return joints_[component].total.data();
+                                     }};
+  if (!work.friction_bound.solve(pressed, chains_.front())) fail_contact(component, cluster, state, step);
+  std::fill(dv_contact_.begin() + v.begin, dv_contact_.begin() + v.end, 0.0);
+  cluster.apply_coupled(dv_contact_.data());
 }
 
 /// Makes velocities obey the joints with the rows at the start and the rates at the end.
@@ -66,30 +66,30 @@ void TimeStepper::allow_at_start(JointWork& work, double* velocity) {
 }
 
 /// Friction in joints alone acts halfway, against the rates that coordinates have at the end.
-void TimeStepper::place_rubbing(Index island) {
-  const Range v = assembly_->islands()[island].v;
-  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + struck_[i];
+void TimeStepper::update_friction_rows(Index component) {
+  const Range v = assembly_->components()[component].v;
+  for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + dv_contact_[i];
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Contact& contact = contacts_[c];
-    const JointView halfway{middle_.view(), middle_evaluation_.rotation.data()};
-    finder_.place_rubbing({trial_.view(), evaluation_.rotation.data()}, contact);
+    const JointView halfway{midpoint_.view(), middle_evaluation_.rotation.data()};
+    detector_.update_friction_rows({trial_.view(), evaluation_.rotation.data()}, contact);
     const double at_end = contact.times(1, scratch_.data());
-    finder_.place_rubbing(halfway, contact);
+    detector_.update_friction_rows(halfway, contact);
     contact.obstacle_velocity_after[1] = contact.times(1, scratch_.data()) - at_end;
     clusters_.front().press(c);
   }
 }
 
 /// Impulses of the joints, with those by which they answer to contact.
-void TimeStepper::add_contacts_to_joints(Index island) {
-  JointWork& work = joints_[island];
-  IslandJoints& answering = work.struck ? work.start : work.mean;
-  const Range v = assembly_->islands()[island].v;
+void TimeStepper::add_contacts_to_joints(Index component) {
+  JointWork& work = joints_[component];
+  JointConstraints& answering = work.struck ? work.start : work.mean;
+  const Range v = assembly_->components()[component].v;
   work.total = work.impulse;
   std::fill(scratch_.begin() + v.begin, scratch_.begin() + v.end, 0.0);
   clusters_.front().add_loads(1.0, scratch_.data());
   answering.apply_inverse_mass(scratch_.data());
-  answering.hold(JointLevel::change, scratch_.data(), work.left.data());
+  answering.project(JointLevel::change, scratch_.data(), work.left.data());
   for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];
 }
 

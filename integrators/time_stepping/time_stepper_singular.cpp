@@ -19,28 +19,29 @@ constexpr double near_angle = 0.1;
 /// there at the end, b halfway, sweeps contract by |1 - b/a|. Reactions along the rows at the end contract,
 /// and cost an error of second order once; where those halfway have some hold, the matrix of both does
 /// without. Pivots are as the squares of angles, that at the start is 2 b - a.
-void TimeStepper::choose_reactions(Index island, const State& state, double step) {
+void TimeStepper::choose_reactions(Index component, const State& state, double step) {
   // A contraction that is good enough; halfway rows that have some hold, against those at the end.
   constexpr double good_contraction = 0.7, some_hold = 0.1;
   // Of a pivot, rounding beside the diagonal.
   constexpr double least_pivot = 1e-17;
-  JointWork& work = joints_[island];
-  const auto angle = [](const IslandJoints& joints, std::size_t row) {
+  JointWork& work = joints_[component];
+  const auto angle = [](const JointConstraints& joints, std::size_t row) {
     return std::sqrt(std::max(joints.factors().pivot(row), dependent_pivot));
   };
   work.end.factor();
-  work.magnified = 1.0;
+  work.roundoff_growth = 1.0;
   double nearest = 1.0;
   for (std::size_t row = 0; row < work.end.size(); ++row) {
     const double pivot = work.end.factors().pivot(row);
     nearest = std::min(nearest, pivot);
-    if (pivot >= dependent_pivot) work.magnified = std::max(work.magnified, 1.0 / std::sqrt(pivot));
+    if (pivot >= dependent_pivot)
+      work.roundoff_growth = std::max(work.roundoff_growth, 1.0 / std::sqrt(pivot));
   }
-  work.near_singular = work.magnified > 1.0 / near_angle;
+  work.near_singular = work.roundoff_growth > 1.0 / near_angle;
   if (nearest > near_angle * near_angle) return;
   work.mean.factor();
   for (std::size_t row = 0; row < work.end.size(); ++row) work.left[row] = angle(work.mean, row);
-  evaluate_positions(*assembly_, island, state.view(), start_);
+  evaluate_positions(*assembly_, component, state.view(), start_);
   place_rows(work.mean, {state.view(), start_.rotation.data()}, state, step);
   work.mean.factor();
   for (std::size_t row = 0; row < work.end.size(); ++row) {
@@ -53,13 +54,13 @@ void TimeStepper::choose_reactions(Index island, const State& state, double step
     if (contraction <= good_contraction) continue;
     // Rounding of positions, magnified by 1/a, turns the rows, and with that velocities.
     const double true_angle = std::sqrt(std::max(work.end.factors().pivot(row), least_pivot));
-    work.magnified = std::max(work.magnified, contraction / true_angle);
+    work.roundoff_growth = std::max(work.roundoff_growth, contraction / true_angle);
     work.near_singular = true;
     if (work.reactions != Reactions::at_end) {
       work.reactions = halfway >= some_hold ? Reactions::crossed : Reactions::at_end;
     }
   }
-  place_joints(island, state, step);
+  place_joints(component, state, step);
 }
 
 /// Factors of the matrix by which conditions at the end are met, in work.end or work.crossed.

@@ -258,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"joints/a.h", "#include <carom/bodies/particle.h>"},
                     BadLine{"contact/a.cpp", "#include <carom/bodies/particle.h>"},
                     BadLine{"core/numerics/a.h", "#include <carom/core/state.h>"},
-                    BadLine{"core/a.h", "#include <carom/core/dynamics/island_joints.h>"},
+                    BadLine{"core/a.h", "#include <carom/core/dynamics/joint_constraints.h>"},
                     BadLine{"contact/detection/a.h", "#include <carom/contact/solvers/residual.h>"},
                     BadLine{"contact/solvers/a.h", "#include <carom/contact/contact_cluster.h>"},
                     BadLine{"contact/solvers/a.h", "#include <carom/contact/detection/half_space.h>"},

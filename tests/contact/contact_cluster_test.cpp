@@ -2,7 +2,7 @@
 
 #include <carom/carom.h>
 #include <carom/contact/contact_cluster.h>
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ protected:
     const State state = assembly_.initial_state();
     Evaluation evaluation = make_evaluation(assembly_);
     evaluate_positions(assembly_, 0, state.view(), evaluation);
-    ContactFinder(assembly_).find(0, state.view(), evaluation, 0.0, contacts_);
+    Detector(assembly_).find(0, state.view(), evaluation, 0.0, contacts_);
   }
 
   ContactCluster cluster(const std::array<double, 3>& before) const {

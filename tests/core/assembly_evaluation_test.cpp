@@ -1,5 +1,5 @@
-// Loads of a large island, block by block: once, twice with the second close behind the first, on some blocks
-// alone.
+// Loads of a large component, block by block: once, twice with the second close behind the first, on some
+// blocks alone.
 
 #include "examples/scenes/net.h"
 
@@ -30,7 +30,7 @@ struct Blow {
   using Kind = Wind;
 };
 
-/// A wind that blows through all bodies of an island at once, so that no block is done before it.
+/// A wind that blows through all bodies of a component at once, so that no block is done before it.
 class Wind final : public ForceKind {
 public:
   static constexpr int part_dimension() { return 2; }
@@ -47,7 +47,7 @@ public:
   bool is_field() const override { return true; }
   void ends(Index, std::vector<BodyId>&) const override {}
   void evaluate(const EvaluationContext& at, Range, const Loads& loads) const override {
-    const Range v = at.assembly.islands()[at.island].v;
+    const Range v = at.assembly.components()[at.component].v;
     for (Index i = v.begin; i < v.end; ++i)
       loads.external[i] -= 0.1 * at.state.v[i] * std::abs(at.state.v[i]);
   }
@@ -169,10 +169,11 @@ TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
   evaluate_loads(net.assembly, 0, net.state.view(), evaluation, {all.data(), all.data(), all.data()});
   const std::vector<Block>& blocks = net.assembly.blocks();
   const Range second_run = net.assembly.runs()[1];
-  Index bridged = 0;
-  for (Index block = 0; block < blocks.size(); ++block) bridged += blocks[block].bridged ? 1U : 0U;
-  ASSERT_GT(bridged, 0U);
-  ASSERT_LT(bridged, blocks.size());
+  Index loaded_across_runs = 0;
+  for (Index block = 0; block < blocks.size(); ++block)
+    loaded_across_runs += blocks[block].loaded_across_runs ? 1U : 0U;
+  ASSERT_GT(loaded_across_runs, 0U);
+  ASSERT_LT(loaded_across_runs, blocks.size());
 
   constexpr double left_alone = 7.0;
   for (const std::vector<Index>& inner : std::vector<std::vector<Index>>{
@@ -206,7 +207,7 @@ TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
   for (Index block = 0; block < blocks.size(); ++block) {
     Surroundings around;
     around.inner = {block};
-    EXPECT_EQ(net.assembly.surround(around), !blocks[block].bridged) << block;
+    EXPECT_EQ(net.assembly.surround(around), !blocks[block].loaded_across_runs) << block;
     EXPECT_FALSE(windy.assembly.surround(around)) << "what blows everywhere at once bridges all";
   }
 }

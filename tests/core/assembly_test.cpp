@@ -35,11 +35,11 @@ BodyId add_plate(System& system, double x = 0.0) {
   return system.add(RigidBody{.mass = disc(1.0, 1.0), .position = {x, -x}, .angle = x});
 }
 
-std::set<std::set<BodyId>> islands_of(const Assembly& assembly) {
+std::set<std::set<BodyId>> components_of(const Assembly& assembly) {
   std::set<std::set<BodyId>> result;
-  for (const Island& island : assembly.islands()) {
+  for (const Component& component : assembly.components()) {
     std::set<BodyId> ids;
-    for (Index body = island.bodies.begin; body < island.bodies.end; ++body)
+    for (Index body = component.bodies.begin; body < component.bodies.end; ++body)
       ids.insert(assembly.layout()->id(body));
     result.insert(ids);
   }
@@ -61,13 +61,13 @@ TEST(Assembly, CouplingsJoinGroundAndGravityDoNot) {
   system.add(SpringDamper{.from = ground, .to = a});
   system.add(SpringDamper{.from = b, .to = ground});
   system.add(HalfPlane{.normal = {0, 1}}, Surface{.friction = 0.0, .normal_restitution = 0.0});
-  EXPECT_EQ(islands_of(Assembly(system)), (std::set<std::set<BodyId>>{{a}, {b}, {c}, {d}}));
+  EXPECT_EQ(components_of(Assembly(system)), (std::set<std::set<BodyId>>{{a}, {b}, {c}, {d}}));
   system.add(SpringDamper{.from = d, .to = a});
-  EXPECT_EQ(islands_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, d}, {b}, {c}}));
+  EXPECT_EQ(components_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, d}, {b}, {c}}));
   const ElementId last = system.add(SpringDamper{.from = b, .to = d});
-  EXPECT_EQ(islands_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, b, d}, {c}}));
+  EXPECT_EQ(components_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, b, d}, {c}}));
   system.remove(last);
-  EXPECT_EQ(islands_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, d}, {b}, {c}}));
+  EXPECT_EQ(components_of(Assembly(system)), (std::set<std::set<BodyId>>{{a, d}, {b}, {c}}));
 }
 
 // A random graph, with parts removed here and there, and its connected components found another way.
@@ -105,26 +105,26 @@ struct RandomGraph {
   std::map<ElementId, std::pair<BodyId, BodyId>> springs;
 };
 
-TEST(Assembly, IslandsAreTheConnectedComponents) {
+TEST(Assembly, ComponentsAreTheConnectedComponents) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomGraph graph(seed);
     std::map<BodyId, std::set<BodyId>> components;
     for (const auto& [body, component] : graph.component) components[component].insert(body);
     std::set<std::set<BodyId>> expected;
     for (const auto& entry : components) expected.insert(entry.second);
-    EXPECT_EQ(islands_of(Assembly(graph.system)), expected) << "seed " << seed;
+    EXPECT_EQ(components_of(Assembly(graph.system)), expected) << "seed " << seed;
   }
 }
 
-TEST(Assembly, IslandsAreRangesThatTileEveryArray) {
+TEST(Assembly, ComponentsAreRangesThatTileEveryArray) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomGraph graph(seed);
     const Assembly assembly(graph.system);
     const Layout& layout = *assembly.layout();
     Index body = 0, q = 0, v = 0, rotation = 0;
     std::vector<Index> slot(assembly.body_kinds().size(), 0);
-    for (Index island = 0; island < assembly.islands().size(); ++island) {
-      const Island& range = assembly.islands()[island];
+    for (Index component = 0; component < assembly.components().size(); ++component) {
+      const Component& range = assembly.components()[component];
       EXPECT_EQ(range.bodies.begin, body);
       EXPECT_EQ(range.q.begin, q);
       EXPECT_EQ(range.v.begin, v);
@@ -134,8 +134,8 @@ TEST(Assembly, IslandsAreRangesThatTileEveryArray) {
         EXPECT_EQ(at.q, q);
         EXPECT_EQ(at.v, v);
         EXPECT_EQ(at.slot, slot[at.kind]++);
-        EXPECT_GE(at.slot, assembly.body_slots(island, at.kind).begin);
-        EXPECT_LT(at.slot, assembly.body_slots(island, at.kind).end);
+        EXPECT_GE(at.slot, assembly.body_slots(component, at.kind).begin);
+        EXPECT_LT(at.slot, assembly.body_slots(component, at.kind).end);
         q += at.q_size;
         v += at.v_size;
         if (graph.system.has_orientation(layout.id(body))) {
@@ -157,7 +157,7 @@ TEST(Assembly, IslandsAreRangesThatTileEveryArray) {
   }
 }
 
-TEST(Assembly, BodiesOfAnIslandComeKindByKind) {
+TEST(Assembly, BodiesOfAnComponentComeKindByKind) {
   System system;
   const BodyId a = add_particle(system, 1), b = add_plate(system, 2), c = add_particle(system, 3);
   const BodyId d = add_plate(system, 4), e = add_particle(system, 5);
@@ -168,8 +168,8 @@ TEST(Assembly, BodiesOfAnIslandComeKindByKind) {
   for (Index body = 0; body < 5; ++body) order.push_back(assembly.layout()->id(body));
   EXPECT_EQ(order, (std::vector<BodyId>{a, e, b, c, d}));
   std::vector<std::string> calls;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index q, Index v, Index rotation) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index rotation) {
       calls.push_back(std::string(kind.label()) + " " + std::to_string(slots.begin) + "-" +
                       std::to_string(slots.end) + " q" + std::to_string(q) + " v" + std::to_string(v) +
                       (rotation == none ? "" : " r" + std::to_string(rotation)));
@@ -179,17 +179,17 @@ TEST(Assembly, BodiesOfAnIslandComeKindByKind) {
                                              "particle 2-3 q7 v7", "rigid body 1-2 q9 v9 r2"}));
 }
 
-TEST(Assembly, EveryElementActsInTheIslandOfItsBodiesAndKeepsItsIdentity) {
+TEST(Assembly, EveryElementActsInTheComponentOfItsBodiesAndKeepsItsIdentity) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomGraph graph(seed);
     const Assembly assembly(graph.system);
     std::map<ElementId, int> seen;
-    for (Index island = 0; island < assembly.islands().size(); ++island) {
-      const Range bodies = assembly.islands()[island].bodies;
+    for (Index component = 0; component < assembly.components().size(); ++component) {
+      const Range bodies = assembly.components()[component].bodies;
       for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-        const Range elements = assembly.elements(island, kind);
+        const Range elements = assembly.elements(component, kind);
         if (assembly.force_kinds()[kind]->is_field()) {
-          EXPECT_EQ(elements.size(), 1U) << "a field acts in every island";
+          EXPECT_EQ(elements.size(), 1U) << "a field acts in every component";
           continue;
         }
         for (Index element = elements.begin; element < elements.end; ++element) {
@@ -236,7 +236,7 @@ TEST(Assembly, LoadsAreTheSameAsOfEachSpringByItself) {
   }
 }
 
-TEST(Assembly, EvaluatingAnIslandTouchesNoOther) {
+TEST(Assembly, EvaluatingAnComponentTouchesNoOther) {
   System system;
   add_plate(system, 1);
   add_plate(system, 2);
@@ -302,7 +302,7 @@ TEST(Assembly, KeepsItsOwnCopyOfTheSystem) {
   const Assembly assembly(system);
   system.remove(a);
   EXPECT_TRUE(assembly.system().contains(a));
-  EXPECT_EQ(assembly.islands().size(), 1U);
+  EXPECT_EQ(assembly.components().size(), 1U);
 }
 
 TEST(CheckState, AcceptsTheInitialStateAndNamesWhatIsWrong) {
@@ -347,7 +347,7 @@ TEST(Assembly, InSpaceParticlesSpringsGravityAndObstaclesWork) {
   const ObstacleId floor = system.add(spatial::HalfSpace{.normal = {0, 0, 2}},
                                       Surface{.friction = 0.1, .normal_restitution = 0.5});
   LoadedModel model(system);
-  ASSERT_EQ(model.assembly.islands().size(), 1U);
+  ASSERT_EQ(model.assembly.components().size(), 1U);
   EXPECT_EQ(model.assembly.layout()->dimension(), 3);
   const std::vector<double> conservative{-2, -4, -20 + 8, 0, 0, -10 - 8};
   const std::vector<double> dissipative{0, 0, -0.5, 0, 0, 0.5};

@@ -69,7 +69,7 @@ TEST(ToDot, AnEmptySystemIsAnEmptyGraph) {
   EXPECT_EQ(count(text, "label"), 0);
 }
 
-TEST(ToDot, BodiesAreNodesGroupedByIsland) {
+TEST(ToDot, BodiesAreNodesGroupedByComponent) {
   const std::string text = to_dot(scene());
   EXPECT_EQ(count(text, "subgraph cluster_"), 2);
   EXPECT_LINE(text, "body0 [label=\"particle 'upper'\\n0.5 kg\"");
@@ -119,7 +119,7 @@ TEST(ToDot, JointsAreBoldEdges) {
   EXPECT_LINE(text, "  ground -- body2 [label=\"driver 'crank'\\non revolute joint 'hub'\", style=bold];\n");
   EXPECT_LINE(text, "  ground -- body2 [label=\"motor #0\\non revolute joint 'hub'\"];\n");
   EXPECT_LINE(text, "  ground [");
-  EXPECT_EQ(count(text, "subgraph cluster_"), 1);  // joints bind bodies to one island
+  EXPECT_EQ(count(text, "subgraph cluster_"), 1);  // joints bind bodies to one component
 }
 
 TEST(ToDot, TheGroundAppearsOnlyWhereItIsUsed) {

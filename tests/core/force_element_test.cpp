@@ -165,14 +165,14 @@ struct Cluster {
   }
 };
 
-TEST(ForceElement, JoinsAllItsBodiesToOneIsland) {
+TEST(ForceElement, JoinsAllItsBodiesToOneComponent) {
   System system;
   std::vector<BodyId> dots;
   for (int i = 0; i < 4; ++i) dots.push_back(system.add(Particle{.mass = 1.0, .position = {i, i * i}}));
   system.add(Cluster{.on = {dots[3], dots[0], dots[2]}});
   const LoadedModel model(system);
-  ASSERT_EQ(model.assembly.islands().size(), 2U);
-  EXPECT_EQ(model.assembly.islands()[0].bodies.size(), 3U);
+  ASSERT_EQ(model.assembly.components().size(), 2U);
+  EXPECT_EQ(model.assembly.components()[0].bodies.size(), 3U);
   for (const double sum : model.resultant(model.conservative)) EXPECT_NEAR(sum, 0.0, 64 * epsilon);
 }
 

@@ -24,8 +24,8 @@ inline Invariants invariants(const carom::Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   const State& state = simulation.state();
   std::vector<double> momentum(state.v.size());
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    assembly.for_bodies(island, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       kind.apply_mass(slots, state.v.data() + v, momentum.data() + v);
     });
   }

@@ -37,8 +37,8 @@ double corrected_momentum(const Simulation& simulation, double step) {
   const Assembly& assembly = simulation.assembly();
   const State& state = simulation.state();
   Evaluation evaluation = make_evaluation(assembly);
-  for (Index island = 0; island < assembly.islands().size(); ++island)
-    evaluate(assembly, island, state.view(), evaluation);
+  for (Index component = 0; component < assembly.components().size(); ++component)
+    evaluate(assembly, component, state.view(), evaluation);
   double sum = total_momentum(assembly, state).angular[2];
   for (const BodySlot& slot : assembly.layout()->bodies()) {
     const double* v = state.v.data() + slot.v;

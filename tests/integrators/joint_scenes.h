@@ -7,7 +7,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 
 #include <algorithm>
 #include <array>
@@ -135,24 +135,24 @@ struct JointCheck {
     const Assembly& assembly = now.assembly();
     if (joints_.empty()) {
       evaluation_ = make_evaluation(assembly);
-      for (Index island = 0; island < assembly.islands().size(); ++island) {
-        joints_.emplace_back(assembly, island);
+      for (Index component = 0; component < assembly.components().size(); ++component) {
+        joints_.emplace_back(assembly, component);
       }
     }
-    for (Index island = 0; island < assembly.islands().size(); ++island) {
-      evaluate_positions(assembly, island, now.state().view(), evaluation_);
-      joints_[island].place({now.state().view(), evaluation_.rotation.data()});
-      for (std::size_t i = 0; i < joints_[island].size(); ++i) {
-        const JointRow row = joints_[island].row(i);
+    for (Index component = 0; component < assembly.components().size(); ++component) {
+      evaluate_positions(assembly, component, now.state().view(), evaluation_);
+      joints_[component].update({now.state().view(), evaluation_.rotation.data()});
+      for (std::size_t i = 0; i < joints_[component].size(); ++i) {
+        const JointRow row = joints_[component].row(i);
         gap = std::max(gap, std::abs(row.gap));
-        speed = std::max(speed,
-                         std::abs(IslandJoints::residual(JointLevel::velocity, row, now.state().v.data())));
+        speed = std::max(
+            speed, std::abs(JointConstraints::residual(JointLevel::velocity, row, now.state().v.data())));
       }
     }
   }
 
 private:
-  std::vector<IslandJoints> joints_;  // by island
+  std::vector<JointConstraints> joints_;  // by component
   Evaluation evaluation_;
 };
 

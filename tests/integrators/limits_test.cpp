@@ -105,7 +105,7 @@ TEST(Limits, EvaluationsWithoutProgressEnd) {
   Simulation simulation(system, EventDriven{.evaluation_limit = 4});
   const auto before = bits_of(simulation);
   EXPECT_THROWS(SolverError, simulation.run_until(0.1), "more than 4 evaluations", "evaluation_limit",
-                "island of");
+                "component of");
   EXPECT_EQ(bits_of(simulation), before);
   simulation.switch_to(EventDriven{});
   simulation.run_until(0.1);
@@ -165,7 +165,7 @@ TEST(Limits, TimesThatStepsCannotReachAreRefusedAtOnce) {
   EXPECT_MODEL_ERROR(close.run_until(1.0), "interval is 1e-17", "allowed");
   // Intervals may be long, the steps of the integrator are not.
   Simulation wide(pair_scene(), EventDriven{.interval = 1e19});
-  EXPECT_THROWS(SolverError, wide.run_until(1e20), "rounding of times", "island of");
+  EXPECT_THROWS(SolverError, wide.run_until(1e20), "rounding of times", "component of");
   EXPECT_EQ(wide.time(), 0.0);
 }
 

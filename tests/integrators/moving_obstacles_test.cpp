@@ -8,7 +8,7 @@
 #include "tests/reference/reference_data.h"
 
 #include <carom/carom.h>
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/testing/refinement.h>
 
@@ -243,12 +243,12 @@ TEST(MovingObstacles, ABeltDragsABlock) {
 TEST(MovingObstacles, GapsAreProjectedToWhereThePlaneIs) {
   Simulation simulation(brick_on_swing(1.0), TimeStepping{.step = 2e-3, .project_gaps = true});
   Simulation without(brick_on_swing(1.0), TimeStepping{.step = 2e-3});
-  const ContactFinder finder(simulation.assembly());
-  const auto depth_of = [&finder](const Simulation& run) {
+  const Detector detector(simulation.assembly());
+  const auto depth_of = [&detector](const Simulation& run) {
     Evaluation evaluation = make_evaluation(run.assembly());
     evaluate_positions(run.assembly(), 0, run.state().view(), evaluation);
     std::vector<Contact> contacts;
-    finder.find(0, run.state().view(), evaluation, 0.0, contacts);
+    detector.find(0, run.state().view(), evaluation, 0.0, contacts);
     double depth = 0.0;
     for (const Contact& contact : contacts) {
       for (const ContactRecord& record : run.report().contacts) {

@@ -168,7 +168,7 @@ TEST(Simulation, EditMapsTheStateByIdentity) {
   const BodyId lower = simulation.system().body("lower"), upper = simulation.system().body("upper");
   BodyId added{};
   simulation.edit([&](System& system) {
-    // A body of another kind in front, an island joined, a spring gone: every place changes.
+    // A body of another kind in front, a component joined, a spring gone: every place changes.
     system.remove(system.element("spring"));
     added = system.add(RigidBody{
         .mass = disc(3.0, 0.2), .position = {5.0, 6.0}, .angle = 0.5, .velocity = {1.0, 2.0}, .spin = 3.0});

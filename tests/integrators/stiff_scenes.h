@@ -98,7 +98,8 @@ private:
     using namespace carom::planar;
     const unsigned count = 2 + random_.below(7);
     const double length = random_.uniform(0.15, 0.4), height = 0.2 + 0.9 * 0.5 * length * count;
-    const bool hung = random_.below(3) == 0, rubs = random_.below(2) == 0, bounded = random_.below(3) == 0;
+    const bool hung = random_.below(3) == 0, has_dry_friction = random_.below(2) == 0,
+               bounded = random_.below(3) == 0;
     BodyId before;
     for (unsigned i = 0; i < count; ++i) {
       const double x = length * (i - 0.5 * (count - 1));
@@ -112,7 +113,7 @@ private:
         pin = system_.add(
             Revolute{.from = {ground, {x - 0.5 * length, height}}, .to = {bar, {-0.5 * length, 0.0}}});
       }
-      if (pin.valid() && rubs) add_friction(pin);
+      if (pin.valid() && has_dry_friction) add_friction(pin);
       if (pin.valid() && bounded) add_limit(pin);
       before = bar;
     }

@@ -62,13 +62,13 @@ TEST_F(AppliedLoadTest, TorqueIsAFunctionOfTime) {
   EXPECT_EQ(model.external, (std::vector<double>{0, 0, 0, 0, 1.5}));
 }
 
-TEST_F(AppliedLoadTest, LoadsAddUpAndJoinNoIslands) {
+TEST_F(AppliedLoadTest, LoadsAddUpAndJoinNoComponents) {
   system.add(AppliedForce{.on = plate, .force = [](double) { return Vec<2>(1.0, 0.0); }});
   system.add(AppliedForce{.on = plate, .force = [](double) { return Vec<2>(2.0, 4.0); }});
   system.add(AppliedForce{.on = dot, .force = [](double) { return Vec<2>(0.0, 8.0); }});
   const LoadedModel model(system);
   EXPECT_EQ(model.external, (std::vector<double>{0, 8, 3, 4, 0}));
-  EXPECT_EQ(model.assembly.islands().size(), 2U);
+  EXPECT_EQ(model.assembly.components().size(), 2U);
 }
 
 TEST(AppliedLoad, InSpace) {

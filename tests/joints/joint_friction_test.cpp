@@ -1,4 +1,4 @@
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/joints/joint_friction.h>
 
 #include <carom/joints/driver.h>
@@ -37,8 +37,8 @@ TEST(JointFriction, BindsNothing) {
   const JointKind& kind = wheel.system.joint_kinds().kind_of(friction.serial);
   EXPECT_EQ(kind.rows(), 0u);
   EXPECT_EQ(kind.limits(), 0u);
-  EXPECT_TRUE(kind.rubs());
-  EXPECT_FALSE(wheel.system.joint_kinds().kind_of(wheel.pin.serial).rubs());
+  EXPECT_TRUE(kind.has_dry_friction());
+  EXPECT_FALSE(wheel.system.joint_kinds().kind_of(wheel.pin.serial).has_dry_friction());
   const double force = -0.3;
   EXPECT_EQ(kind.reaction({}, 0, &force).moment, -0.3);
 }
@@ -51,23 +51,23 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   const JointId friction =
       wheel.system.add(JointFriction{.joint = slide, .bound = 0.5, .static_factor = 1.5}, "rubbing");
   JointModel model(wheel.system);
-  const ContactFinder finder(model.assembly);
-  const Index island = 0;  // all hang together
-  ASSERT_TRUE(finder.rubs(island));
+  const Detector detector(model.assembly);
+  const Index component = 0;  // all hang together
+  ASSERT_TRUE(detector.has_dry_friction(component));
   std::vector<Contact> found;
-  finder.find_rubbing(island, model.state.view(), model.evaluation, found);
+  detector.find_joint_friction(component, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 1u);
   const Contact& contact = found[0];
-  EXPECT_TRUE(contact.rubs());
+  EXPECT_TRUE(contact.has_dry_friction());
   EXPECT_EQ(contact.begin_row(), 1);
-  EXPECT_EQ(contact.pressed, 0.5);
+  EXPECT_EQ(contact.friction_bound, 0.5);
   EXPECT_EQ(contact.law.sticking_friction(), 1.5);
   EXPECT_EQ(contact.gap, 0.0);
-  EXPECT_EQ(finder.name(contact.key), wheel.system.name(friction));
+  EXPECT_EQ(detector.name(contact.key), wheel.system.name(friction));
   EXPECT_EQ(contact.velocity(0, model.state.v.data()), 0.0);
   EXPECT_DOUBLE_EQ(contact.velocity(1, model.state.v.data()), model.state.rate(slide));
-  EXPECT_TRUE(finder.pairs(island).empty());
-  EXPECT_EQ(finder.rubbing(island).size(), 1u);
+  EXPECT_TRUE(detector.pairs(component).empty());
+  EXPECT_EQ(detector.rubbing(component).size(), 1u);
 }
 
 TEST(JointFriction, RefusesWhatCannotBe) {

@@ -3,7 +3,7 @@
 // A system with joints at one state: rows, their differences, the forces that hold it.
 
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/island_joints.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/joint_kind.h>
 #include <carom/testing/loaded_model.h>
 
@@ -53,22 +53,22 @@ public:
   [[nodiscard]] std::vector<double> free_acceleration() const {
     std::vector<double> force(conservative.size()), a(force.size());
     for (std::size_t i = 0; i < force.size(); ++i) force[i] = conservative[i] + dissipative[i] + external[i];
-    for (carom::Index island = 0; island < assembly.islands().size(); ++island) {
+    for (carom::Index component = 0; component < assembly.components().size(); ++component) {
       assembly.for_bodies(
-          island, [&](const carom::BodyKind& bodies, carom::Range slots, carom::Index, carom::Index v,
-                      carom::Index) { bodies.apply_inverse_mass(slots, force.data() + v, a.data() + v); });
+          component, [&](const carom::BodyKind& bodies, carom::Range slots, carom::Index, carom::Index v,
+                         carom::Index) { bodies.apply_inverse_mass(slots, force.data() + v, a.data() + v); });
     }
     return a;
   }
-  /// Accelerations under the loads and the joints of all islands; keeps the reactions.
+  /// Accelerations under the loads and the joints of all components; keeps the reactions.
   std::vector<double> acceleration() {
     std::vector<double> a = free_acceleration();
     reactions_.clear();
-    for (carom::Index island = 0; island < assembly.islands().size(); ++island) {
-      carom::IslandJoints joints(assembly, island);
-      joints.locate(view());
+    for (carom::Index component = 0; component < assembly.components().size(); ++component) {
+      carom::JointConstraints joints(assembly, component);
+      joints.update_and_factor(view());
       std::vector<double> multipliers(joints.size());
-      joints.hold(carom::JointLevel::acceleration, a.data(), multipliers.data());
+      joints.project(carom::JointLevel::acceleration, a.data(), multipliers.data());
       for (std::size_t i = 0; i < joints.joints(); ++i) {
         const carom::Index row = joints.first_row(i);
         const carom::JointId id = joints.joint(row);

@@ -186,8 +186,8 @@ TEST(SpringDamper, DashpotTakesOutDampingTimesTheSquareOfTheRate) {
       State moved = model.state;
       for (std::size_t i = 0; i < moved.q.size(); ++i) moved.q[i] += time * moved.v[i];
       Evaluation evaluation = make_evaluation(model.assembly);
-      for (Index island = 0; island < model.assembly.islands().size(); ++island) {
-        evaluate_positions(model.assembly, island, moved.view(), evaluation);
+      for (Index component = 0; component < model.assembly.components().size(); ++component) {
+        evaluate_positions(model.assembly, component, moved.view(), evaluation);
       }
       const Attachment<2> from(spring.from, *model.assembly.layout()),
           to(spring.to, *model.assembly.layout());

@@ -21,7 +21,7 @@ TEST(TorsionalSpring, ClosedFormCountsTurns) {
   expect_near(model.conservative, {0, 0, 18, 0, 0, -18}, 1e-14);
   expect_near(model.dissipative, {0, 0, 1.5, 0, 0, -1.5}, 1e-14);
   EXPECT_NEAR(model.energies()[StoredEnergy::elastic], 81.0, 1e-12);
-  EXPECT_EQ(model.assembly.islands().size(), 1U);
+  EXPECT_EQ(model.assembly.components().size(), 1U);
 }
 
 TEST(TorsionalSpring, ObeysTheLawsOfElements) {

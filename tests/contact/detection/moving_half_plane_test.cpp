@@ -5,7 +5,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/discontinuity.h>
 
@@ -57,11 +57,11 @@ public:
       : point(random.vec<2>()),
         body_(random),
         assembly_(make(random, point, radius, plane)),
-        finder_(assembly_),
+        detector_(assembly_),
         state_(assembly_.initial_state()),
         evaluation_(make_evaluation(assembly_)) {
-    for (Index island = 0; island < assembly_.islands().size(); ++island) {
-      for (const ContactPair& pair : finder_.pairs(island)) pairs_.push_back({island, pair});
+    for (Index component = 0; component < assembly_.components().size(); ++component) {
+      for (const ContactPair& pair : detector_.pairs(component)) pairs_.push_back({component, pair});
     }
   }
 
@@ -72,18 +72,18 @@ public:
   Contact contact(std::size_t pair, double t) {
     go_to(t);
     Contact contact;
-    finder_.contact(pairs_[pair].pair, state_.view(), evaluation_, contact);
+    detector_.contact(pairs_[pair].pair, state_.view(), evaluation_, contact);
     return contact;
   }
   /// The same from a step of length h that begins there.
   Contact contact_of_step(std::size_t pair, double t, double h) {
     go_to(t);
     ObstaclePlaces now, after;
-    finder_.place(t, now);
-    finder_.place(t + h, after);
+    detector_.place(t, now);
+    detector_.place(t + h, after);
     std::vector<Contact> found;
-    for (Index island = 0; island < assembly_.islands().size(); ++island) {
-      finder_.find(island, state_.view(), evaluation_, now, &after, infinity, found);
+    for (Index component = 0; component < assembly_.components().size(); ++component) {
+      detector_.find(component, state_.view(), evaluation_, now, &after, infinity, found);
     }
     return found[pair];
   }
@@ -100,7 +100,7 @@ public:
 
 private:
   struct Pair {
-    Index island;
+    Index component;
     ContactPair pair;
   };
 
@@ -127,14 +127,14 @@ private:
       state_.q[slot.q + 2] = body_.angle(t);
       state_.v[slot.v + 2] = body_.angle.rate(t);
     }
-    for (Index island = 0; island < assembly_.islands().size(); ++island) {
-      evaluate_positions(assembly_, island, state_.view(), evaluation_);
+    for (Index component = 0; component < assembly_.components().size(); ++component) {
+      evaluate_positions(assembly_, component, state_.view(), evaluation_);
     }
   }
 
   Motion body_;
   Assembly assembly_;
-  ContactFinder finder_;
+  Detector detector_;
   State state_;
   Evaluation evaluation_;
   std::vector<Pair> pairs_;
@@ -282,7 +282,7 @@ TEST(MovingHalfPlane, DoesNotLookAcrossBreaks) {
                                             {.time = -1.0, .obstacle = drum},
                                             {.time = 0.5, .obstacle = drum},
                                             {.time = 1.0, .obstacle = drum}};
-  EXPECT_EQ(ContactFinder(assembly).breaks(), expected);
+  EXPECT_EQ(Detector(assembly).breaks(), expected);
 }
 
 TEST(MovingHalfPlane, ImpossibleMotionsAreRefusedByName) {

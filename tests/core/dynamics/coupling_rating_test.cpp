@@ -19,9 +19,9 @@ struct Rated {
   explicit Rated(const System& system, double step) : assembly(system) {
     const State state = assembly.initial_state();
     Evaluation evaluation = make_evaluation(assembly);
-    for (Index island = 0; island < assembly.islands().size(); ++island) {
-      evaluate_positions(assembly, island, state.view(), evaluation);
-      ratings.push_back(rate_couplings(assembly, island, state.view(), evaluation, step));
+    for (Index component = 0; component < assembly.components().size(); ++component) {
+      evaluate_positions(assembly, component, state.view(), evaluation);
+      ratings.push_back(rate_couplings(assembly, component, state.view(), evaluation, step));
     }
   }
   Assembly assembly;
@@ -63,16 +63,16 @@ TEST(CouplingRating, NothingToContractWithoutCouplings) {
   const CouplingRating rating = Rated(system, h).ratings[0];
   EXPECT_FALSE(rating.worst.valid());
   EXPECT_EQ(rating.rate, 0.0);
-  EXPECT_EQ(rating.island_rate, 0.0);
+  EXPECT_EQ(rating.component_rate, 0.0);
   EXPECT_EQ(rating.contracting_step, 0.0);
 }
 
-TEST(CouplingRating, NamesTheWorstOfItsIsland) {
+TEST(CouplingRating, NamesTheWorstOfItsComponent) {
   System system = pair(10.0, 0.0);
   const BodyId c = system.add(Particle{.mass = 1.0, .position = {4.0, 0.0}});
   system.add(SpringDamper{.from = system.bodies()[1], .to = c, .stiffness = 500.0, .free_length = 2.0},
              "stiff");
-  // Another island: does not count here.
+  // Another component: does not count here.
   const BodyId d = system.add(Particle{.mass = 1.0, .position = {9.0, 0.0}});
   system.add(SpringDamper{.from = ground, .to = d, .stiffness = 1e6, .free_length = 1.0}, "elsewhere");
   const Rated rated(system, h);
@@ -80,7 +80,7 @@ TEST(CouplingRating, NamesTheWorstOfItsIsland) {
   EXPECT_EQ(rated.ratings[0].worst, system.element("stiff"));
   EXPECT_DOUBLE_EQ(rated.ratings[0].rate, 0.25 * h * h * 1000.0);
   // Row of the middle mass: 10 + 500 + 510.
-  EXPECT_DOUBLE_EQ(rated.ratings[0].island_rate, 0.25 * h * h * 1020.0);
+  EXPECT_DOUBLE_EQ(rated.ratings[0].component_rate, 0.25 * h * h * 1020.0);
   EXPECT_DOUBLE_EQ(rated.ratings[0].contracting_step, std::sqrt(2.0 / 1020.0));
   EXPECT_EQ(rated.ratings[1].worst, system.element("elsewhere"));
 }

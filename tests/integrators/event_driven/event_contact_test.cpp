@@ -74,7 +74,7 @@ TEST(EventContact, ARodFallsFlat) {
   }
 }
 
-TEST(EventContact, TwoBodiesOfOneIslandHitAtTheSameInstant) {
+TEST(EventContact, TwoBodiesOfOneComponentHitAtTheSameInstant) {
   for (const EventDriven& options : default_and_tight()) {
     System system;
     system.add(Gravity{{0.0, -g}});

@@ -223,7 +223,7 @@ System sliding_pair() {
   return system;
 }
 
-TEST(BdfFlow, SteadyStateOfIslandsTakesNoMemory) {
+TEST(BdfFlow, SteadyStateOfComponentsTakesNoMemory) {
   for (const System& system : {net(5, 1e5, 10.0), stiff_rods(5), sliding_pair()}) {
     Simulation simulation(system, EventDriven{.relative_tolerance = 1e-6,
                                               .absolute_tolerance = 1e-8,

@@ -1,4 +1,4 @@
-// Flows are shared: few are made for many islands, whoever is served by them moves as if it had one to
+// Flows are shared: few are made for many components, whoever is served by them moves as if it had one to
 // itself, and none is lost.
 
 #include <carom/core/assembly.h>
@@ -96,7 +96,7 @@ TEST(FlowPool, LendingTakesNoMemory) {
   EXPECT_EQ(pool.made(), 20U);
 }
 
-// Balls side by side, each its own island, no two alike; e < 1 so that they come to rest.
+// Balls side by side, each its own component, no two alike; e < 1 so that they come to rest.
 constexpr double radius = 0.1;
 
 void add_ball(System& system, int i) {
@@ -173,11 +173,11 @@ std::vector<std::uint64_t> story(const System& system, BodyId ball, const EventD
   return bits;
 }
 
-// Islands that share differ in what they are in the middle of: the first guess, a step with an event, long
+// Components that share differ in what they are in the middle of: the first guess, a step with an event, long
 // motion without any, cuts by breaks of laws, joints.
 System company(std::vector<BodyId>& bodies, int only = -1) {
   System system = floor_alone();
-  const auto wanted = [only](int island) { return only < 0 || only == island; };
+  const auto wanted = [only](int component) { return only < 0 || only == component; };
   for (int i = 0; i < 6; ++i) {
     const double x = 2.0 * i;
     if (!wanted(i)) continue;
@@ -210,7 +210,7 @@ TEST(SharedFlows, SameBitsAsByItself) {
       const System apart = company(alone, i);
       EXPECT_EQ(story(together, bodies[static_cast<std::size_t>(i)], options),
                 story(apart, alone.front(), options))
-          << "island " << i << ", method " << static_cast<int>(method);
+          << "component " << i << ", method " << static_cast<int>(method);
     }
   }
 }

@@ -33,7 +33,7 @@ LoadHistory seen(int steps) {
   LoadHistory history;
   for (int n = 1; n <= steps; ++n) {
     history.go_on(step, 2);
-    history.take_down({0, 2}, cubic(n - 1).data(), cubic(n).data());
+    history.record_change({0, 2}, cubic(n - 1).data(), cubic(n).data());
     history.pending = false;
   }
   return history;
@@ -70,7 +70,7 @@ TEST(LoadHistory, WhatFloatsCannotHoldIsGuessedAsItIs) {
   LoadHistory history;
   history.go_on(step, 3);
   const std::vector<double> then{0.0, 0.0, 1.0}, now{1e39, -1e39, 3.0};
-  history.take_down({0, 3}, then.data(), now.data());
+  history.record_change({0, 3}, then.data(), now.data());
   EXPECT_EQ(history.changes[0], (std::vector<float>{0.0F, 0.0F, 2.0F}));
 }
 
@@ -79,7 +79,7 @@ struct Pushed {
   Pushed(int k, TimeStepping options) : simulation(scene(k, broken_after), options) {}
   static System scene(int k, const double& broken_after) {
     System system;
-    // Islands that are done, and that are not begun, when that of the net fails.
+    // Components that are done, and that are not begun, when that of the net fails.
     const auto add_pair = [&system](double x) {
       const BodyId left = system.add(Particle{.mass = 1.0, .position = {x, 50.0}, .velocity = {0.3, 1.0}});
       const BodyId right = system.add(Particle{.mass = 1.0, .position = {x + 1.0, 50.0}});

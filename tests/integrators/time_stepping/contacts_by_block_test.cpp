@@ -1,5 +1,5 @@
-// Contacts of a large island are solved with its blocks; the few blocks that they upset sweep by themselves
-// before all others do.
+// Contacts of a large component are solved with its blocks; the few blocks that they upset sweep by
+// themselves before all others do.
 
 #include "examples/scenes/net.h"
 #include "tests/integrators/same_run.h"
@@ -93,7 +93,7 @@ TEST(ContactsByBlock, UpsetBlocksSweepByThemselves) {
 }
 
 TEST(ContactsByBlock, MomentumIsThatOfWeightAndContacts) {
-  // The last two sweeps go through all of the island, so that springs push their ends equally.
+  // The last two sweeps go through all of the component, so that springs push their ends equally.
   NetRun run(falling(false));
   const Vec<2> normal = incline(run.net.slope), tangent(normal.y(), -normal.x());
   const double weight = scenes::particles(run.net) * run.net.mass * scenes::net_gravity;
@@ -178,7 +178,7 @@ TEST(ContactsByBlock, AContactWithoutSolutionIsNamed) {
   for (const int threads : {1, 2}) {
     if (threads > 1 && !Workers::several_available()) continue;
     Simulation simulation(system, TimeStepping{.step = 1e-4, .tolerance = tolerance, .threads = threads});
-    ASSERT_EQ(simulation.assembly().islands().size(), 1U);
+    ASSERT_EQ(simulation.assembly().components().size(), 1U);
     const auto before = carom_test::bits_of(simulation);
     EXPECT_THROWS(SolverError, simulation.step(), "particle 'dot' on half-plane 'left'", "'right'",
                   "no solution");

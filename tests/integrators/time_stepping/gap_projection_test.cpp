@@ -3,7 +3,7 @@
 #include "tests/energy/ledger_check.h"
 
 #include <carom/carom.h>
-#include <carom/contact/detection/contact_finder.h>
+#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
@@ -26,11 +26,11 @@ constexpr double rounding = 1e-13;
 double deepest(const Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   Evaluation evaluation = make_evaluation(assembly);
-  const ContactFinder finder(assembly);
+  const Detector detector(assembly);
   std::vector<Contact> contacts;
-  for (Index island = 0; island < assembly.islands().size(); ++island) {
-    evaluate_positions(assembly, island, simulation.state().view(), evaluation);
-    finder.find(island, simulation.state().view(), evaluation, 0.0, contacts);
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, simulation.state().view(), evaluation);
+    detector.find(component, simulation.state().view(), evaluation, 0.0, contacts);
   }
   double depth = 0.0;
   for (const Contact& contact : contacts) {

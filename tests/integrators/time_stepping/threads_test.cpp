@@ -1,4 +1,4 @@
-// Large islands are cut into blocks; who works on which changes no bit.
+// Large components are cut into blocks; who works on which changes no bit.
 
 #include "examples/scenes/net.h"
 #include "tests/integrators/same_run.h"
@@ -44,28 +44,28 @@ std::vector<std::uint64_t> bits_after(int threads, TimeStepping options, int ste
   return carom_test::bits_of(simulation);
 }
 
-TEST(Threads, BlocksTogetherAreTheIsland) {
+TEST(Threads, BlocksTogetherAreTheComponent) {
   const Assembly assembly(large_net());
-  ASSERT_EQ(assembly.islands().size(), 1U);
-  const Island& island = assembly.islands()[0];
-  ASSERT_EQ(island.blocks.size(), island.bodies.size() / Assembly::block_size);
-  ASSERT_GE(island.blocks.size(), 3U);
-  Index body = island.bodies.begin, v = island.v.begin;
-  for (Index block = island.blocks.begin; block < island.blocks.end; ++block) {
+  ASSERT_EQ(assembly.components().size(), 1U);
+  const Component& component = assembly.components()[0];
+  ASSERT_EQ(component.blocks.size(), component.bodies.size() / Assembly::block_size);
+  ASSERT_GE(component.blocks.size(), 3U);
+  Index body = component.bodies.begin, v = component.v.begin;
+  for (Index block = component.blocks.begin; block < component.blocks.end; ++block) {
     EXPECT_EQ(assembly.blocks()[block].bodies.begin, body);
     EXPECT_EQ(assembly.blocks()[block].v.begin, v);
     body = assembly.blocks()[block].bodies.end;
     v = assembly.blocks()[block].v.end;
   }
-  EXPECT_EQ(body, island.bodies.end);
-  EXPECT_EQ(v, island.v.end);
-  Index block = island.blocks.begin;
-  for (Index run = island.runs.begin; run < island.runs.end; ++run) {
+  EXPECT_EQ(body, component.bodies.end);
+  EXPECT_EQ(v, component.v.end);
+  Index block = component.blocks.begin;
+  for (Index run = component.runs.begin; run < component.runs.end; ++run) {
     EXPECT_EQ(assembly.runs()[run].begin, block);
     EXPECT_FALSE(assembly.runs()[run].empty());
     block = assembly.runs()[run].end;
   }
-  EXPECT_EQ(block, island.blocks.end);
+  EXPECT_EQ(block, component.blocks.end);
 }
 
 TEST(Threads, TwoBlocksAreEnoughForTwo) {
@@ -91,9 +91,9 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
     return run;
   };
   ASSERT_GE(assembly.runs().size(), 3U);
-  std::vector<Index> closed_by(assembly.blocks().size());
-  std::iota(closed_by.begin(), closed_by.end(), Index{0});
-  std::set<Index> bridged;
+  std::vector<Index> last_loading_block(assembly.blocks().size());
+  std::iota(last_loading_block.begin(), last_loading_block.end(), Index{0});
+  std::set<Index> loaded_across_runs;
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& force = *assembly.force_kinds()[kind];
     if (force.is_field()) continue;
@@ -121,7 +121,7 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
         EXPECT_EQ(run_of(*blocks.begin()), run_of(block));
         across = across || blocks.size() > 1;
         for (Index before = *blocks.begin(); before <= block; ++before) {
-          closed_by[before] = std::max(closed_by[before], block);
+          last_loading_block[before] = std::max(last_loading_block[before], block);
         }
       }
     }
@@ -131,14 +131,14 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
     for (Index element = bridges.begin; element < bridges.end; ++element) {
       const std::set<Index> blocks = blocks_of(element);
       EXPECT_NE(run_of(*blocks.begin()), run_of(*blocks.rbegin()));
-      bridged.insert(blocks.begin(), blocks.end());
+      loaded_across_runs.insert(blocks.begin(), blocks.end());
     }
     EXPECT_EQ(seen.size(), force.size());
   }
-  EXPECT_LT(bridged.size(), assembly.blocks().size());
+  EXPECT_LT(loaded_across_runs.size(), assembly.blocks().size());
   for (Index block = 0; block < assembly.blocks().size(); ++block) {
-    EXPECT_EQ(assembly.blocks()[block].closed_by, closed_by[block]) << block;
-    EXPECT_EQ(assembly.blocks()[block].bridged, bridged.contains(block)) << block;
+    EXPECT_EQ(assembly.blocks()[block].last_loading_block, last_loading_block[block]) << block;
+    EXPECT_EQ(assembly.blocks()[block].loaded_across_runs, loaded_across_runs.contains(block)) << block;
   }
 }
 

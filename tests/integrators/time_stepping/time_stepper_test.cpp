@@ -104,7 +104,7 @@ TEST(TimeStepper, LoadsMayBeLargerThanFloats) {
 }
 
 TEST(TimeStepper, LoadsThatNeverChangeNeedNoIterationAndLeadToTheSame) {
-  // A spring without stiffness changes no load, but its island is iterated.
+  // A spring without stiffness changes no load, but its component is iterated.
   const auto end = [](bool with_spring) {
     System system;
     system.add(Gravity{{0.5, -9.81}});
@@ -259,7 +259,7 @@ TEST(TimeStepper, TangentialRestitutionActsInEveryStepOfALastingContact) {
   }
 }
 
-TEST(TimeStepper, SeparateIslandsDoNotSeeEachOther) {
+TEST(TimeStepper, SeparateComponentsDoNotSeeEachOther) {
   // Two scenes in one model move bit for bit as each alone.
   const auto add_first = [](System& system) {
     const BodyId a = system.add(Particle{.mass = 1.0, .position = {0.0, 0.5}, .velocity = {1.0, 0.0}});

@@ -1,0 +1,52 @@
+#pragma once
+
+/// \file
+/// Problem: friction in joints is bound by the forces in the joints, which follow from the impulses of
+/// contact and of friction. Find bounds, impulses and forces that agree.
+
+#include <carom/contact/contact_cluster.h>
+#include <carom/contact/friction_bounds.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/numerics/rank_revealing_qr.h>
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// One problem of contacts with friction in joints. All members must outlive the calls.
+struct FrictionBoundProblem {
+  ContactCluster& cluster;
+  std::span<Contact> contacts;  ///< those of the cluster
+  FrictionBounds& pressure;     ///< of friction in the joints
+  JointView at;                 ///< where forces of joints are looked at
+  double duration = 1.0;        ///< as for FrictionBounds::take() [s]
+  double size = 0.0;            ///< likewise
+  /// Multipliers of all rows of the joints under the impulses that the cluster has.
+  std::function<const double*()> multipliers;
+};
+
+/// Solves such problems, with memory that is kept.
+class CAROM_API FrictionBoundSolver {
+public:
+  /// Solves, and repeats with the bounds that follow until these stay. Forces of joints are those of the
+  /// impulses of least norm that move bodies as the answer does: where impulses are not unique (two bars
+  /// touch the ground where a pin joins them) solvers find now these and now those. Without friction bound by
+  /// forces solves once. False if there is no usable answer, or no bounds.
+  [[nodiscard]] bool solve(const FrictionBoundProblem& problem, SolverChain& chain);
+
+private:
+  void find_null_space(const ContactProblem& problem);
+  void take_forces(const FrictionBoundProblem& problem, bool least);
+  [[nodiscard]] bool settle(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
+                            bool least);
+
+  RankRevealingQr factors_;
+  std::vector<double> null_;  // of W, orthonormal vectors one behind the other
+  std::vector<double> vector_, found_, least_;
+};
+
+}  // namespace carom

@@ -1,0 +1,69 @@
+#include <carom/contact/friction_bounds.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+FrictionBounds::FrictionBounds(const Assembly& assembly, Index component, const JointConstraints& joints) {
+  const JointTable* const table = assembly.layout()->joints();
+  if (table == nullptr) return;
+  rows_ = joints.size();
+  std::vector<std::size_t> rows(table->places.size(), 0);  // first ones, by serial number
+  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+    const std::size_t row = joints.first_row(joint);
+    rows[joints.joint(row).serial] = row;
+  }
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly.joint_kinds()[k];
+    if (!kind.has_dry_friction()) continue;
+    const Range range = assembly.joints(component, k);
+    for (Index slot = range.begin; slot < range.end; ++slot) {
+      const JointRub dry_friction = kind.dry_friction(slot);
+      if (dry_friction.coefficient == 0.0) continue;
+      const JointId bearing = kind.on_joint(slot);
+      const JointTable::Place place = table->place(bearing.serial);
+      bearings_.push_back({assembly.joint_id(k, slot).serial, table->kinds[place.kind].get(), place.slot,
+                           rows[bearing.serial], dry_friction.bound, dry_friction.coefficient});
+    }
+  }
+  std::sort(bearings_.begin(), bearings_.end(),
+            [](const Bearing& a, const Bearing& b) { return a.serial < b.serial; });
+}
+
+const FrictionBounds::Bearing* FrictionBounds::find(const Contact& contact) const {
+  if (!contact.has_dry_friction()) return nullptr;
+  const Index serial = contact.key.of.serial;
+  const auto at =
+      std::lower_bound(bearings_.begin(), bearings_.end(), serial,
+                       [](const Bearing& bearing, Index wanted) { return bearing.serial < wanted; });
+  return at == bearings_.end() || at->serial != serial ? nullptr : &*at;
+}
+
+Range FrictionBounds::rows(const Contact& contact) const {
+  const Bearing* const bearing = find(contact);
+  if (bearing == nullptr) return {};
+  const auto first = static_cast<Index>(bearing->row);
+  return {first, first + bearing->joint->rows()};
+}
+
+void FrictionBounds::take(const double* multipliers, double duration, double size) {
+  multipliers_ = multipliers;
+  duration_ = duration;
+  largest_ = size;
+  for (std::size_t row = 0; row < rows_; ++row) largest_ = std::max(largest_, std::abs(multipliers[row]));
+}
+
+double FrictionBounds::press(Contact& contact, const JointView& at) const {
+  const Bearing* const bearing = find(contact);
+  if (bearing == nullptr) return 0.0;
+  const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers_ + bearing->row);
+  const double force = std::hypot(reaction.force[0], reaction.force[1], reaction.force[2]);
+  const double pressed = duration_ * bearing->bound + bearing->coefficient * force;
+  const double scale = std::max({pressed, contact.friction_bound, bearing->coefficient * largest_});
+  const double change = scale > 0.0 ? std::abs(pressed - contact.friction_bound) / scale : 0.0;
+  contact.friction_bound = pressed;
+  return change;
+}
+
+}  // namespace carom

@@ -1,0 +1,160 @@
+#pragma once
+
+/// \file
+/// The joints of one component as constraints on all its bodies at once (docs/method.md, section 8). With the
+/// rows G of its joints and the masses M, numbers x of the bodies (accelerations, velocities, displacements)
+/// are made to obey  G x + c = 0  by the smallest change in the sense of the masses,
+///
+///     x' = x + M^-1 G^T l,   (G M^-1 G^T) l = -(G x + c).
+///
+/// The matrix is sparse; its pattern is analysed once.
+
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/numerics/sparse_factors.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// What numbers of the bodies are, and with that the constant c that goes with them.
+enum class JointLevel : std::uint8_t {
+  displacement,  ///< c the gaps
+  velocity,      ///< c the rates of rows that depend on time
+  acceleration,  ///< c the drifts
+  change         ///< c zero: changes of velocities or accelerations
+};
+
+/// Constraints of one component. Owns workspaces and multipliers. Copies share what does not change.
+class CAROM_API JointConstraints {
+public:
+  /// Of no component: empty.
+  JointConstraints() = default;
+  /// Analyses the pattern.
+  JointConstraints(const Assembly& assembly, Index component);
+
+  [[nodiscard]] bool empty() const { return gap_.empty(); }  ///< true if there are no joints
+  /// Number of rows.
+  [[nodiscard]] std::size_t size() const { return gap_.size(); }
+  /// True if a row depends on time.
+  [[nodiscard]] bool depends_on_time() const { return !rate_.empty(); }
+
+  /// Takes the body with these velocities as too heavy to move.
+  void fix(Range velocities);
+  /// Brings the rows to a configuration and factorises.
+  void update_and_factor(const JointView& at);
+  /// Brings the rows alone to a configuration: until factor(), the factors are those of another one.
+  void update(const JointView& at);
+  /// Factorises with the rows as they are.
+  void factor();
+  /// Brings gap() alone to a configuration.
+  void update_gaps(const JointView& at);
+
+  /// A row at the configuration where it was brought last.
+  [[nodiscard]] JointRow row(std::size_t row) const;
+  /// Writes the derivatives of the rows of a joint.
+  void derivatives(const JointView& at, std::size_t joint, JointRowDerivative* out) const;
+  /// Gap of a row.
+  [[nodiscard]] double gap(std::size_t row) const { return gap_[row]; }
+  /// Rate of a row.
+  [[nodiscard]] double rate(std::size_t row) const { return rate_.empty() ? 0.0 : rate_[row]; }
+  /// Writes G x + c of all rows.
+  void residuals(JointLevel level, const double* x, double* out) const;
+  /// x += G^T l.
+  void add_transposed(const double* multipliers, double* x) const;
+
+  /// Makes x obey the constraints. \param x an array over all velocities \param multipliers out: l, sized as
+  /// the rows; may be null
+  void project(JointLevel level, double* x, double* multipliers = nullptr);
+  /// r becomes -(G M^-1 G^T)^-1 r, zero in rows that follow from others.
+  void solve(double* r);
+  /// x += M^-1 G^T l.
+  void add_response(const double* multipliers, double* x) const;
+  /// x becomes M^-1 x over the component.
+  void apply_inverse_mass(double* x) const;
+  /// Impulses or forces x of the bodies become what they do, with the joints' answer: M^-1 x, held.
+  void constrained_response(double* x);
+  /// Velocities of the component.
+  [[nodiscard]] Range velocities() const { return v_; }
+
+  /// G x + c of a row.
+  [[nodiscard]] static double residual(JointLevel level, const JointRow& row, const double* x) {
+    const double sum = row.times(x);
+    switch (level) {
+      case JointLevel::displacement:
+        return sum + row.gap;
+      case JointLevel::velocity:
+        return sum + row.rate;
+      case JointLevel::acceleration:
+        return sum + row.drift;
+      case JointLevel::change:
+        break;
+    }
+    return sum;
+  }
+
+  /// Joints with rows.
+  [[nodiscard]] std::size_t joints() const { return empty() ? 0 : pattern_->joints.size() - 1; }
+  /// First of the rows of a joint; their number behind the last joint.
+  [[nodiscard]] Index first_row(std::size_t joint) const { return pattern_->joints[joint].row; }
+  /// The joint of a row.
+  [[nodiscard]] JointId joint(std::size_t row) const;
+  /// The factors of G M^-1 G^T.
+  [[nodiscard]] const SparseFactors& factors() const { return factors_; }
+  [[nodiscard]] SparseFactors& factors() { return factors_; }
+
+private:
+  // Velocities of a body.
+  struct Block {
+    Index v, columns;
+  };
+  // Where what belongs to a joint begins.
+  struct Joint {
+    Index row;     // of its rows
+    Index number;  // of its numbers of G
+    Index block;   // of its blocks
+  };
+  // Joints of a kind.
+  struct OfKind {
+    Index kind;
+    Range joints;
+    Index first;  // the first one's place in Pattern::joints
+  };
+  // A product of two blocks that belongs to a block of the matrix: numbers of the two in G, of the result in
+  // the matrix; the velocities they share.
+  struct Product {
+    Index number, other, value, v;
+    std::uint8_t rows, other_rows, stride, other_stride, columns;
+    bool first;  // of those that belong to the block
+  };
+  // What does not change.
+  struct Pattern {
+    std::vector<OfKind> kinds;
+    std::vector<Joint> joints;  // and an end
+    std::vector<Block> blocks;
+    std::vector<Product> products;
+
+    void add(const JointKind& kind, Index joint);
+    void multiply(SparseFactors& factors);
+    [[nodiscard]] Index stride(std::size_t joint) const;
+  };
+  void evaluate(const JointView& at, JointNumbers out) const;
+  [[nodiscard]] std::size_t joint_of(std::size_t row) const;
+  [[nodiscard]] const OfKind& kind_of(std::size_t joint) const;
+  template <class F>
+  void for_blocks(F&& f) const;
+
+  const Assembly* assembly_ = nullptr;
+  Range v_;
+  std::shared_ptr<const Pattern> pattern_;
+  std::vector<double> jacobian_;            // row by row
+  std::vector<double> gap_, rate_, drift_;  // by row; rate_ is empty if nothing depends on time
+  std::vector<double> inverse_mass_;        // over v_: masses are diagonal
+  SparseFactors factors_;
+  std::vector<double> right_;
+};
+
+}  // namespace carom

@@ -1,0 +1,130 @@
+// Problem: a state of time stepping that the event-driven mode accepts.
+
+#include <carom/contact/contact_cluster.h>
+#include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/integrators/mode_switch.h>
+#include <carom/integrators/time_stepping/gap_projection.h>
+
+#include <algorithm>
+#include <string>
+
+namespace carom {
+
+namespace {
+
+/// Names all obstacles that leave no room between them, the deepest contact first.
+[[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
+  std::vector<Contact> contacts(result.together.begin(), result.together.end());
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+  SolverFailure failure;
+  failure.time = time;
+  failure.residual = -result.left->gap;
+  std::string names;
+  for (const Contact& contact : contacts) {
+    failure.parts.push_back(detector.name(contact.key));
+    names += (names.empty() ? "" : ", ") + failure.parts.back();
+  }
+  const std::string message = "change to the event-driven mode at t = " + to_text(time) +
+                              " s: no displacement opens the gaps of " + names + " together; left is " +
+                              to_text(result.left->gap) + " m; allowed: bodies that have room";
+  throw SolverError(message, std::move(failure));
+}
+
+[[noreturn]] void fail(const Detector& detector, const Contact& contact, double time, const char* what) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(detector.name(contact.key));
+  const std::string message = "change to the event-driven mode at t = " + to_text(time) + " s: " + what +
+                              " of " + failure.parts.front();
+  throw SolverError(message, std::move(failure));
+}
+
+}  // namespace
+
+void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
+                        Companion& companion, StepReport& report, std::vector<EventRecord>& events) {
+  State trial = state;
+  Evaluation evaluation = make_evaluation(assembly);
+  SolverChain chain;
+  ContactCluster cluster;
+  GapProjection projection;
+  ObstaclePlaces places;
+  detector.place(state.time, places);
+  std::vector<Contact> contacts;
+  std::vector<EventRecord> told;
+  double shift = 0.0;
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    evaluate_positions(assembly, component, trial.view(), evaluation);
+    contacts.clear();
+    detector.find(component, trial.view(), evaluation, 0.0, contacts);
+    JointConstraints joints(assembly, component);
+    joints.update_and_factor({trial.view(), evaluation.rotation.data()});
+    std::vector<Contact> in_order = contacts;  // what answers together stands together
+    const auto group = [&](const Contact& contact) { return assembly.mechanism(contact.body); };
+    std::stable_sort(in_order.begin(), in_order.end(),
+                     [&](const Contact& a, const Contact& b) { return group(a) < group(b); });
+    for (std::size_t first = 0; first < in_order.size();) {
+      std::size_t last = first + 1;
+      while (last < in_order.size() && group(in_order[last]) == group(in_order[first])) ++last;
+      const std::span<const Contact> of_body(in_order.data() + first, last - first);
+      first = last;
+      const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Contact& contact) {
+        return contact.velocity(0, trial.v.data()) < 0.0;
+      });
+      if (!approaches) continue;
+      cluster.build(assembly, of_body, trial.v.data());
+      if (!joints.empty()) cluster.couple(joints);
+      cluster.set_free_velocity(trial.v.data());
+      if (!cluster.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
+      if (joints.empty()) {
+        cluster.apply(trial.v.data());
+      } else {
+        cluster.apply_coupled(trial.v.data());
+      }
+      for (std::size_t c = 0; c < of_body.size(); ++c) {
+        EventRecord& event = told.emplace_back();
+        event.time = state.time;
+        event.kind = EventKind::mode_switch;
+        event.contact = of_body[c].key;
+        event.body = assembly.layout()->id(of_body[c].body);
+        if (of_body[c].key.against.owner == FeatureKey::Owner::obstacle) {
+          event.obstacle = {of_body[c].key.against.serial, assembly.system().token()};
+        }
+        for (int row = 0; row < of_body[c].rows; ++row) {
+          const auto at = static_cast<std::size_t>(row);
+          const auto place = static_cast<std::size_t>(cluster.first_row(c)) + at;
+          event.velocity_before[at] = cluster.before()[place];
+          event.velocity_after[at] = of_body[c].velocity(row, trial.v.data());
+          event.impulse[at] = cluster.impulses()[place];
+        }
+        event.mode = cluster.modes()[c];
+        event.outcome = cluster.report().outcome;
+        event.residual = cluster.report().residual;
+        event.solver = cluster.report().solver;
+      }
+    }
+    // All of them: out of one obstacle a body may come into another.
+    const GapProjection::Result result = projection.project(assembly, component, detector, places,
+                                                            {.all = true}, chain, trial, evaluation, joints);
+    if (result.left != nullptr) fail_wedged(detector, result, state.time);
+    shift = std::max(shift, result.shift);
+  }
+  // Where bodies were moved their joints stand elsewhere.
+  shift = std::max(shift, close_joints(assembly, trial).shift);
+  const StoredEnergies stored = stored_energies(assembly, trial.view(), evaluation);
+  EnergyFlows flows;
+  flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
+  companion.ledger.book(flows, stored);
+  companion.contact_statistics += chain.statistics();
+  companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
+      static_cast<std::int64_t>(told.size());
+  state = std::move(trial);
+  report = {};
+  report.time = state.time;
+  report.projected = shift;
+  events.insert(events.end(), told.begin(), told.end());
+}
+
+}  // namespace carom

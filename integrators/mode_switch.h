@@ -1,0 +1,25 @@
+#pragma once
+
+/// \file
+/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside obstacles.
+/// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
+/// 7).
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/step_report.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Changes the state so that an event-driven run can start from it, books the energy as `mode_switch`, and
+/// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError; nothing has
+/// changed then.
+CAROM_API void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
+                                  Companion& companion, StepReport& report, std::vector<EventRecord>& events);
+
+}  // namespace carom

@@ -1,0 +1,152 @@
+#pragma once
+
+/// \file
+/// The constraint parts of planar joints: scalar conditions between the ends of two bodies.
+///
+///     point     e.d = 0          along an axis e of the fixed frame,  d = p_to - p_from
+///     line      a.d - f(t) = 0   along an axis a fixed to `from`
+///     angle     sum c_k angle_k - f(t) = 0
+///     distance  |d| - f(t) = 0
+///
+/// A line may contain angles (rolling).
+
+#include <carom/core/column.h>
+#include <carom/core/end.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/layout.h>
+#include <carom/core/space.h>
+#include <carom/core/system.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace carom::planar {
+
+/// One constraint part: a scalar condition between two ends, as described.
+struct ConstraintPart {
+  /// How the distance d between the ends enters.
+  enum class Form : std::uint8_t { angles, fixed_axis, axis_of_from, distance };
+
+  Form form = Form::angles;      ///< how the distance enters
+  End<2> from{};                 ///< a body or ground
+  End<2> to{};                   ///< a body or ground
+  Vec<2> axis = Vec<2>::Zero();  ///< of unit length, in the fixed frame or that of `from`
+  double turn_from = 0.0;        ///< coefficient of the angle of `from` [1, m]
+  double turn_to = 0.0;          ///< of `to`
+  BodyId carrier = ground;       ///< a third body whose angle may enter
+  double turn_carrier = 0.0;     ///< coefficient of its angle
+  double offset = 0.0;           ///< is subtracted [m, rad]
+};
+
+/// The constraint parts of many joints of one kind, property by property: a value that all joints share is
+/// stored once. All constraint parts of a joint are between the same ends; conditions on angles alone do not
+/// depend on the points.
+class CAROM_API ConstraintPartTable {
+public:
+  /// Appends a joint. The number of constraint parts is the same for all.
+  void add(std::span<const ConstraintPart> constraints);
+  /// Removes a joint; later ones move up.
+  void erase(Index joint);
+  /// The joints named by `order`, in that order, with their places in the arrays.
+  [[nodiscard]] ConstraintPartTable arranged(std::span<const Index> order, const Layout& layout) const;
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(ends_.size()); }  ///< number of joints
+  /// A constraint part of a joint, as it was added.
+  [[nodiscard]] ConstraintPart constraint(Index joint, Index which) const;
+  /// Appends the bodies of a joint.
+  void ends(Index joint, std::vector<BodyId>& out) const;
+  /// Adds all that distinguishes the joints.
+  void fingerprint(Fingerprint& print) const;
+
+  /// Writes which velocities the rows of a joint have blocks for. The table must be an arranged one, here and
+  /// below.
+  void pattern(Index joint, JointRow& row) const;
+  /// Writes one row of a joint.
+  void evaluate(const JointView& at, Index joint, Index which, JointRow& row) const;
+  /// Writes the first `rows` rows of several joints.
+  void evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  /// Writes the derivatives of one row of a joint.
+  void derivatives(const JointView& at, Index joint, Index which, JointRowDerivative& out) const;
+  /// Load of the multipliers of the first `rows` rows on `to`.
+  [[nodiscard]] JointReaction reaction(const JointView& at, Index joint, Index rows,
+                                       const double* multipliers) const;
+
+private:
+  // Serial numbers of bodies.
+  struct Ends {
+    Index from, to;
+  };
+  // Coefficients of angles.
+  struct Turns {
+    double from, to, carrier;
+  };
+  // A condition, of all joints.
+  struct Condition {
+    Column<ConstraintPart::Form> form;
+    Column<Vec<2>> axis;
+    Column<Turns> turns;
+    Column<double> offset;
+  };
+  // Place of a body.
+  struct Place {
+    Index q = none, v = none, rotation = none;
+
+    [[nodiscard]] Vec<2> lever(const JointView& at, const Vec<2>& local) const;
+    [[nodiscard]] Vec<2> position(const JointView& at, const Vec<2>& local, const Vec<2>& lever) const;
+    [[nodiscard]] Vec<2> velocity(const JointView& at, const Vec<2>& lever) const;
+    [[nodiscard]] double spin(const JointView& at) const {
+      return rotation == none ? 0.0 : at.state.v[v + 2];
+    }
+    [[nodiscard]] double angle(const JointView& at) const {
+      return rotation == none ? 0.0 : at.state.q[q + 2];
+    }
+    [[nodiscard]] int columns() const { return rotation == none ? 2 : 3; }
+  };
+  struct Places {
+    Place from, to;
+  };
+  struct Geometry;
+  [[nodiscard]] BodyId id(Index serial) const {
+    return serial == ground.serial ? ground : BodyId{serial, token_};
+  }
+  [[nodiscard]] Geometry geometry(const JointView& at, Index joint) const;
+  [[nodiscard]] Vec<2> direction(const JointView& at, const Geometry& geometry, const Condition& condition,
+                                 Index joint) const;
+  double* write(const JointView& at, const Geometry& geometry, const Condition& condition, Index joint,
+                double& gap, double& drift, double* jacobian) const;
+
+  std::vector<Condition> conditions_;
+  std::vector<Ends> ends_;
+  Column<Index> carrier_;  // serial numbers
+  Column<Vec<2>> from_point_, to_point_;
+  Index token_ = 0;
+  // Of an arranged table.
+  std::vector<Places> places_;
+  Column<Place> carrier_place_;  // nowhere unless it has a part in a row
+};
+
+/// Position and angle of a body as described.
+struct CAROM_API DescribedPlace {
+  Vec<2> position = Vec<2>::Zero();  ///< of its centre of mass [m]
+  double angle = 0.0;                ///< [rad]
+
+  /// A point of the body, in the fixed frame [m].
+  [[nodiscard]] Vec<2> point(const Vec<2>& local) const;
+};
+/// Position and angle of a body of a system, or of the ground, as described.
+[[nodiscard]] CAROM_API DescribedPlace described_place(const System& system, BodyId body);
+
+/// Demands two valid ends on different bodies.
+CAROM_API void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& to);
+/// Demands that many constraint parts, all between the same ends.
+CAROM_API void check_constraint_parts(const PartCheck& check, std::span<const ConstraintPart> constraints,
+                                      Index count);
+/// Demands an axis that is finite and not zero; returns it with unit length.
+[[nodiscard]] CAROM_API Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis,
+                                            std::string_view quantity);
+/// Demands a body that has an angle: a rigid body, or the ground.
+CAROM_API void check_turning_end(const PartCheck& check, BodyId body, std::string_view quantity);
+
+}  // namespace carom::planar
