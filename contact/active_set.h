@@ -29,11 +29,12 @@ namespace carom {
 /// A contact in a smooth phase.
 struct ActiveContact {
   ContactPair pair;                       ///< what touches
+  Index place = none;                     ///< of the pair in a list of all, where there is one
   ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
   bool frictionless = false;              ///< without friction: neither sticks nor cares which way it slips
   Contact at;                             ///< at the present configuration
   double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
-  double normal = 0.0;                    ///< force; of friction in a joint Contact::pressed [N]
+  double normal = 0.0;                    ///< force; of friction in a joint Contact::friction_bound [N]
   double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
   /// False where forces were shared out and it is at its end by chance: others set the margin.
   bool sets_margin = true;

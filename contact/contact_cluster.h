@@ -36,7 +36,7 @@ public:
   /// W = C^T M A^-1 M C. \param mass p = M x
   void couple_again(const std::function<void(const double* x, double* p)>& mass,
                     const std::function<void(double*)>& solve);
-  /// Takes note of another Contact::pressed of friction in a joint.
+  /// Takes note of another Contact::friction_bound of friction in a joint.
   void press(std::size_t contact);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
   void slide(std::size_t contact, double ratio);

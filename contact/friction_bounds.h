@@ -32,9 +32,9 @@ public:
   /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
   /// \param size of loads whose rounding is in the multipliers, as these
   void take(const double* multipliers, double duration, double size = 0.0);
-  /// Sets `pressed` of friction in a joint. Returns the change against the number itself, or against that of
-  /// the largest force in the component where it is small; does nothing and returns 0 for what is bound by a
-  /// constant only.
+  /// Sets `friction_bound` of friction in a joint. Returns the change against the number itself, or against
+  /// that of the largest force in the component where it is small; does nothing and returns 0 for what is
+  /// bound by a constant only.
   double press(Contact& contact, const JointView& at) const;
 
 private:

@@ -79,7 +79,8 @@ public:
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
   /// Friction in the joints of one component. Made at each call.
   [[nodiscard]] std::vector<ContactPair> rubbing(Index component) const;
-  /// Appends it as contacts, whose `pressed` has the constant part of the bound. Sets nothing of the past.
+  /// Appends it as contacts, whose `friction_bound` has the constant part of the bound. Sets nothing of the
+  /// past.
   void find_joint_friction(Index component, const StateView& state, const Evaluation& evaluation,
                            std::vector<Contact>& out) const;
   /// True if there is any in a component.

@@ -26,6 +26,7 @@ ClockGroup::ClockGroup(const Assembly& assembly, const Detector& detector, const
       y_(motion_.size()),
       output_state_(motion_.size()) {
   is_active_.assign(motion_.pairs().size(), 0);
+  before_at_.assign(motion_.pairs().size(), none);
   if (assembly.layout()->dimension() == 3 && !motion_.pairs().empty()) {
     // Sliding in two directions has modes that are not written yet; taken as planar it would stick at once.
     const BodyId body = assembly.layout()->id(motion_.pairs().front().body);
@@ -74,11 +75,15 @@ void ClockGroup::start(const State& state, const ContactModes& present) {
   Contact contact;
   for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
     motion_.contact(i, contact);
-    const auto known = std::find_if(present.begin(), present.end(),
-                                    [&](const auto& entry) { return entry.first == contact.key; });
-    if (known == present.end() || known->second == ContactMode::open) continue;
+    const auto known =
+        std::lower_bound(present.begin(), present.end(), contact.key,
+                         [](const auto& entry, const ContactKey& key) { return entry.first < key; });
+    const bool open =
+        known == present.end() || known->first != contact.key || known->second == ContactMode::open;
+    if (open) continue;
     ActiveContact& closed = motion_.active().list().emplace_back();
     closed.pair = motion_.pairs()[i];
+    closed.place = static_cast<Index>(i);
     closed.mode = known->second;
     closed.at = contact;
   }

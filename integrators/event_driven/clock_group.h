@@ -76,7 +76,7 @@ public:
 
   /// Throws ModelError where a contact is deeper in an obstacle than gap_tolerance: no start.
   void demand_start(const State& state);
-  /// Starts at a state; throws as demand_start(). \param present modes of contacts before, if known
+  /// Starts at a state; throws as demand_start(). \param present modes of contacts before, if known, by key
   void start(const State& state, const ContactModes& present);
   /// Goes on to a time, not before the present; events at that very time included. Throws SolverError: the
   /// driver must then be started anew.
@@ -237,7 +237,8 @@ private:
   ContactPair stopped_;                        // has just stopped slipping
   std::vector<ContactPair> unbounded_forces_;  // their forces have outgrown all bounds,
   std::string unbounded_force_;                // as the flow told
-  std::vector<ActiveContact> before_;          // closed before the event
+  std::vector<ActiveContact> before_;          // closed before the event,
+  std::vector<Index> before_at_;               // by pair: which of them, `none` if open
   ActiveSet capture_;
   SolutionList solutions_;
 

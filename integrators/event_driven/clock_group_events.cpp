@@ -64,9 +64,10 @@ void ClockGroup::begin_phase(EventBalance& balance) {
   if (fresh_ && !motion_.active().list().empty()) project_known_contacts(balance);
   before_ = motion_.active().list();
   std::fill(is_active_.begin(), is_active_.end(), char{0});
-  for (const ActiveContact& contact : before_) {
-    const auto at = std::find(motion_.pairs().begin(), motion_.pairs().end(), contact.pair);
-    is_active_[static_cast<std::size_t>(at - motion_.pairs().begin())] = 1;
+  std::fill(before_at_.begin(), before_at_.end(), none);
+  for (Index i = 0; i < before_.size(); ++i) {
+    is_active_[before_[i].place] = 1;
+    before_at_[before_[i].place] = i;
   }
   const bool struck = resolve_impacts(balance);
   if (struck) {
@@ -121,10 +122,7 @@ void ClockGroup::decide_modes(EventBalance& balance) {
     first = last;
   }
   std::fill(is_active_.begin(), is_active_.end(), char{0});
-  for (const ActiveContact& contact : list) {
-    const auto at = std::find(pairs.begin(), pairs.end(), contact.pair);
-    is_active_[static_cast<std::size_t>(at - pairs.begin())] = 1;
-  }
+  for (const ActiveContact& contact : list) is_active_[contact.place] = 1;
 }
 
 void ClockGroup::collect_candidates(std::size_t first, std::size_t last) {
@@ -136,14 +134,14 @@ void ClockGroup::collect_candidates(std::size_t first, std::size_t last) {
     if (!touches(i) || contact.velocity(0, velocity) > speed_noise()) continue;
     Candidate& candidate = candidates.emplace_back();
     candidate.pair = motion_.pairs()[i];
+    candidate.place = static_cast<Index>(i);
     candidate.at = contact;
     if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
     const double slip = contact.rows == 2 ? contact.velocity(1, velocity) : 0.0;
     candidate.slip = std::abs(slip) > speed_noise() && candidate.pair != stopped_ ? slip : 0.0;
     candidate.frictionless = contact.law.sticking_friction() == 0.0;
     const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
-    const auto before = std::find_if(before_.begin(), before_.end(), same);
-    if (before != before_.end()) candidate.present = before->mode;
+    if (before_at_[i] != none) candidate.present = before_[before_at_[i]].mode;
     const auto breaking = std::find_if(breaking_.begin(), breaking_.end(), same);
     if (breaking != breaking_.end()) {
       candidate.breaks = true;
@@ -177,6 +175,7 @@ bool ClockGroup::decide_body(std::size_t first, std::size_t last, EventBalance& 
     if (candidate.mode == ContactMode::open) continue;
     ActiveContact& closed = motion_.active().list().emplace_back();
     closed.pair = candidate.pair;
+    closed.place = candidate.place;
     closed.mode = candidate.mode;
     closed.frictionless = candidate.frictionless;
     closed.at = candidate.at;
@@ -200,10 +199,6 @@ void ClockGroup::record_choice(EventKind kind, EventBalance& balance) {
 
 /// Tells which contacts changed their mode.
 void ClockGroup::record_changes(EventBalance& balance) {
-  const auto& now = motion_.active().list();
-  const auto find = [](const std::vector<ActiveContact>& list, const ContactPair& pair) {
-    return std::find_if(list.begin(), list.end(), [&](const ActiveContact& at) { return at.pair == pair; });
-  };
   const double* const velocity = work_->motion.trial.v.data();
   const auto change = [&](EventKind kind, const Contact& contact, ContactMode mode) {
     EventRecord& event = record(kind, contact, balance);
@@ -215,14 +210,14 @@ void ClockGroup::record_changes(EventBalance& balance) {
     event.mode = mode;
   };
   for (const ActiveContact& contact : before_) {
-    if (find(now, contact.pair) == now.end()) change(EventKind::lift_off, contact.at, ContactMode::open);
+    if (is_active_[contact.place] == 0) change(EventKind::lift_off, contact.at, ContactMode::open);
   }
-  for (const ActiveContact& contact : now) {
-    const auto before = find(before_, contact.pair);
-    if (before == before_.end()) {
+  for (const ActiveContact& contact : motion_.active().list()) {
+    const Index before = before_at_[contact.place];
+    if (before == none) {
       if (contact.at.has_dry_friction()) continue;  // it was there all the time
       change(EventKind::closing, contact.at, contact.mode);
-    } else if (before->mode != contact.mode && !contact.frictionless) {
+    } else if (before_[before].mode != contact.mode && !contact.frictionless) {
       change(contact.sticks() ? EventKind::stick : EventKind::slip, contact.at, contact.mode);
     }
   }

@@ -38,8 +38,7 @@ void ClockGroup::project_known_contacts(EventBalance& balance) {
   const std::vector<ActiveContact> known = list;
   const double* const velocity = work_->motion.trial.v.data();
   std::erase_if(list, [&](ActiveContact& closed) {
-    const auto pair = std::find(motion_.pairs().begin(), motion_.pairs().end(), closed.pair);
-    closed.at = work_->contacts[static_cast<std::size_t>(pair - motion_.pairs().begin())];
+    closed.at = work_->contacts[closed.place];
     return closed.at.gap > options_.gap_tolerance ||
            std::abs(closed.at.velocity(0, velocity)) > left_by_tolerances * speed_noise();
   });

@@ -72,8 +72,10 @@ void EventDriver::demand_start(const State& state) {
 }
 
 void EventDriver::start(const State& state, const Companion& companion) {
+  ContactModes present = companion.modes;
+  std::sort(present.begin(), present.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   within_limit(state.time, [&] {
-    for (auto& component : components_) component->start(state, companion.modes);
+    for (auto& component : components_) component->start(state, present);
   });
   counted_ = work_.flows.counts();
   started_ = true;

@@ -22,6 +22,7 @@ namespace carom {
 /// A contact that touches without normal speed.
 struct Candidate {
   ContactPair pair;
+  Index place = none;  ///< of the pair among those of the motion
   Contact at;
   double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
   ContactMode present = ContactMode::open;  ///< before the decision

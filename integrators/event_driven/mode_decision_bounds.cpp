@@ -24,6 +24,7 @@ void ModeDecision::list_closed(std::span<const Candidate> candidates) {
     if (candidate.mode == ContactMode::open) continue;
     ActiveContact& closed = active_.emplace_back();
     closed.pair = candidate.pair;
+    closed.place = candidate.place;
     closed.mode = candidate.mode;
     closed.frictionless = candidate.frictionless;
     closed.at = contacts_[c];
@@ -71,9 +72,9 @@ void ModeDecision::complete_modes(SmoothMotion& motion, std::span<Candidate> can
   for (const ActiveContact& closed : active_) {
     if (!closed.at.has_dry_friction()) largest = std::max(largest, std::abs(closed.normal));
   }
+  auto closed = active_.begin();  // in the order of the candidates, as those added
   for (const std::size_t i : added) {
-    const auto closed = std::find_if(active_.begin(), active_.end(),
-                                     [&](const ActiveContact& at) { return at.pair == candidates[i].pair; });
+    while (closed->place != candidates[i].place) ++closed;
     if (!found || !(closed->normal > no_force * largest)) candidates[i].mode = ContactMode::open;
   }
 }
