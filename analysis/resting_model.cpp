@@ -149,7 +149,7 @@ void RestingModel::move(const Place& from, const VectorXd& x) {
       evaluate_positions(*assembly_, component, state_.view(), evaluation_);
     }
   };
-  // What a place of touch slides is an integral along the way (a wheel has no place that stays): Gauss.
+  // The sliding of a place of touch is an integral along the way (a wheel has no place that stays): Gauss.
   constexpr std::array<double, 4> nodes{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                         0.93056815579702629};
   constexpr std::array<double, 4> weights{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,

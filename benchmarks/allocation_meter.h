@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a benchmark and the libraries it uses take from operator new.
+/// Memory that a benchmark and the libraries it uses take from operator new.
 
 #include <cstdint>
 

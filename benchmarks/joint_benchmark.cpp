@@ -1,6 +1,6 @@
 // Mechanisms of rigid rods: one evaluation of accelerations with multipliers, beside Eigen's bare
 // factorisation and solve of the same matrix G M^-1 G^T. `per_rod` and `eigen_per_rod` in seconds of CPU.
-// What a simulation of a chain holds: `bytes_per_rod`. And ten rods of 1 m and 1 kg, released level, for 10
+// Storage of a simulation of a chain: `bytes_per_rod`. And ten rods of 1 m and 1 kg, released level, for 10
 // s: `seconds` of CPU, `drift` of the energy [J].
 
 #include <carom/carom.h>

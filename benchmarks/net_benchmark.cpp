@@ -25,7 +25,7 @@ namespace {
 
 using benchmarks::PlainNet;
 
-// What the net does while its steps are timed.
+// Motion of the net while its steps are timed.
 enum class Phase {
   falling,  // free fall, no spring works
   working,  // free fall, springs stretched by 1 % at the start: it draws together from its border inwards

@@ -104,7 +104,7 @@ void move_implicitly(PlainNet& net, double step) {
   }
 }
 
-// What the next sweep would change, h times velocities [m].
+// Change by the next sweep, h times velocities [m].
 double next_change(const PlainNet& net, const std::vector<double>& acted, double step) {
   double largest = 0.0;
   for (std::size_t i = 0; i < net.size(); ++i) {

@@ -61,7 +61,7 @@ void ParticleKind<D>::coordinate_rates(Range slots, const double* /*q*/, const d
 
 namespace {
 
-/// What a sweep changed, two numbers at a time.
+/// Change by a sweep, two numbers at a time.
 class PairChange {
 public:
   void take(Pair difference, Pair number) {

@@ -230,7 +230,7 @@ void ActiveSet::margins(std::vector<ForceMargin>& out) {
       lines.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
     }
   };
-  // What wedges has no largest margin: one as large as the forces is enough.
+  // Wedged contacts have no largest margin: one as large as the forces is enough.
   const auto bound = [&](std::size_t first, std::size_t last) {
     const auto rises = [](const Line& line) { return line.slope > 0.0; };
     const auto falls = [](const Line& line) { return line.slope < 0.0; };
@@ -294,7 +294,7 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Contact& at = contacts_[rows_[i].contact].at;
         const int row = rows_[i].tangent ? 1 : 0;
-        // What sticks has no place of its own: its tangent is kept on velocity level.
+        // Sticking contacts have no place of their own: the tangent is kept on velocity level.
         unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(row, velocity);
         if (!(position && rows_[i].tangent)) unknown_[i] -= at.times(row, out);
         any = any || unknown_[i] != 0.0;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What presses surfaces that rub in joints: a constant, and the force between the bodies of the joint, which
-/// follows from the multipliers of its rows.
+/// Bounds of dry friction in joints: a constant, and the force between the bodies of the joint, which follows
+/// from the multipliers of its rows.
 
 #include <carom/core/assembly.h>
 #include <carom/core/contact.h>

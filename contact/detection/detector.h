@@ -125,7 +125,7 @@ private:
     Range bodies;
     Index material;
   };
-  // What touches in one component: ranges of centres_ and features_.
+  // Features of one component that can touch: ranges of centres_ and features_.
   struct Touching {
     Range centres, features, stops, rubbing;
   };
@@ -142,7 +142,7 @@ private:
     Index serial;
     Index moving;  // its place among those that move; `none`: at rest
   };
-  // What find() is asked about.
+  // Question to find().
   struct Query {
     const StateView& state;
     const Evaluation& evaluation;
@@ -174,7 +174,7 @@ private:
   template <int D>
   void fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap, const Vec<D>& arm,
             const StateView& state, Contact& out) const;
-  // What the motion of the obstacle adds. `after` may be null.
+  // Terms of the motion of the obstacle. `after` may be null.
   static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
                           const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
   // Whether an open contact lasts. `turning`: bound on its drift by turning.

@@ -1,9 +1,8 @@
 // Problem: prove how many solutions a small contact problem has.
 
+#include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/core/numerics/rank_revealing_qr.h>
-
-#include <carom/contact/solvers/residual.h>
 
 #include <algorithm>
 #include <array>

@@ -22,10 +22,13 @@ void PrescribedJoints::demand_continuous(double from, double to) {
     if (law.last.time != from) law.last = at(from);
     const LawPoint end = at(to);
     if (!looks_smooth(law.last, end)) {
-      const std::string name = assembly_->system().name(law.id);
-      if (const auto jump = find_jump(at, law.last, end)) fail_jump(name, "position", "", *jump);
-      const auto rate = find_false_rate(at, law.last, end);
-      if (rate) fail_rate(name, "velocity", "position", "", *rate);
+      const System& system = assembly_->system();
+      if (const auto jump = find_jump(at, law.last, end)) {
+        fail_jump(system.name(law.id), "position", "", *jump);
+      }
+      if (const auto rate = find_false_rate(at, law.last, end)) {
+        fail_rate(system.name(law.id), "velocity", "position", "", *rate);
+      }
     }
     law.last = end;
   }
