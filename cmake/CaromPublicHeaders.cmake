@@ -80,8 +80,8 @@ set(carom_public_headers
     integrators/simulation.h
     joints/actuator.h
     joints/applied_load.h
-    joints/constraint_part.h
     joints/bushing.h
+    joints/constraint_part.h
     joints/drag.h
     joints/driver.h
     joints/follower_load.h
@@ -102,5 +102,11 @@ set(carom_public_headers
     joints/torsional_spring.h
     )
 # Those of carom::testing.
-set(kit_headers testing/conservative_loads.h testing/matchers.h testing/refinement.h testing/stored_trace.h testing/trace_checks.h
-                testing/verdict.h)
+set(kit_headers
+    testing/conservative_loads.h
+    testing/matchers.h
+    testing/refinement.h
+    testing/stored_trace.h
+    testing/trace_checks.h
+    testing/verdict.h
+    )

@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// Jumps of prescribed displacements. A displacement is continuous; its velocity may jump. One that jumps has
-/// no velocity, and a difference across the jump gives one that throws what it touches.
+/// Prescribed displacements that are none: jumps, and rates that are not theirs. A displacement is
+/// continuous; its velocity may jump. One that jumps has no velocity, and a difference across the jump gives
+/// one that throws what it touches; a rate that is not its own moves bodies one way and strikes them another.
 
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
