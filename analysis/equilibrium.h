@@ -8,7 +8,7 @@
 /// where G has the rows of the joints, the normals of the closed contacts and the tangents of those that
 /// stick. Matrices are dense: for models of a few hundred bodies.
 
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/state.h>
@@ -45,7 +45,7 @@ struct JointForce {
 
 /// Forces of a closed contact or a limit in equilibrium.
 struct ContactForce {
-  ContactKey key;                      ///< identity
+  ConstraintKey key;                      ///< identity
   std::string name;                    ///< "particle 'lower' on half-plane #0"
   double normal = 0.0;                 ///< force, >= 0 [N; N m of the stop of an angle]
   std::array<double, 2> tangential{};  ///< along the contact's other rows [N]; one of them in the plane

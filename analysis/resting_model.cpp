@@ -79,8 +79,9 @@ RestingModel::RestingModel(const Assembly& assembly, const State& start, double 
     Support& support = supports_[i];
     support.row = row;
     row += static_cast<Index>(support.rows);
-    touches(supports_of_body_, support.at.v, i);
-    if (support.at.other_columns > 0) touches(supports_of_body_, support.at.other_v, i);
+    for (int b = 0; b < support.at.bodies; ++b) {
+      touches(supports_of_body_, support.at.blocks[static_cast<std::size_t>(b)].v, i);
+    }
   }
   rows_.resize(at(row), at(static_cast<Index>(state_.v.size())));
   gaps_.resize(at(row));
@@ -159,7 +160,7 @@ void RestingModel::move(const Place& from, const VectorXd& x) {
                                   [](const Support& support) { return support.rows > 1; });
   for (std::size_t node = 0; sticks && node < nodes.size(); ++node) {
     go(nodes[node]);
-    Contact contact;
+    Constraint contact;
     for (Support& support : supports_) {
       if (support.rows == 1) continue;
       detector_.contact(support.pair, state_.view(), evaluation_, places_, contact);
@@ -298,7 +299,7 @@ void RestingModel::check_supports(double allowed) {
 }
 
 void RestingModel::check_open_contacts(double tolerance) const {
-  Contact contact;
+  Constraint contact;
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     for (const ContactPair& pair : detector_.pairs(component)) {
       if (std::any_of(supports_.begin(), supports_.end(),

@@ -33,7 +33,7 @@ public:
   /// A closed contact and its rows: the normal, and the tangents if it sticks.
   struct Support {
     ContactPair pair;
-    Contact at;
+    Constraint at;
     Index row = 0;                 ///< the first
     int rows = 1;                  ///< how many
     std::array<double, 2> slid{};  ///< how far the place of touch has moved along the tangents [m]

@@ -83,7 +83,7 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
   Evaluation evaluation = evaluation_;
   const JointView view{moved.view(), evaluation.rotation.data()};
   std::vector<JointRow> rows = joint_rows_;
-  Contact contact;
+  Constraint contact;
   VectorXd column;
   const Layout& layout = *assembly_->layout();
   for (Index body = 0; body < layout.bodies().size(); ++body) {

@@ -135,10 +135,8 @@ public:
     const auto& bodies = assembly_.layout()->bodies();
     for (std::size_t body = 0; body < impacts().size(); ++body) {
       const Impact& i = impacts()[body];
-      carom::Contact contact;
-      contact.body = static_cast<carom::Index>(body);
-      contact.v = bodies[body].v;
-      contact.columns = 3;
+      carom::Constraint contact;
+      contact.add_body(static_cast<carom::Index>(body), bodies[body].v, 3);
       contact.rows = 2;
       contact.law = {i.friction, i.normal_restitution, i.tangential_restitution};
       contact.friction = i.friction;
@@ -151,13 +149,13 @@ public:
     }
   }
   Result operator()(std::size_t body) {
-    const carom::Contact& contact = contacts_[body];
+    const carom::Constraint& contact = contacts_[body];
     cluster_.build(assembly_, {&contact, 1}, velocity_.data());
     cluster_.set_free_velocity(velocity_.data());
     if (!cluster_.solve(chain_).usable()) throw std::logic_error("impact not solved");
     std::array<double, 3> after{};
-    for (std::size_t k = 0; k < 3; ++k) after[k] = velocity_[contact.v + k];
-    cluster_.apply(after.data() - contact.v);
+    for (std::size_t k = 0; k < 3; ++k) after[k] = velocity_[contact.blocks[0].v + k];
+    cluster_.apply(after.data() - contact.blocks[0].v);
     return {cluster_.impulses()[0], cluster_.impulses()[1], after[1] + contact.row(0)[2] * after[2],
             after[0] + contact.row(1)[2] * after[2]};
   }
@@ -172,7 +170,7 @@ private:
   }
 
   carom::Assembly assembly_;
-  std::vector<carom::Contact> contacts_;
+  std::vector<carom::Constraint> contacts_;
   std::vector<double> velocity_;
   carom::ContactCluster cluster_;
   carom::SolverChain chain_;

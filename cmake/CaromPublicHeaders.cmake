@@ -25,7 +25,7 @@ set(carom_public_headers
     contact/solvers/solver_chain.h
     core/body_kind.h
     core/column.h
-    core/contact.h
+    core/constraint.h
     core/difference_derivatives.h
     core/dot.h
     core/dynamics/joint_closure.h

@@ -25,10 +25,10 @@ void ActiveSet::bind(const Assembly& assembly, JointConstraints& joints) {
   joints_ = joints.empty() ? nullptr : &joints;
 }
 
-double ActiveContact::friction_at(const Contact& where, const double* velocities) const {
+double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
   if (frictionless) return 0.0;
   return sticks() ? where.law.sticking_friction()
-                  : where.law.sliding_friction(slip_sign() * where.velocity(1, velocities));
+                  : where.law.sliding_friction(slip_sign() * where.tangential_velocity(velocities));
 }
 
 void ActiveSet::update_and_factor(const Detector& detector, const StateView& state,
@@ -51,9 +51,9 @@ void ActiveSet::for_groups(F&& f) {
 
 /// Rows of one group, what impulses along their columns do to it, and the products of the two.
 void ActiveSet::lay_out(const Assembly& assembly, std::size_t first, std::size_t last, bool rubbing) {
-  const BodySlot body = assembly.layout()->bodies()[contacts_[first].at.body];
+  const BodySlot body = assembly.layout()->bodies()[contacts_[first].at.body()];
   const BodyKind& kind = *assembly.body_kinds()[body.kind];
-  const bool bound = joints_ != nullptr && assembly.is_jointed(contacts_[first].at.body);
+  const bool bound = joints_ != nullptr && assembly.is_jointed(contacts_[first].at.body());
   span_ = bound ? joints_->velocities() : Range{body.v, body.v + body.v_size};
   rows_.clear();
   for (std::size_t i = first; i < last; ++i) {
@@ -66,7 +66,7 @@ void ActiveSet::lay_out(const Assembly& assembly, std::size_t first, std::size_t
   if (bound) full_.resize(assembly.layout()->v_size());
   for (std::size_t j = 0; j < count; ++j) {
     const ActiveContact& contact = contacts_[rows_[j].contact];
-    const int row = rows_[j].tangent ? 1 : 0;
+    const int row = rows_[j].tangent ? contact.at.tangent_row() : 0;
     const double ratio = rows_[j].tangent || !rubbing ? 0.0 : -contact.slip_sign() * contact.friction;
     double* const response = response_.data() + j * stride;
     if (bound) {
@@ -77,19 +77,19 @@ void ActiveSet::lay_out(const Assembly& assembly, std::size_t first, std::size_t
       std::copy(full_.begin() + span_.begin, full_.begin() + span_.end, response);
       continue;
     }
-    std::array<double, static_cast<std::size_t>(Contact::max_columns)> column{};
-    for (int k = 0; k < contact.at.columns; ++k) {
+    std::array<double, static_cast<std::size_t>(Constraint::max_columns)> column{};
+    for (int k = 0; k < contact.at.columns(); ++k) {
       column[static_cast<std::size_t>(k)] = contact.at.row(row)[k];
       if (ratio != 0.0) column[static_cast<std::size_t>(k)] += ratio * contact.at.row(1)[k];
     }
     kind.apply_inverse_mass({body.slot, body.slot + 1}, column.data(), response);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const Contact& at = contacts_[rows_[i].contact].at;
+    const Constraint& at = contacts_[rows_[i].contact].at;
     for (std::size_t j = 0; j < count; ++j) {
       // Contacts count velocities from the first of all.
       matrix_[i * count + j] =
-          at.times(rows_[i].tangent ? 1 : 0, response_.data() + j * stride - span_.begin);
+          at.times(rows_[i].tangent ? at.tangent_row() : 0, response_.data() + j * stride - span_.begin);
     }
   }
 }
@@ -103,7 +103,7 @@ void ActiveSet::dry_friction(std::size_t first, std::size_t last, double* accele
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
     std::fill(full_.begin() + span_.begin, full_.begin() + span_.end, 0.0);
-    contact.at.add_transposed(1, contact.tangential, full_.data());
+    contact.at.add_transposed(0, contact.tangential, full_.data());
     joints_->constrained_response(full_.data());
     for (Index k = span_.begin; k < span_.end; ++k) acceleration[k] += full_[k];
   }
@@ -168,8 +168,8 @@ bool ActiveSet::add_reactions(const Assembly& assembly, double* acceleration) {
     const std::size_t n = rows_.size();
     unknown_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      const Contact& at = contacts_[rows_[i].contact].at;
-      unknown_[i] = -at.acceleration(rows_[i].tangent ? 1 : 0, acceleration);
+      const Constraint& at = contacts_[rows_[i].contact].at;
+      unknown_[i] = -at.acceleration(rows_[i].tangent ? at.tangent_row() : 0, acceleration);
     }
     solved = solve() && solved;
     if (least_ && rank_ < n) take_least(first, last);
@@ -292,8 +292,8 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
       double* const out = position ? of_position : of_velocity;
       unknown_.resize(rows_.size());
       for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Contact& at = contacts_[rows_[i].contact].at;
-        const int row = rows_[i].tangent ? 1 : 0;
+        const Constraint& at = contacts_[rows_[i].contact].at;
+        const int row = rows_[i].tangent ? at.tangent_row() : 0;
         // Sticking contacts have no place of their own: the tangent is kept on velocity level.
         unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(row, velocity);
         if (!(position && rows_[i].tangent)) unknown_[i] -= at.times(row, out);

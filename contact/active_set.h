@@ -32,9 +32,9 @@ struct ActiveContact {
   Index place = none;                     ///< of the pair in a list of all, where there is one
   ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
   bool frictionless = false;              ///< without friction: neither sticks nor cares which way it slips
-  Contact at;                             ///< at the present configuration
+  Constraint at;                             ///< at the present configuration
   double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
-  double normal = 0.0;                    ///< force; of friction in a joint Contact::friction_bound [N]
+  double normal = 0.0;                    ///< force; of friction in a joint Constraint::friction_bound [N]
   double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
   /// False where forces were shared out and it is at its end by chance: others set the margin.
   bool sets_margin = true;
@@ -47,7 +47,7 @@ struct ActiveContact {
   }
   /// The coefficient of friction at a configuration and velocities of all bodies. A step may look beyond the
   /// end of sliding: the curve goes on smoothly there.
-  [[nodiscard]] double friction_at(const Contact& where, const double* velocities) const;
+  [[nodiscard]] double friction_at(const Constraint& where, const double* velocities) const;
 };
 
 /// One of the equations that forces of closed contacts were found by, and the force that it was solved for.
@@ -115,7 +115,7 @@ private:
   bool distribute_forces(std::size_t from, std::size_t to);
 
   [[nodiscard]] Index group(const ActiveContact& contact) const {
-    return joints_ == nullptr ? contact.at.body : assembly_->mechanism(contact.at.body);
+    return joints_ == nullptr ? contact.at.body() : assembly_->mechanism(contact.at.body());
   }
 
   std::vector<ActiveContact> contacts_;

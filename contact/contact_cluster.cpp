@@ -20,16 +20,16 @@ bool is_one_planar_contact(const ContactProblem& problem) {
 
 }  // namespace
 
-void ContactCluster::build(const Assembly& assembly, std::span<const Contact> contacts,
+void ContactCluster::build(const Assembly& assembly, std::span<const Constraint> contacts,
                            const double* velocity_before) {
-  constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+  constexpr auto stride = static_cast<std::size_t>(Constraint::max_columns);
   contacts_ = contacts;
   solved_ = changed_modes_ = false;
-  if (contacts.size() == 1 && contacts[0].rows == 2 && !contacts[0].has_dry_friction() &&
+  if (contacts.size() == 1 && contacts[0].rows == 2 &&
       is_one_planar_contact(problem_)) {
     // The same form as before, which is the hot path.
-    const Contact& contact = contacts[0];
-    const BodySlot body = assembly.layout()->bodies()[contact.body];
+    const Constraint& contact = contacts[0];
+    const BodySlot body = assembly.layout()->bodies()[contact.body()];
     const BodyKind& kind = *assembly.body_kinds()[body.kind];
     for (int i = 0; i < 2; ++i) {
       kind.apply_inverse_mass({body.slot, body.slot + 1}, contact.row(i),
@@ -38,7 +38,7 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
     const auto product = [&](int row, int column) {
       const double* const response = response_.data() + static_cast<std::size_t>(column) * stride;
       double sum = 0.0;
-      for (int k = 0; k < contact.columns; ++k) sum += contact.row(row)[k] * response[k];
+      for (int k = 0; k < contact.columns(); ++k) sum += contact.row(row)[k] * response[k];
       return sum;
     };
     problem_.w(0, 0) = product(0, 0);
@@ -54,9 +54,9 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   }
   first_row_.clear();
   int rows = 0;
-  for (const Contact& contact : contacts) {
-    first_row_.push_back(rows - contact.begin_row());
-    rows += contact.rows - contact.begin_row();
+  for (const Constraint& contact : contacts) {
+    first_row_.push_back(rows);
+    rows += contact.rows;
   }
   const auto count = static_cast<std::size_t>(rows);
   problem_.reset(rows);
@@ -68,14 +68,14 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
 
   const auto& bodies = assembly.layout()->bodies();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const Contact& contact = contacts[c];
-    const BodySlot& body = bodies[contact.body];
+    const Constraint& contact = contacts[c];
+    const BodySlot& body = bodies[contact.body()];
     const BodyKind& kind = *assembly.body_kinds()[body.kind];
-    for (int i = contact.begin_row(); i < contact.rows; ++i) {
+    for (int i = 0; i < contact.rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       kind.apply_inverse_mass({body.slot, body.slot + 1}, contact.row(i), response_.data() + row * stride);
       before_[row] = contact.velocity(i, velocity_before);
-      restitution_[row] = i == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
+      restitution_[row] = contact.restitution(i);
       RowSet& set = problem_.sets()[row];
       if (contact.has_dry_friction()) {
         press(c);
@@ -90,15 +90,15 @@ void ContactCluster::build(const Assembly& assembly, std::span<const Contact> co
   }
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     for (std::size_t d = 0; d <= c; ++d) {
-      if (contacts[c].body != contacts[d].body) continue;
-      for (int i = contacts[c].begin_row(); i < contacts[c].rows; ++i) {
+      if (contacts[c].body() != contacts[d].body()) continue;
+      for (int i = 0; i < contacts[c].rows; ++i) {
         const int row = first_row_[c] + i;
         const int last = c == d ? i + 1 : contacts[d].rows;
-        for (int j = contacts[d].begin_row(); j < last; ++j) {
+        for (int j = 0; j < last; ++j) {
           const int column = first_row_[d] + j;
           const double* const response = response_.data() + static_cast<std::size_t>(column) * stride;
           double sum = 0.0;
-          for (int k = 0; k < contacts[c].columns; ++k) sum += contacts[c].row(i)[k] * response[k];
+          for (int k = 0; k < contacts[c].columns(); ++k) sum += contacts[c].row(i)[k] * response[k];
           problem_.w(row, column) = problem_.w(column, row) = sum;
         }
       }
@@ -112,7 +112,7 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
   const auto rows = static_cast<std::size_t>(problem_.rows());
   coupled_.assign(rows * v.size(), 0.0);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       double* const response = coupled_.data() + static_cast<std::size_t>(first_row_[c] + i) * v.size();
       // Contacts count velocities from the first of all.
       contacts_[c].add_transposed(i, 1.0, response - v.begin);
@@ -120,7 +120,7 @@ void ContactCluster::couple(Range v, const std::function<void(double*)>& solve) 
     }
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       const int row = first_row_[c] + i;
       for (int column = 0; column <= row; ++column) {
         const double* const response = coupled_.data() + static_cast<std::size_t>(column) * v.size();
@@ -138,7 +138,7 @@ void ContactCluster::couple(JointConstraints& joints) {
   // A row that the joints hold fast (of a corner at a pin to the ground) is left without any response, in
   // place of one by rounding, against which impulses would be as large as its inverse: nothing acts along it.
   constexpr double held = 1e-12;  // of the response without joints: rounding
-  constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+  constexpr auto stride = static_cast<std::size_t>(Constraint::max_columns);
   const auto largest = [](const double* numbers, std::size_t count) {
     double size = 0.0;
     for (std::size_t k = 0; k < count; ++k) size = std::max(size, std::abs(numbers[k]));
@@ -146,8 +146,8 @@ void ContactCluster::couple(JointConstraints& joints) {
   };
   const int rows = problem_.rows();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const auto columns = static_cast<std::size_t>(contacts_[c].columns);
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    const auto columns = static_cast<std::size_t>(contacts_[c].columns());
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       const int row = first_row_[c] + i;
       const auto at = static_cast<std::size_t>(row);
       double* const coupled = coupled_.data() + at * coupled_range_.size();
@@ -191,15 +191,15 @@ void ContactCluster::apply_coupled(double* velocity, double scale) const {
 
 void ContactCluster::add_loads(double scale, double* load) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       contacts_[c].add_transposed(i, scale * impulse_[static_cast<std::size_t>(first_row_[c] + i)], load);
     }
   }
 }
 
 void ContactCluster::press(std::size_t contact) {
-  const Contact& at = contacts_[contact];
-  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact] + 1)];
+  const Constraint& at = contacts_[contact];
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[contact])];
   const double slides = slides_[contact] * at.friction_bound, bound = at.friction * at.friction_bound;
   set.kind = SetKind::interval;
   set.lower = slides_[contact] != 0.0 ? slides : -bound;
@@ -222,14 +222,14 @@ void ContactCluster::slide(std::size_t contact, double ratio) {
 void ContactCluster::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
       b[row] = contacts_[c].velocity_after(i, velocity_free) + restitution_[row] * before_[row];
     }
     if (contacts_[c].allowed_approach > 0.0) {
       b[static_cast<std::size_t>(first_row_[c])] += contacts_[c].allowed_approach;
     }
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       // Of what joints hold fast, against what moves around it, or has moved before [m/s].
       constexpr double rounding = 1e-9, least = 1e-10;
       const int row = first_row_[c] + i;
@@ -304,23 +304,23 @@ void ContactCluster::set_impulses(std::span<const double> impulses) {
 }
 
 double ContactCluster::obstacle_work(std::size_t contact) const {
-  const Contact& at = contacts_[contact];
+  const Constraint& at = contacts_[contact];
   double work = 0.0;
-  for (int i = at.begin_row(); i < at.rows; ++i) {
+  for (int i = 0; i < at.rows; ++i) {
     const auto row = static_cast<std::size_t>(i);
     work += 0.5 * impulse_[static_cast<std::size_t>(first_row_[contact] + i)] *
-            (at.obstacle_velocity[row] + at.obstacle_velocity_after[row]);
+            (at.surface_velocity[row] + at.surface_velocity_after[row]);
   }
   return work;
 }
 
 void ContactCluster::apply(double* velocity) const {
-  constexpr auto stride = static_cast<std::size_t>(Contact::max_columns);
+  constexpr auto stride = static_cast<std::size_t>(Constraint::max_columns);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    for (int i = contacts_[c].begin_row(); i < contacts_[c].rows; ++i) {
+    for (int i = 0; i < contacts_[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(first_row_[c] + i);
-      for (int k = 0; k < contacts_[c].columns; ++k) {
-        velocity[contacts_[c].v + static_cast<Index>(k)] +=
+      for (int k = 0; k < contacts_[c].columns(); ++k) {
+        velocity[contacts_[c].blocks[0].v + static_cast<Index>(k)] +=
             response_[row * stride + static_cast<std::size_t>(k)] * impulse_[row];
       }
     }

@@ -4,13 +4,13 @@
 /// Contacts that share bodies are one problem. This makes that problem from the contacts and the velocities
 /// before and without impulses, and applies its answer:
 ///     W = H M^-1 H^T,   b = H v_free + E H v^-,   v^+ = v_free + M^-1 H^T P,
-/// to b in normal direction Contact::allowed_approach is added.
+/// to b in normal direction Constraint::allowed_approach is added.
 
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 
@@ -25,7 +25,7 @@ namespace carom {
 class CAROM_API ContactCluster {
 public:
   /// Takes contacts that share bodies, and the velocities v^- before the step or impact (all velocities).
-  void build(const Assembly& assembly, std::span<const Contact> contacts, const double* velocity_before);
+  void build(const Assembly& assembly, std::span<const Constraint> contacts, const double* velocity_before);
   /// Replaces W by H A^-1 H^T, where the bodies answer an impulse together: A is positive definite over the
   /// velocities `v`, `solve` overwrites numbers over them by A^-1 times them. Of a matrix that is only nearly
   /// symmetric W takes one half; that is good enough for set_velocity().
@@ -36,12 +36,12 @@ public:
   /// W = C^T M A^-1 M C. \param mass p = M x
   void couple_again(const std::function<void(const double* x, double* p)>& mass,
                     const std::function<void(double*)>& solve);
-  /// Takes note of another Contact::friction_bound of friction in a joint.
+  /// Takes note of another Constraint::friction_bound of friction in a joint.
   void press(std::size_t contact);
   /// Makes a planar contact slip whatever its tangential velocity: P_t = ratio P_n.
   void slide(std::size_t contact, double ratio);
   /// Makes b from the velocities that the step would end with if no contact acted, against those of the
-  /// obstacles then (Contact::velocity_after).
+  /// obstacles then (Constraint::velocity_after).
   void set_free_velocity(const double* velocity_free);
   /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
   void set_velocity(const double* velocity);
@@ -68,7 +68,7 @@ public:
   /// The problem.
   [[nodiscard]] const ContactProblem& problem() const { return problem_; }
   /// The contacts, in the order of build().
-  [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+  [[nodiscard]] std::span<const Constraint> contacts() const { return contacts_; }
   /// Velocities gamma^- of all rows [m/s].
   [[nodiscard]] std::span<const double> before() const { return before_; }
   /// Impulses of all rows [N s].
@@ -85,7 +85,7 @@ public:
 private:
   [[nodiscard]] bool keep_modes();
 
-  std::span<const Contact> contacts_;
+  std::span<const Constraint> contacts_;
   ContactProblem problem_;
   std::vector<int> first_row_;
   std::vector<double> slides_;  // by contact: of friction in a joint the ratio given to slide(), or 0

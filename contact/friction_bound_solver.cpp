@@ -164,7 +164,7 @@ bool FrictionBoundSolver::settle(const FrictionBoundProblem& problem, SolverChai
     double change = 0.0;
     iteration.begin();
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-      Contact& contact = problem.contacts[c];
+      Constraint& contact = problem.contacts[c];
       if (!problem.pressure.depends_on_joint_force(contact)) continue;
       const double before = contact.friction_bound;
       change = std::max(change, problem.pressure.press(contact, problem.at));

@@ -20,7 +20,7 @@ namespace carom {
 /// One problem of contacts with friction in joints. All members must outlive the calls.
 struct FrictionBoundProblem {
   ContactCluster& cluster;
-  std::span<Contact> contacts;  ///< those of the cluster
+  std::span<Constraint> contacts;  ///< those of the cluster
   FrictionBounds& pressure;     ///< of friction in the joints
   JointView at;                 ///< where forces of joints are looked at
   double duration = 1.0;        ///< as for FrictionBounds::take() [s]

@@ -31,16 +31,16 @@ FrictionBounds::FrictionBounds(const Assembly& assembly, Index component, const 
             [](const Bearing& a, const Bearing& b) { return a.serial < b.serial; });
 }
 
-const FrictionBounds::Bearing* FrictionBounds::find(const Contact& contact) const {
+const FrictionBounds::Bearing* FrictionBounds::find(const Constraint& contact) const {
   if (!contact.has_dry_friction()) return nullptr;
-  const Index serial = contact.key.of.serial;
+  const Index serial = contact.key.a.serial;
   const auto at =
       std::lower_bound(bearings_.begin(), bearings_.end(), serial,
                        [](const Bearing& bearing, Index wanted) { return bearing.serial < wanted; });
   return at == bearings_.end() || at->serial != serial ? nullptr : &*at;
 }
 
-Range FrictionBounds::rows(const Contact& contact) const {
+Range FrictionBounds::rows(const Constraint& contact) const {
   const Bearing* const bearing = find(contact);
   if (bearing == nullptr) return {};
   const auto first = static_cast<Index>(bearing->row);
@@ -54,7 +54,7 @@ void FrictionBounds::take(const double* multipliers, double duration, double siz
   for (std::size_t row = 0; row < rows_; ++row) largest_ = std::max(largest_, std::abs(multipliers[row]));
 }
 
-double FrictionBounds::press(Contact& contact, const JointView& at) const {
+double FrictionBounds::press(Constraint& contact, const JointView& at) const {
   const Bearing* const bearing = find(contact);
   if (bearing == nullptr) return 0.0;
   const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers_ + bearing->row);

@@ -5,7 +5,7 @@
 /// from the multipliers of its rows.
 
 #include <carom/core/assembly.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
@@ -25,9 +25,9 @@ public:
   /// True if no friction is bound by the force of a joint.
   [[nodiscard]] bool empty() const { return bearings_.empty(); }
   /// True if that of a contact is.
-  [[nodiscard]] bool depends_on_joint_force(const Contact& contact) const { return find(contact) != nullptr; }
+  [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const { return find(contact) != nullptr; }
   /// The rows, among those of the component, whose multipliers bound that of a contact; empty if none do.
-  [[nodiscard]] Range rows(const Contact& contact) const;
+  [[nodiscard]] Range rows(const Constraint& contact) const;
   /// Takes note of the multipliers of all rows of the component's joints: forces, or impulses over a duration
   /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
   /// \param size of loads whose rounding is in the multipliers, as these
@@ -35,7 +35,7 @@ public:
   /// Sets `friction_bound` of friction in a joint. Returns the change against the number itself, or against
   /// that of the largest force in the component where it is small; does nothing and returns 0 for what is
   /// bound by a constant only.
-  double press(Contact& contact, const JointView& at) const;
+  double press(Constraint& contact, const JointView& at) const;
 
 private:
   struct Bearing {
@@ -45,7 +45,7 @@ private:
     std::size_t row;  // its first among those of the component
     double bound, coefficient;
   };
-  [[nodiscard]] const Bearing* find(const Contact& contact) const;
+  [[nodiscard]] const Bearing* find(const Constraint& contact) const;
   std::vector<Bearing> bearings_;  // by serial number
   std::size_t rows_ = 0;           // of the component
   const double* multipliers_ = nullptr;

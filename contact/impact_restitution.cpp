@@ -11,16 +11,16 @@ constexpr double chooses_rate_after = 1.0 - 1e-11;
 
 }  // namespace
 
-void share_impact_restitution(std::span<Contact> contacts, const double* velocities, double least_speed) {
+void share_impact_restitution(std::span<Constraint> contacts, const double* velocities, double least_speed) {
   double fastest = least_speed, restitution = 0.0;
-  for (const Contact& contact : contacts) {
+  for (const Constraint& contact : contacts) {
     if (contact.has_dry_friction()) continue;
-    const double approach = -contact.velocity(0, velocities);
+    const double approach = -contact.normal_velocity(velocities);
     if (!(approach > fastest)) continue;
     fastest = approach;
     restitution = contact.law.normal_restitution;
   }
-  for (Contact& contact : contacts) {
+  for (Constraint& contact : contacts) {
     if (contact.has_dry_friction()) contact.law.tangential_restitution = chooses_rate_after * restitution;
   }
 }

@@ -3,7 +3,7 @@
 /// \file
 /// One restitution for a whole impact: friction in joints takes part with that of the contact that strikes.
 
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
 #include <span>
@@ -16,7 +16,7 @@ namespace carom {
 /// (docs/joints.md). Without restitution friction in joints could, beside a contact with e > 0. Where nothing
 /// approaches faster than `least_speed` it gets none: it holds joints for good there.
 /// \param velocities of all bodies \param least_speed [m/s]
-CAROM_API void share_impact_restitution(std::span<Contact> contacts, const double* velocities,
+CAROM_API void share_impact_restitution(std::span<Constraint> contacts, const double* velocities,
                                         double least_speed);
 
 }  // namespace carom

@@ -21,7 +21,7 @@ struct Gap {
 };
 
 /// Position and motion of a rigid obstacle at a time, by its reference point o, about which it turns.
-/// Contact::drift is computed from it as for a flat boundary.
+/// Constraint::drift is computed from it as for a flat boundary.
 struct ObstacleMotion {
   std::array<double, 3> point{};         ///< o [m]
   std::array<double, 3> velocity{};      ///< of o [m/s]

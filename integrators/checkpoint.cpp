@@ -197,8 +197,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.grid_steps);
   out.add(std::uint64_t{companion.modes.size()});
   for (const auto& [key, mode] : companion.modes) {
-    add(out, key.of);
-    add(out, key.against);
+    add(out, key.a);
+    add(out, key.b);
     out.add(std::uint64_t{static_cast<std::uint8_t>(mode)});
   }
   out.add(std::uint64_t{companion.rhythms.size()});
@@ -295,8 +295,8 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.grid_steps);
   other.modes.resize(in.count());
   for (auto& [key, mode] : other.modes) {
-    get(in, key.of);
-    get(in, key.against);
+    get(in, key.a);
+    get(in, key.b);
     std::uint64_t number = 0;
     in.get(number);
     if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");

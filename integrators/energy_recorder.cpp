@@ -20,13 +20,13 @@ double deepest_penetration(const Simulation& simulation) {
   const StateView state = simulation.state().view();
   const Detector detector(assembly);
   Evaluation evaluation = make_evaluation(assembly);
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, state, evaluation);
     detector.find(component, state, evaluation, 0.0, contacts);
   }
   double deepest = 0.0;
-  for (const Contact& contact : contacts) deepest = std::max(deepest, -contact.gap);
+  for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);
   return deepest;
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 /// Names all obstacles that leave no room between them, the deepest contact first.
 [[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
-  std::vector<Contact> contacts(result.together.begin(), result.together.end());
+  std::vector<Constraint> contacts(result.together.begin(), result.together.end());
   std::stable_sort(contacts.begin(), contacts.end(),
-                   [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+                   [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
   SolverFailure failure;
   failure.time = time;
   failure.residual = -result.left->gap;
   std::string names;
-  for (const Contact& contact : contacts) {
+  for (const Constraint& contact : contacts) {
     failure.parts.push_back(detector.name(contact.key));
     names += (names.empty() ? "" : ", ") + failure.parts.back();
   }
@@ -32,7 +32,7 @@ namespace {
   throw SolverError(message, std::move(failure));
 }
 
-[[noreturn]] void fail(const Detector& detector, const Contact& contact, double time, const char* what) {
+[[noreturn]] void fail(const Detector& detector, const Constraint& contact, double time, const char* what) {
   SolverFailure failure;
   failure.time = time;
   failure.parts.push_back(detector.name(contact.key));
@@ -52,7 +52,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   GapProjection projection;
   ObstaclePlaces places;
   detector.place(state.time, places);
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   std::vector<EventRecord> told;
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
@@ -61,17 +61,17 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
     detector.find(component, trial.view(), evaluation, 0.0, contacts);
     JointConstraints joints(assembly, component);
     joints.update_and_factor({trial.view(), evaluation.rotation.data()});
-    std::vector<Contact> in_order = contacts;  // what answers together stands together
-    const auto group = [&](const Contact& contact) { return assembly.mechanism(contact.body); };
+    std::vector<Constraint> in_order = contacts;  // what answers together stands together
+    const auto group = [&](const Constraint& contact) { return assembly.mechanism(contact.body()); };
     std::stable_sort(in_order.begin(), in_order.end(),
-                     [&](const Contact& a, const Contact& b) { return group(a) < group(b); });
+                     [&](const Constraint& a, const Constraint& b) { return group(a) < group(b); });
     for (std::size_t first = 0; first < in_order.size();) {
       std::size_t last = first + 1;
       while (last < in_order.size() && group(in_order[last]) == group(in_order[first])) ++last;
-      const std::span<const Contact> of_body(in_order.data() + first, last - first);
+      const std::span<const Constraint> of_body(in_order.data() + first, last - first);
       first = last;
-      const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Contact& contact) {
-        return contact.velocity(0, trial.v.data()) < 0.0;
+      const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Constraint& contact) {
+        return contact.normal_velocity(trial.v.data()) < 0.0;
       });
       if (!approaches) continue;
       cluster.build(assembly, of_body, trial.v.data());
@@ -88,9 +88,9 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
         event.time = state.time;
         event.kind = EventKind::mode_switch;
         event.contact = of_body[c].key;
-        event.body = assembly.layout()->id(of_body[c].body);
-        if (of_body[c].key.against.owner == FeatureKey::Owner::obstacle) {
-          event.obstacle = {of_body[c].key.against.serial, assembly.system().token()};
+        event.body = assembly.layout()->id(of_body[c].body());
+        if (of_body[c].key.b.owner == FeatureKey::Owner::obstacle) {
+          event.obstacle = {of_body[c].key.b.serial, assembly.system().token()};
         }
         for (int row = 0; row < of_body[c].rows; ++row) {
           const auto at = static_cast<std::size_t>(row);

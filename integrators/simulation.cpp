@@ -467,7 +467,7 @@ void Simulation::clear_events() {
   impl_->events.clear();
 }
 
-std::string Simulation::name(const ContactKey& key) const {
+std::string Simulation::name(const ConstraintKey& key) const {
   return impl_->model->machines.detector().name(key);
 }
 Log& Simulation::log() { return impl_->log; }

@@ -119,7 +119,7 @@ public:
 
   /// Name of a contact: "particle 'lower' on half-plane #0". Parts that were removed since keep their names;
   /// of a key made by default "no contact". Throws ModelError for a key of parts that this model never had.
-  [[nodiscard]] std::string name(const ContactKey& key) const;
+  [[nodiscard]] std::string name(const ConstraintKey& key) const;
   /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
   /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps. Throws
   /// ModelError for parts of another model.

@@ -165,7 +165,7 @@ inline std::vector<EventRecord> events_of(const Simulation& simulation, EventKin
 /// An impact, in either mode: of time stepping with the time at the end of its step. Normal, tangential.
 struct Impact {
   double time = 0.0;
-  ContactKey contact{};
+  ConstraintKey contact{};
   BodyId body{};
   ObstacleId obstacle{};
   std::array<double, 3> before{}, after{}, impulse{};

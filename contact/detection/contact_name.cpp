@@ -51,20 +51,20 @@ std::string shape_name(const System& system, const FeatureKey& key) {
 
 }  // namespace
 
-std::string contact_name(const System& system, const ContactKey& key) {
-  if (key == ContactKey{}) return "no contact";
-  if (key.of.owner == FeatureKey::Owner::joint) return joint_name(system, key.of);
-  const FeatureKey& against = key.against;
+std::string contact_name(const System& system, const ConstraintKey& key) {
+  if (key == ConstraintKey{}) return "no contact";
+  if (key.a.owner == FeatureKey::Owner::joint) return joint_name(system, key.a);
+  const FeatureKey& against = key.b;
   if (against.owner != FeatureKey::Owner::obstacle ||
       system.obstacle_kinds().kind_ever(against.serial) == nullptr) {
     refuse("against", against);
   }
   const std::string obstacle = " on " + system.name(ObstacleId{against.serial, system.token()});
-  if (key.of.owner == FeatureKey::Owner::shape) return shape_name(system, key.of) + obstacle;
-  if (key.of.owner != FeatureKey::Owner::body || system.body_kinds().kind_ever(key.of.serial) == nullptr) {
-    refuse("of", key.of);
+  if (key.a.owner == FeatureKey::Owner::shape) return shape_name(system, key.a) + obstacle;
+  if (key.a.owner != FeatureKey::Owner::body || system.body_kinds().kind_ever(key.a.serial) == nullptr) {
+    refuse("of", key.a);
   }
-  return system.name(BodyId{key.of.serial, system.token()}) + obstacle;
+  return system.name(BodyId{key.a.serial, system.token()}) + obstacle;
 }
 
 }  // namespace carom

@@ -3,7 +3,7 @@
 /// \file
 /// Names of contacts for people.
 
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
 #include <string>
@@ -16,6 +16,6 @@ class System;
 /// (upper)". Parts that were removed from the system keep their names; "no contact" for a key made by
 /// default. Throws ModelError for a key whose features no part of this system ever had. Keys hold no trace of
 /// their system: one of another system is named by the parts that have its serial numbers here.
-[[nodiscard]] CAROM_API std::string contact_name(const System& system, const ContactKey& key);
+[[nodiscard]] CAROM_API std::string contact_name(const System& system, const ConstraintKey& key);
 
 }  // namespace carom

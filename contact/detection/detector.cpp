@@ -108,7 +108,7 @@ void Detector::make_law_table() {
       const FeatureKey of = is_centre ? FeatureKey{FeatureKey::Owner::body,
                                                    assembly_->layout()->id(centre->bodies.begin).serial, 0}
                                       : feature->key;
-      const ContactKey key{of, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
+      const ConstraintKey key{of, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
       throw ModelError("contact of " + name(key) +
                        ": law is not given; allowed: a Surface on the obstacle or between the two materials");
     }
@@ -122,10 +122,10 @@ bool Detector::needs_rotations() const {
   });
 }
 
-std::string Detector::name(const ContactKey& key) const { return contact_name(assembly_->system(), key); }
+std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
 
 void Detector::find(Index component, const StateView& state, const Evaluation& evaluation, double margin,
-                    std::vector<Contact>& out) const {
+                    std::vector<Constraint>& out) const {
   ObstaclePlaces places;
   place(state.time, places);
   find(component, {state, evaluation, &places, nullptr, margin, nullptr}, out);
@@ -133,13 +133,13 @@ void Detector::find(Index component, const StateView& state, const Evaluation& e
 
 void Detector::find(Index component, const StateView& state, const Evaluation& evaluation,
                     const ObstaclePlaces& places, const ObstaclePlaces* after, double margin,
-                    std::vector<Contact>& out, const LastingContacts* lasting) const {
+                    std::vector<Constraint>& out, const LastingContacts* lasting) const {
   assert(moving_ == 0 || places.time_ == state.time);
   if (lasting != nullptr && lasting->empty()) lasting = nullptr;
   find(component, {state, evaluation, &places, after, margin, lasting}, out);
 }
 
-void Detector::find(Index component, const Query& query, std::vector<Contact>& out) const {
+void Detector::find(Index component, const Query& query, std::vector<Constraint>& out) const {
   if (assembly_->layout()->dimension() == 2) {
     find_in<2>(component, query, out);
   } else {
@@ -147,7 +147,7 @@ void Detector::find(Index component, const Query& query, std::vector<Contact>& o
   }
   const Range stops = of_component_[component].stops;
   for (Index stop = stops.begin; stop < stops.end; ++stop) {
-    Contact contact;
+    Constraint contact;
     make_stop(stop, query.state, query.evaluation, contact);
     if (!(contact.gap <= query.margin)) {
       if (query.lasting == nullptr || !lasts(query, contact.key, contact.gap, std::abs(contact.drift[0]))) {
@@ -176,11 +176,10 @@ Vec<D> Detector::arm(const BodySlot& body, const Feature& feature, const Evaluat
 
 template <int D>
 void Detector::fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap,
-                    const Vec<D>& arm, const StateView& state, Contact& contact) const {
+                    const Vec<D>& arm, const StateView& state, Constraint& contact) const {
   contact.key = {feature.key, {FeatureKey::Owner::obstacle, obstacles_[obstacle].serial, 0}};
-  contact.body = feature.body;
-  contact.v = body.v;
-  contact.columns = static_cast<int>(body.v_size);
+  contact.bodies = 0;
+  contact.add_body(feature.body, body.v, static_cast<int>(body.v_size));
   contact.rows = D;
   contact.gap = gap.distance - feature.radius;
   contact.law = laws_[feature.material * obstacles_.size() + obstacle];
@@ -201,14 +200,14 @@ void Detector::fill(const BodySlot& body, const Feature& feature, Index obstacle
   }
 }
 
-void Detector::set_friction(const StateView& state, Contact& contact) {
+void Detector::set_friction(const StateView& state, Constraint& contact) {
   if (!contact.law.has_static_friction()) return;
   contact.friction = contact.law.friction_at(contact.sliding_speed(state.v));
 }
 
 template <int D>
 void Detector::add(const BodySlot& body, const Feature& feature, const Query& query,
-                   std::vector<Contact>& out) const {
+                   std::vector<Constraint>& out) const {
   const Vec<D> off = arm<D>(body, feature, query.evaluation);
   const Vec<D> centre = Eigen::Map<const Vec<D>>(query.state.q + body.q) + off;
   for (Index o = 0; o < obstacles_.size(); ++o) {
@@ -230,10 +229,10 @@ void Detector::add(const BodySlot& body, const Feature& feature, const Query& qu
       if constexpr (D == 2) {
         if (motion != nullptr) rate += turning_of(body, off, query.state, *motion, gap.distance);
       }
-      const ContactKey key{feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
+      const ConstraintKey key{feature.key, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
       if (!lasts(query, key, distance, rate)) continue;
     }
-    Contact& contact = out.emplace_back();
+    Constraint& contact = out.emplace_back();
     fill<D>(body, feature, o, gap, off, query.state, contact);
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
     if constexpr (D == 2) {
@@ -248,7 +247,7 @@ void Detector::add(const BodySlot& body, const Feature& feature, const Query& qu
 }
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                       Contact& out) const {
+                       Constraint& out) const {
   if (pair.stop != none) return make_stop(pair.stop, state, evaluation, out);
   const Obstacle& obstacle = obstacles_[pair.obstacle];
   if (obstacle.moving == none) return make_contact(pair, state, evaluation, nullptr, out);
@@ -257,7 +256,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 }
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                       const ObstaclePlaces& places, Contact& out) const {
+                       const ObstaclePlaces& places, Constraint& out) const {
   assert(moving_ == 0 || places.time_ == state.time);
   if (pair.stop != none) return make_stop(pair.stop, state, evaluation, out);
   const Index moving = obstacles_[pair.obstacle].moving;
@@ -265,7 +264,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 }
 
 void Detector::make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                            const ObstacleMotion* motion, Contact& out) const {
+                            const ObstacleMotion* motion, Constraint& out) const {
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const Feature feature =
       pair.feature == none ? centre_of(body, pair.body, pair.material) : features_[pair.feature];
@@ -311,13 +310,13 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
   }
   append_features_before(none);
   for (Index stop = touching.stops.begin; stop < touching.stops.end; ++stop) {
-    out.push_back({stops_[stop].body, none, none, none, stop});
+    out.push_back({stops_[stop].bodies.front(), none, none, none, stop});
   }
   return out;
 }
 
 template <int D>
-void Detector::find_in(Index component, const Query& query, std::vector<Contact>& out) const {
+void Detector::find_in(Index component, const Query& query, std::vector<Constraint>& out) const {
   // Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
   constexpr Index many = 64, few = 8;
   const auto& bodies = assembly_->layout()->bodies();

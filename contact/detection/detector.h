@@ -6,7 +6,7 @@
 
 #include <carom/contact/detection/lasting_contacts.h>
 #include <carom/core/assembly.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 #include <carom/core/space.h>
@@ -45,6 +45,9 @@ private:
 /// Features of the bodies of an assembly and the laws they obey.
 class CAROM_API Detector {
 public:
+  /// Bodies that a joint binds, in the order of assembly; `none` behind the last.
+  using JointBodies = std::array<Index, std::size_t{Constraint::max_bodies}>;
+
   /// Throws ModelError where a feature and an obstacle have no contact law.
   explicit Detector(const Assembly& assembly);
 
@@ -62,17 +65,17 @@ public:
   /// Appends the contacts of one component whose gap is <= `margin` [m], ordered by body, then feature, then
   /// obstacle. The position group of `evaluation` must be up to date. Places obstacles by itself.
   void find(Index component, const StateView& state, const Evaluation& evaluation, double margin,
-            std::vector<Contact>& out) const;
+            std::vector<Constraint>& out) const;
   /// Likewise with the obstacles at `places`, which must be of the state's time.
   /// \param after obstacles at the end of the step that begins with the state, for
-  /// Contact::obstacle_velocity_after; null: no time passes
+  /// Constraint::surface_velocity_after; null: no time passes
   /// \param lasting contacts of the step before, found also where turning may have opened them; null: none
   void find(Index component, const StateView& state, const Evaluation& evaluation,
             const ObstaclePlaces& places, const ObstaclePlaces* after, double margin,
-            std::vector<Contact>& out, const LastingContacts* lasting = nullptr) const;
+            std::vector<Constraint>& out, const LastingContacts* lasting = nullptr) const;
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
-  void remember(std::span<const std::pair<ContactKey, ContactMode>> contacts, double step,
+  void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
                 LastingContacts& out) const;
 
   /// All pairs of one component, in the order of find(). Made at each call.
@@ -82,20 +85,20 @@ public:
   /// Appends it as contacts, whose `friction_bound` has the constant part of the bound. Sets nothing of the
   /// past.
   void find_joint_friction(Index component, const StateView& state, const Evaluation& evaluation,
-                           std::vector<Contact>& out) const;
+                           std::vector<Constraint>& out) const;
   /// True if there is any in a component.
   [[nodiscard]] bool has_dry_friction(Index component) const {
     return !of_component_[component].rubbing.empty();
   }
-  /// Brings row 1 of friction in a joint to a configuration, and its drift.
-  void update_friction_rows(const JointView& at, Contact& contact) const;
+  /// Brings the row of friction in a joint to a configuration, and its drift.
+  void update_friction_rows(const JointView& at, Constraint& contact) const;
   /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date. Places
   /// its obstacle by itself.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               Contact& out) const;
+               Constraint& out) const;
   /// Likewise with the obstacles at `places`, which must be of the state's time.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               const ObstaclePlaces& places, Contact& out) const;
+               const ObstaclePlaces& places, Constraint& out) const;
 
   /// True if some surface takes more to slip than to slide.
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
@@ -109,7 +112,7 @@ public:
   [[nodiscard]] bool needs_rotations() const;
 
   /// As contact_name() of the assembly's system.
-  [[nodiscard]] std::string name(const ContactKey& key) const;
+  [[nodiscard]] std::string name(const ConstraintKey& key) const;
 
 private:
   // A point of a shape.
@@ -134,7 +137,7 @@ private:
     const JointKind* kind;
     Index slot, which;
     Index serial;
-    Index body;  // one of those it binds
+    JointBodies bodies;  // that it binds
   };
   struct Obstacle {
     const ObstacleKind* kind;
@@ -159,36 +162,36 @@ private:
   void make_law_table();
   void collect_stops();
   void collect_rubbing();
-  // Calls f(kind, slot, serial, one of the bodies) for joints of one component that limit or rub.
+  // Calls f(kind, slot, serial, the bodies) for joints of one component that limit or rub.
   template <class F>
   void for_joints(Index component, F&& f) const;
   // Writes the contact of a stop or of friction.
-  void make_stop(Index number, const StateView& state, const Evaluation& evaluation, Contact& out) const;
+  void make_stop(Index number, const StateView& state, const Evaluation& evaluation, Constraint& out) const;
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
   [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
-  void add(const BodySlot& body, const Feature& feature, const Query& query, std::vector<Contact>& out) const;
+  void add(const BodySlot& body, const Feature& feature, const Query& query, std::vector<Constraint>& out) const;
   // Position of the centre of a feature from its body's centre of mass.
   template <int D>
   [[nodiscard]] static Vec<D> arm(const BodySlot& body, const Feature& feature, const Evaluation& evaluation);
   template <int D>
   void fill(const BodySlot& body, const Feature& feature, Index obstacle, const Gap& gap, const Vec<D>& arm,
-            const StateView& state, Contact& out) const;
+            const StateView& state, Constraint& out) const;
   // Terms of the motion of the obstacle. `after` may be null.
   static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
-                          const ObstacleMotion& motion, const ObstacleMotion* after, Contact& out);
+                          const ObstacleMotion& motion, const ObstacleMotion* after, Constraint& out);
   // Whether an open contact lasts. `turning`: bound on its drift by turning.
-  [[nodiscard]] static bool lasts(const Query& query, const ContactKey& key, double gap, double turning);
+  [[nodiscard]] static bool lasts(const Query& query, const ConstraintKey& key, double gap, double turning);
   // Share of the obstacle's motion in that bound.
   [[nodiscard]] static double turning_of(const BodySlot& body, const Vec<2>& arm, const StateView& state,
                                          const ObstacleMotion& motion, double above);
   // Friction where it depends on the speed of sliding.
-  static void set_friction(const StateView& state, Contact& contact);
+  static void set_friction(const StateView& state, Constraint& contact);
   void make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                    const ObstacleMotion* motion, Contact& out) const;
-  void find(Index component, const Query& query, std::vector<Contact>& out) const;
+                    const ObstacleMotion* motion, Constraint& out) const;
+  void find(Index component, const Query& query, std::vector<Constraint>& out) const;
   template <int D>
-  void find_in(Index component, const Query& query, std::vector<Contact>& out) const;
+  void find_in(Index component, const Query& query, std::vector<Constraint>& out) const;
 
   const Assembly* assembly_;
   std::vector<Obstacle> obstacles_;

@@ -8,18 +8,21 @@ namespace carom {
 
 namespace {
 
-/// Makes a row of a joint one of a contact.
-void take_row(const JointRow& from, int row, Contact& out) {
-  const JointRow::Block& first = from.blocks[0];
-  out.v = first.v;
-  out.columns = first.columns;
-  std::copy_n(first.jacobian.begin(), first.columns, out.row(row));
-  out.drift[static_cast<std::size_t>(row)] = from.drift;
-  if (from.bodies < 2) return;
-  const JointRow::Block& second = from.blocks[1];
-  out.other_v = second.v;
-  out.other_columns = second.columns;
-  std::copy_n(second.jacobian.begin(), second.columns, out.row(row) + first.columns);
+/// Makes a row of a joint the row of a constraint. \param bodies that the joint binds
+void take_row(const JointRow& from, const Layout& layout, const Detector::JointBodies& bodies,
+              Constraint& out) {
+  out.rows = 1;
+  out.bodies = 0;
+  double* place = out.row(0);
+  for (int b = 0; b < from.bodies; ++b) {
+    const JointRow::Block& block = from.blocks[static_cast<std::size_t>(b)];
+    const auto owner = std::find_if(bodies.begin(), bodies.end(), [&](Index body) {
+      return body != none && layout.bodies()[body].v == block.v;
+    });
+    out.add_body(*owner, block.v, block.columns);
+    place = std::copy_n(block.jacobian.begin(), block.columns, place);
+  }
+  out.drift[0] = from.drift;
 }
 
 }  // namespace
@@ -35,7 +38,10 @@ void Detector::for_joints(Index component, F&& f) const {
       ends.clear();
       kind.ends(joint, ends);
       std::erase(ends, ground);
-      f(kind, joint, assembly_->joint_id(k, joint).serial, assembly_->layout()->index(ends.front()));
+      JointBodies bodies;
+      bodies.fill(none);
+      for (std::size_t i = 0; i < ends.size(); ++i) bodies[i] = assembly_->layout()->index(ends[i]);
+      f(kind, joint, assembly_->joint_id(k, joint).serial, bodies);
     }
   }
 }
@@ -44,9 +50,9 @@ void Detector::collect_stops() {
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     Range& range = of_component_[component].stops;
     range.begin = static_cast<Index>(stops_.size());
-    for_joints(component, [&](const JointKind& kind, Index joint, Index serial, Index body) {
+    for_joints(component, [&](const JointKind& kind, Index joint, Index serial, const JointBodies& bodies) {
       for (Index which = 0; which < kind.limits(); ++which) {
-        if (kind.has_limit(joint, which)) stops_.push_back({&kind, joint, which, serial, body});
+        if (kind.has_limit(joint, which)) stops_.push_back({&kind, joint, which, serial, bodies});
       }
     });
     range.end = static_cast<Index>(stops_.size());
@@ -57,8 +63,8 @@ void Detector::collect_rubbing() {
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     Range& range = of_component_[component].rubbing;
     range.begin = static_cast<Index>(stops_.size());
-    for_joints(component, [&](const JointKind& kind, Index joint, Index serial, Index body) {
-      if (kind.has_dry_friction()) stops_.push_back({&kind, joint, none, serial, body});
+    for_joints(component, [&](const JointKind& kind, Index joint, Index serial, const JointBodies& bodies) {
+      if (kind.has_dry_friction()) stops_.push_back({&kind, joint, none, serial, bodies});
     });
     range.end = static_cast<Index>(stops_.size());
     has_static_friction_ = has_static_friction_ || !range.empty();
@@ -66,19 +72,18 @@ void Detector::collect_rubbing() {
 }
 
 void Detector::make_stop(Index number, const StateView& state, const Evaluation& evaluation,
-                         Contact& out) const {
+                         Constraint& out) const {
   const Stop& stop = stops_[number];
   const JointView at{state, evaluation.rotation.data()};
   const bool has_dry_friction = stop.which == none;
   const FeatureKey key{FeatureKey::Owner::joint, stop.serial, has_dry_friction ? 0 : stop.which};
   out = {};
   out.key = {key, key};
-  out.body = stop.body;
   out.law.tangential_restitution = 0.0;
   if (has_dry_friction) {
     const JointRub dry_friction = stop.kind->dry_friction(stop.slot);
-    out.rows = 2;
-    out.dry_friction = number;
+    out.type = ConstraintType::joint_friction;
+    out.source = number;
     out.friction_bound = dry_friction.bound;
     out.friction = out.law.friction = 1.0;
     out.law.static_friction = dry_friction.static_factor;
@@ -88,33 +93,34 @@ void Detector::make_stop(Index number, const StateView& state, const Evaluation&
   }
   JointLimit limit;
   stop.kind->limit(at, stop.slot, stop.which, limit);
-  out.rows = 1;
+  out.type = ConstraintType::limit;
+  out.source = number;
   out.gap = limit.row.gap;
   out.law.friction = 0.0;
   out.law.normal_restitution = limit.restitution;
-  take_row(limit.row, 0, out);
+  take_row(limit.row, *assembly_->layout(), stop.bodies, out);
 }
 
 std::vector<ContactPair> Detector::rubbing(Index component) const {
   std::vector<ContactPair> out;
   const Range range = of_component_[component].rubbing;
-  for (Index i = range.begin; i < range.end; ++i) out.push_back({stops_[i].body, none, none, none, i});
+  for (Index i = range.begin; i < range.end; ++i) out.push_back({stops_[i].bodies.front(), none, none, none, i});
   return out;
 }
 
 void Detector::find_joint_friction(Index component, const StateView& state, const Evaluation& evaluation,
-                                   std::vector<Contact>& out) const {
+                                   std::vector<Constraint>& out) const {
   const Range range = of_component_[component].rubbing;
   for (Index i = range.begin; i < range.end; ++i) make_stop(i, state, evaluation, out.emplace_back());
 }
 
-void Detector::update_friction_rows(const JointView& at, Contact& contact) const {
-  const Stop& stop = stops_[contact.dry_friction];
+void Detector::update_friction_rows(const JointView& at, Constraint& contact) const {
+  const Stop& stop = stops_[contact.source];
   const JointTable& joints = *assembly_->layout()->joints();
   const JointTable::Place place = joints.place(stop.kind->on_joint(stop.slot).serial);
   JointRow row;
   joints.kinds[place.kind]->coordinate(at, place.slot, row);
-  take_row(row, 1, contact);
+  take_row(row, *assembly_->layout(), stop.bodies, contact);
 }
 
 }  // namespace carom

@@ -7,30 +7,30 @@
 
 namespace carom {
 
-void Detector::remember(std::span<const std::pair<ContactKey, ContactMode>> contacts, double step,
+void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
                         LastingContacts& out) const {
   out.start(step);
   const Layout& layout = *assembly_->layout();
   const Index token = assembly_->system().token();
   for (const auto& entry : contacts) {
-    const ContactKey& key = entry.first;
-    if (key.of.owner != FeatureKey::Owner::body) {
+    const ConstraintKey& key = entry.first;
+    if (key.a.owner != FeatureKey::Owner::body) {
       out.add(key);
       continue;
     }
     // A centre of mass has no arm: an obstacle that turns can alone open such a contact.
     if (moving_ == 0) continue;
     const auto obstacle = std::find_if(obstacles_.begin(), obstacles_.end(), [&key](const Obstacle& at) {
-      return at.serial == key.against.serial;
+      return at.serial == key.b.serial;
     });
-    const BodyId body{key.of.serial, token};
+    const BodyId body{key.a.serial, token};
     if (obstacle == obstacles_.end() || obstacle->moving == none || !layout.contains(body)) continue;
     out.add(key, layout.index(body));
   }
   out.finish();
 }
 
-bool Detector::lasts(const Query& query, const ContactKey& key, double gap, double turning) {
+bool Detector::lasts(const Query& query, const ConstraintKey& key, double gap, double turning) {
   return gap <= query.lasting->reach(turning) && query.lasting->contains(key);
 }
 

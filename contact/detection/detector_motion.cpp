@@ -74,15 +74,15 @@ std::vector<Discontinuity> Detector::breaks() const {
 }
 
 void Detector::fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
-                           const ObstacleMotion& motion, const ObstacleMotion* after, Contact& contact) {
+                           const ObstacleMotion& motion, const ObstacleMotion* after, Constraint& contact) {
   // docs/method.md, section 1: C the centre of the feature, o the obstacle's point, w its spin, r = C - o.
   const Vec<2> n = Eigen::Map<const Vec<2>>(contact.row(0)), t = Eigen::Map<const Vec<2>>(contact.row(1));
   const Vec<2> centre = Eigen::Map<const Vec<2>>(state.q + body.q) + arm;
   const auto vec = [](const std::array<double, 3>& numbers) { return Vec<2>(numbers[0], numbers[1]); };
   const Vec<2> r = centre - vec(motion.point), velocity = vec(motion.velocity);
   const double w = motion.spin, along = t.dot(r), above = n.dot(r);
-  contact.obstacle_velocity = {n.dot(velocity) + w * along, t.dot(velocity) - w * (above - radius), 0.0};
-  contact.obstacle_velocity_after = contact.obstacle_velocity;
+  contact.surface_velocity = {n.dot(velocity) + w * along, t.dot(velocity) - w * (above - radius), 0.0};
+  contact.surface_velocity_after = contact.surface_velocity;
 
   Vec<2> relative = Eigen::Map<const Vec<2>>(state.v + body.v) - velocity;
   if (body.rotation != none) relative += Space<2>::lever_velocity(state.v + body.v + 2, arm);
@@ -99,7 +99,7 @@ void Detector::fill_motion(const BodySlot& body, double radius, const Vec<2>& ar
   const Vec<2> end =
       vec(after->velocity) +
       Space<2>::lever_velocity(&after->spin, Space<2>::rotate(turn.data(), Vec<2>(r - radius * n)));
-  contact.obstacle_velocity_after = {n.dot(end), t.dot(end), 0.0};
+  contact.surface_velocity_after = {n.dot(end), t.dot(end), 0.0};
 }
 
 }  // namespace carom

@@ -19,7 +19,7 @@ void LastingContacts::put_in_order() {
   sort_if_needed(centres_);
 }
 
-bool LastingContacts::contains(const ContactKey& key) const {
+bool LastingContacts::contains(const ConstraintKey& key) const {
   return std::binary_search(keys_.begin(), keys_.end(), key);
 }
 

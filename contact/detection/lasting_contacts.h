@@ -8,7 +8,7 @@
 /// section 6), a contact that the law holds at gamma_n+ = 0 begins the next step with gamma_n- = h d and has
 /// opened by h^2 d. It is closed in the motion that the steps approach, so it stays in the contact problem.
 
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
 #include <span>
@@ -33,7 +33,7 @@ public:
     centres_.clear();
   }
   /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
-  void add(const ContactKey& key, Index centre = none) {
+  void add(const ConstraintKey& key, Index centre = none) {
     keys_.push_back(key);
     if (centre != none) centres_.push_back(centre);
   }
@@ -45,7 +45,7 @@ public:
   /// True if there are none.
   [[nodiscard]] bool empty() const { return keys_.empty(); }
   /// True if a contact is among them.
-  [[nodiscard]] bool contains(const ContactKey& key) const;
+  [[nodiscard]] bool contains(const ConstraintKey& key) const;
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
@@ -57,7 +57,7 @@ private:
   void put_in_order();
 
   double step_ = 0.0;
-  std::vector<ContactKey> keys_;  // ascending
+  std::vector<ConstraintKey> keys_;  // ascending
   std::vector<Index> centres_;    // likewise
 };
 

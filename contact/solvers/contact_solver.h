@@ -4,7 +4,7 @@
 /// What a contact solver is, and what it may answer.
 
 #include <carom/contact/solvers/contact_problem.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
 #include <cstdint>

@@ -41,7 +41,7 @@ void ClockGroup::demand_start(const State& state) {
   work_->motion.limit.restart();
   motion_.gather(state, work_->y);
   motion_.evaluate(state.time, work_->y.data(), false);
-  Contact contact;
+  Constraint contact;
   for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
     motion_.contact(i, contact);
     if (contact.gap >= -options_.gap_tolerance) continue;
@@ -72,12 +72,12 @@ void ClockGroup::start(const State& state, const ContactModes& present) {
 
   motion_.active().list().clear();
   motion_.evaluate(time_, y_.data(), false);
-  Contact contact;
+  Constraint contact;
   for (std::size_t i = 0; i < motion_.pairs().size(); ++i) {
     motion_.contact(i, contact);
     const auto known =
         std::lower_bound(present.begin(), present.end(), contact.key,
-                         [](const auto& entry, const ContactKey& key) { return entry.first < key; });
+                         [](const auto& entry, const ConstraintKey& key) { return entry.first < key; });
     const bool open =
         known == present.end() || known->first != contact.key || known->second == ContactMode::open;
     if (open) continue;
@@ -175,7 +175,7 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
     const auto& closed = motion_.active().list();
     const auto has_dry_friction =
         std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
-          return contact.at.has_dry_friction() && contact.at.key.of.serial == joint.serial;
+          return contact.at.has_dry_friction() && contact.at.key.a.serial == joint.serial;
         });
     const double force = has_dry_friction == closed.end() ? 0.0 : has_dry_friction->tangential;
     return kind.reaction(at, slot, &force);

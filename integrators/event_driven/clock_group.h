@@ -45,9 +45,9 @@ struct CAROM_API DriverWorkspace {
   SolverChain chain;
   ContactCluster cluster;
   ModeDecision decision;
-  std::vector<Contact> contacts;  // of all pairs of a component
-  std::vector<Contact> touching;  // of one body
-  std::vector<Contact> captured;
+  std::vector<Constraint> contacts;  // of all pairs of a component
+  std::vector<Constraint> touching;  // of one body
+  std::vector<Constraint> captured;
   std::vector<Candidate> candidates;  // of one body
   std::vector<ForceMargin> margins;
   std::vector<double> y, free;
@@ -66,7 +66,7 @@ struct EventBalance {
 };
 
 /// Modes by contact.
-using ContactModes = std::vector<std::pair<ContactKey, ContactMode>>;
+using ContactModes = std::vector<std::pair<ConstraintKey, ContactMode>>;
 
 /// Drives one component. Its memory is its own but for the workspace.
 class CAROM_API ClockGroup {
@@ -172,7 +172,7 @@ private:
   void impact_without_collision(EventBalance& balance);
   void record_changes(EventBalance& balance);
   void record_choice(EventKind kind, EventBalance& balance);
-  EventRecord& record(EventKind kind, const Contact& contact, EventBalance& balance);
+  EventRecord& record(EventKind kind, const Constraint& contact, EventBalance& balance);
   [[nodiscard]] bool touches(std::size_t pair) const;
   [[nodiscard]] double speed_noise() const;
   // Bounds of the work (clock_group_limits.cpp).
@@ -183,10 +183,10 @@ private:
   [[nodiscard]] std::vector<std::string> parts_of_event();
   void record_joints(EventBalance& balance);
   void list_impulses(EventBalance& balance);
-  void remember_impact(const ContactKey& contact);
+  void remember_impact(const ConstraintKey& contact);
   [[nodiscard]] double accumulation_time() const;
 
-  [[nodiscard]] std::string record_approach(const std::vector<Contact>& contacts,
+  [[nodiscard]] std::string record_approach(const std::vector<Constraint>& contacts,
                                             const double* velocity) const;
   void demand_finite_loads();
   [[noreturn]] void fail_loads();
@@ -244,7 +244,7 @@ private:
 
   struct Impact {
     double time;
-    ContactKey contact;
+    ConstraintKey contact;
   };
   static constexpr std::size_t remembered = 16;
   std::vector<Impact> last_impacts_;  // the latest, in time

@@ -35,9 +35,9 @@ void ClockGroup::set_scales() {
     velocity_scale_ = std::max(velocity_scale_, std::abs(work.trial.v[i]) * work.lengths[i]);
     force_scale_ = std::max(force_scale_, std::abs(work.momentum[i]) / work.lengths[i]);
   }
-  for (const Contact& contact : work_->contacts) {
-    velocity_scale_ = std::max(velocity_scale_, std::abs(contact.obstacle_velocity[0]));
-    velocity_scale_ = std::max(velocity_scale_, std::abs(contact.obstacle_velocity[1]));
+  for (const Constraint& contact : work_->contacts) {
+    velocity_scale_ = std::max(velocity_scale_, std::abs(contact.surface_velocity[0]));
+    velocity_scale_ = std::max(velocity_scale_, std::abs(contact.surface_velocity[1]));
   }
 }
 
@@ -47,7 +47,7 @@ double ClockGroup::speed_noise() const {
 
 /// Brings the contacts of all pairs to the state in the workspace.
 void ClockGroup::locate_contacts() {
-  std::vector<Contact>& contacts = work_->contacts;
+  std::vector<Constraint>& contacts = work_->contacts;
   contacts.resize(motion_.pairs().size());
   for (std::size_t i = 0; i < contacts.size(); ++i) motion_.contact(i, contacts[i]);
 }
@@ -130,14 +130,14 @@ void ClockGroup::collect_candidates(std::size_t first, std::size_t last) {
   candidates.clear();
   const double* const velocity = work_->motion.trial.v.data();
   for (std::size_t i = first; i < last; ++i) {
-    const Contact& contact = work_->contacts[i];
-    if (!touches(i) || contact.velocity(0, velocity) > speed_noise()) continue;
+    const Constraint& contact = work_->contacts[i];
+    if (!touches(i) || contact.normal_velocity(velocity) > speed_noise()) continue;
     Candidate& candidate = candidates.emplace_back();
     candidate.pair = motion_.pairs()[i];
     candidate.place = static_cast<Index>(i);
     candidate.at = contact;
     if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
-    const double slip = contact.rows == 2 ? contact.velocity(1, velocity) : 0.0;
+    const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
     candidate.slip = std::abs(slip) > speed_noise() && candidate.pair != stopped_ ? slip : 0.0;
     candidate.frictionless = contact.law.sticking_friction() == 0.0;
     const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
@@ -200,13 +200,13 @@ void ClockGroup::record_choice(EventKind kind, EventBalance& balance) {
 /// Tells which contacts changed their mode.
 void ClockGroup::record_changes(EventBalance& balance) {
   const double* const velocity = work_->motion.trial.v.data();
-  const auto change = [&](EventKind kind, const Contact& contact, ContactMode mode) {
+  const auto change = [&](EventKind kind, const Constraint& contact, ContactMode mode) {
     EventRecord& event = record(kind, contact, balance);
     for (int row = 0; row < contact.rows; ++row) {
       event.velocity_before[static_cast<std::size_t>(row)] =
           event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
     }
-    event.energy_before = event.energy_after = motion_.kinetic_energy(contact.body);
+    event.energy_before = event.energy_after = motion_.kinetic_energy(contact.body());
     event.mode = mode;
   };
   for (const ActiveContact& contact : before_) {
@@ -223,16 +223,16 @@ void ClockGroup::record_changes(EventBalance& balance) {
   }
 }
 
-EventRecord& ClockGroup::record(EventKind kind, const Contact& contact, EventBalance& balance) {
+EventRecord& ClockGroup::record(EventKind kind, const Constraint& contact, EventBalance& balance) {
   ++balance.counts[static_cast<std::size_t>(kind)];
   EventRecord& event = balance.events.emplace_back();
   event.time = time_;
   event.kind = kind;
-  if (contact.body == none) return event;
+  if (contact.bodies == 0) return event;
   event.contact = contact.key;
-  event.body = assembly_->layout()->id(contact.body);
-  if (contact.key.against.owner == FeatureKey::Owner::obstacle) {
-    event.obstacle = {contact.key.against.serial, assembly_->system().token()};
+  event.body = assembly_->layout()->id(contact.body());
+  if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
+    event.obstacle = {contact.key.b.serial, assembly_->system().token()};
   }
   return event;
 }
@@ -242,7 +242,7 @@ std::vector<std::string> ClockGroup::parts_of_event() {
   const System& system = assembly_->system();
   if (next_.guard == Guard::kink) return {system.name(motion_.guards().element(next_.which))};
   const auto& closed = motion_.active().list();
-  Contact contact;
+  Constraint contact;
   if (next_.guard == Guard::gap) {
     motion_.contact(next_.which, contact);
   } else if (next_.guard == Guard::slip) {

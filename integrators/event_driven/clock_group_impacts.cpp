@@ -26,12 +26,12 @@ EnergyFlow line_of(EventKind kind, int row) {
 }  // namespace
 
 /// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
-std::string ClockGroup::record_approach(const std::vector<Contact>& contacts, const double* velocity) const {
-  const auto slower = [&](const Contact& a, const Contact& b) {
-    return a.velocity(0, velocity) > b.velocity(0, velocity);
+std::string ClockGroup::record_approach(const std::vector<Constraint>& contacts, const double* velocity) const {
+  const auto slower = [&](const Constraint& a, const Constraint& b) {
+    return a.normal_velocity(velocity) > b.normal_velocity(velocity);
   };
-  const Contact& fastest = *std::max_element(contacts.begin(), contacts.end(), slower);
-  return detector_->name(fastest.key) + " approaches at " + to_text(-fastest.velocity(0, velocity)) +
+  const Constraint& fastest = *std::max_element(contacts.begin(), contacts.end(), slower);
+  return detector_->name(fastest.key) + " approaches at " + to_text(-fastest.normal_velocity(velocity)) +
          " m/s; allowed: what impulses of all that touch can stop";
 }
 
@@ -47,7 +47,7 @@ bool ClockGroup::resolve_impacts(EventBalance& balance) {
       const Index group = motion_.mechanism(pairs[first].body);
       for (; last < pairs.size() && motion_.mechanism(pairs[last].body) == group; ++last) {
         if (!touches(last)) continue;
-        fastest = std::max(fastest, -work_->contacts[last].velocity(0, work_->motion.trial.v.data()));
+        fastest = std::max(fastest, -work_->contacts[last].normal_velocity(work_->motion.trial.v.data()));
       }
       if (fastest > speed_noise()) {
         resolve_body(first, last, fastest, balance);
@@ -68,14 +68,14 @@ bool ClockGroup::resolve_impacts(EventBalance& balance) {
 
 void ClockGroup::resolve_body(std::size_t first, std::size_t last, double fastest, EventBalance& balance) {
   double* const velocity = work_->motion.trial.v.data();
-  std::vector<Contact>& touching = work_->touching;
+  std::vector<Constraint>& touching = work_->touching;
   touching.clear();
   for (std::size_t i = first; i < last; ++i) {
     if (!touches(i)) continue;
     // Friction in a joint that is bound by a constant has no impulse.
     if (work_->contacts[i].has_dry_friction() && !motion_.depends_on_joint_force(work_->contacts[i]))
       continue;
-    Contact& contact = touching.emplace_back(work_->contacts[i]);
+    Constraint& contact = touching.emplace_back(work_->contacts[i]);
     contact.friction_bound = 0.0;
     contact.friction = contact.law.friction_at(contact.sliding_speed(velocity));
     // Before the jump of a driver it did not approach: there is nothing to give back.
@@ -86,7 +86,7 @@ void ClockGroup::resolve_body(std::size_t first, std::size_t last, double fastes
   share_impact_restitution(touching, velocity, 0.0);
   const bool captured = fastest <= options_.capture_speed;
   if (captured) take_captured(first, last);
-  const double energy_before = motion_.kinetic_energy(touching.front().body);
+  const double energy_before = motion_.kinetic_energy(touching.front().body());
   ContactCluster& cluster = work_->cluster;
   cluster.build(*assembly_, touching, velocity);
   motion_.couple(cluster);
@@ -97,7 +97,7 @@ void ClockGroup::resolve_body(std::size_t first, std::size_t last, double fastes
   if (!solved && !captured) {
     std::vector<std::string> names;
     names.reserve(touching.size());
-    for (const Contact& contact : touching) names.push_back(detector_->name(contact.key));
+    for (const Constraint& contact : touching) names.push_back(detector_->name(contact.key));
     std::string what = "the contact problem of an impact is not solved (" +
                        std::string(to_string(cluster.report().outcome)) +
                        driven_by(*assembly_, motion_.component()) + ")";
@@ -118,14 +118,14 @@ void ClockGroup::take_captured(std::size_t first, std::size_t last) {
   const double limit = options_.capture_speed * options_.capture_speed;
   for (std::size_t i = first; i < last; ++i) {
     if (touches(i)) continue;
-    const Contact& contact = work_->contacts[i];
+    const Constraint& contact = work_->contacts[i];
     // Almost without loads what is slow is far off all the same.
     if (contact.gap > options_.gap_tolerance) continue;
-    const double speed = contact.velocity(0, work.trial.v.data());
-    const double fall = contact.acceleration(0, work.acceleration.data());
+    const double speed = contact.normal_velocity(work.trial.v.data());
+    const double fall = contact.normal_acceleration(work.acceleration.data());
     if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) work_->touching.push_back(contact);
   }
-  for (Contact& contact : work_->touching) {
+  for (Constraint& contact : work_->touching) {
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
   }
 }
@@ -138,14 +138,14 @@ void ClockGroup::close_captured(EventBalance& balance) {
   // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
   // lifts it by, it falls again.
   double fall = 0.0;
-  for (const Contact& contact : work_->touching) {
-    fall = std::max(fall, std::abs(contact.acceleration(0, work.acceleration.data())));
+  for (const Constraint& contact : work_->touching) {
+    fall = std::max(fall, std::abs(contact.normal_acceleration(work.acceleration.data())));
   }
   const double rounding = std::sqrt(2.0 * 4.0 * gap_noise_ * fall);
   for (const bool stopping : {true, false}) {
     list.clear();
-    for (const Contact& contact : work_->touching) {
-      if (contact.has_dry_friction() || contact.velocity(0, velocity) > options_.capture_speed) continue;
+    for (const Constraint& contact : work_->touching) {
+      if (contact.has_dry_friction() || contact.normal_velocity(velocity) > options_.capture_speed) continue;
       ActiveContact& closed = list.emplace_back();
       const bool stops = stopping && contact.rows > 1 && contact.sliding_speed(velocity) <= rounding;
       closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
@@ -160,7 +160,7 @@ void ClockGroup::close_captured(EventBalance& balance) {
     locate_contacts();
     // To stop one may be to move another, in almost singular positions: then it may not be stopped.
     const bool closes = std::all_of(list.begin(), list.end(), [&](const ActiveContact& closed) {
-      return std::abs(closed.at.velocity(0, velocity)) <= speed_noise();
+      return std::abs(closed.at.normal_velocity(velocity)) <= speed_noise();
     });
     if (closes) return;
   }
@@ -170,15 +170,15 @@ void ClockGroup::book_impact(EventKind kind, double energy_before, EventBalance&
   const ContactCluster& cluster = work_->cluster;
   const MotionWorkspace& work = work_->motion;
   double gain = 0.0, scale = 0.0;
-  const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body);
+  const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body());
   // Before those of this instant are remembered.
   const double pile_up =
       kind == EventKind::accumulation ? accumulation_time() : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-    const Contact& contact = cluster.contacts()[c];
+    const Constraint& contact = cluster.contacts()[c];
     if (contact.has_dry_friction()) {
-      const auto place = static_cast<std::size_t>(cluster.first_row(c) + 1);
-      const double before = cluster.before()[place], after = contact.velocity(1, work.trial.v.data());
+      const auto place = static_cast<std::size_t>(cluster.first_row(c));
+      const double before = cluster.before()[place], after = contact.tangential_velocity(work.trial.v.data());
       const double gained = 0.5 * cluster.impulses()[place] * (before + after);
       gain += gained;
       scale += std::abs(cluster.impulses()[place]) * (std::abs(before) + std::abs(after));
@@ -198,7 +198,7 @@ void ClockGroup::book_impact(EventKind kind, double energy_before, EventBalance&
       gain += gained;
       scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
       balance.flows[line_of(kind, row)] -= gained;
-      balance.flows[EnergyFlow::external] += impulse * contact.obstacle_velocity[at];
+      balance.flows[EnergyFlow::external] += impulse * contact.surface_velocity[at];
     }
     event.energy_before = energy_before;
     event.energy_after = energy_after;
@@ -216,7 +216,7 @@ void ClockGroup::book_impact(EventKind kind, double energy_before, EventBalance&
   if (!options_.refuse_energy_gain) return;
   std::vector<std::string> names;
   names.reserve(cluster.contacts().size());
-  for (const Contact& contact : cluster.contacts()) names.push_back(detector_->name(contact.key));
+  for (const Constraint& contact : cluster.contacts()) names.push_back(detector_->name(contact.key));
   fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
        &cluster);
 }
@@ -238,11 +238,11 @@ void ClockGroup::record_joints(EventBalance& balance) {
   }
   list_impulses(balance);
   for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {
-    const Contact& contact = work_->cluster.contacts()[c];
+    const Constraint& contact = work_->cluster.contacts()[c];
     if (!contact.has_dry_friction()) continue;
     JointReaction reaction;
-    reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c) + 1)];
-    const JointId friction{contact.key.of.serial, assembly_->system().token()};
+    reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c))];
+    const JointId friction{contact.key.a.serial, assembly_->system().token()};
     balance.joint_impulses.push_back({friction, reaction, time_});
   }
 }
@@ -265,7 +265,7 @@ void ClockGroup::list_impulses(EventBalance& balance) {
   }
 }
 
-void ClockGroup::remember_impact(const ContactKey& contact) {
+void ClockGroup::remember_impact(const ConstraintKey& contact) {
   if (!last_impacts_.empty() && last_impacts_.back().time == time_ && last_impacts_.back().contact == contact)
     return;
   if (last_impacts_.size() == remembered) last_impacts_.erase(last_impacts_.begin());

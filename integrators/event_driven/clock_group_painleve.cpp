@@ -12,20 +12,20 @@ namespace carom {
 namespace {
 
 /// Restitution along a row of a contact.
-double restitution(const Contact& contact, int row) {
+double restitution(const Constraint& contact, int row) {
   return row == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
 }
 
 /// Gives all contacts the least of their coefficients of tangential restitution. False if they had one.
-bool share_restitution(std::vector<Contact>& contacts) {
+bool share_restitution(std::vector<Constraint>& contacts) {
   double least = std::numeric_limits<double>::infinity(), largest = 0.0;
-  for (const Contact& contact : contacts) {
+  for (const Constraint& contact : contacts) {
     if (contact.rows < 2) continue;
     least = std::min(least, contact.law.tangential_restitution);
     largest = std::max(largest, contact.law.tangential_restitution);
   }
   if (!(least < largest)) return false;
-  for (Contact& contact : contacts) {
+  for (Constraint& contact : contacts) {
     contact.law.normal_restitution = contact.law.tangential_restitution = least;
   }
   return true;
@@ -105,7 +105,7 @@ std::size_t ClockGroup::most_dissipative_solution() {
   for (std::size_t s = 0; s < solutions_.size(); ++s) {
     double change = 0.0, loss = 0.0;
     for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-      const Contact& contact = cluster.contacts()[c];
+      const Constraint& contact = cluster.contacts()[c];
       for (int row = 0; row < contact.rows; ++row) {
         const auto place = static_cast<std::size_t>(cluster.first_row(c) + row);
         const double before = cluster.before()[place];
@@ -125,7 +125,7 @@ std::size_t ClockGroup::most_dissipative_solution() {
 void ClockGroup::impact_without_collision(EventBalance& balance) {
   std::vector<Candidate>& candidates = work_->candidates;
   double* const velocity = work_->motion.trial.v.data();
-  std::vector<Contact>& touching = work_->touching;
+  std::vector<Constraint>& touching = work_->touching;
   touching.clear();
   std::vector<std::string> names;
   std::vector<std::size_t> taking_part;
@@ -133,11 +133,11 @@ void ClockGroup::impact_without_collision(EventBalance& balance) {
     // Friction in joints keeps nothing from jamming.
     if (candidates[i].at.has_dry_friction()) continue;
     taking_part.push_back(i);
-    Contact& contact = touching.emplace_back(candidates[i].at);
+    Constraint& contact = touching.emplace_back(candidates[i].at);
     // At no speed: what is left of it is rounding, which the certificate of P = 0 would take offence at.
-    const double rounding = contact.velocity(0, velocity);
-    contact.obstacle_velocity[0] += rounding;
-    contact.obstacle_velocity_after[0] += rounding;
+    const double rounding = contact.normal_velocity(velocity);
+    contact.surface_velocity[0] += rounding;
+    contact.surface_velocity_after[0] += rounding;
     names.push_back(detector_->name(candidates[i].at.key));
   }
   ContactCluster& cluster = work_->cluster;
@@ -161,7 +161,7 @@ void ClockGroup::impact_without_collision(EventBalance& balance) {
     fail("no forces keep the contact, and no impact without collision does", std::move(names), &cluster);
   }
   cluster.set_impulses(solutions_.impulse(best));
-  const double energy_before = motion_.kinetic_energy(touching.front().body);
+  const double energy_before = motion_.kinetic_energy(touching.front().body());
   motion_.apply(cluster, velocity);
   const Range v = assembly_->components()[motion_.component()].v;
   std::copy(velocity + v.begin, velocity + v.end,

@@ -40,7 +40,7 @@ void ClockGroup::project_known_contacts(EventBalance& balance) {
   std::erase_if(list, [&](ActiveContact& closed) {
     closed.at = work_->contacts[closed.place];
     return closed.at.gap > options_.gap_tolerance ||
-           std::abs(closed.at.velocity(0, velocity)) > left_by_tolerances * speed_noise();
+           std::abs(closed.at.normal_velocity(velocity)) > left_by_tolerances * speed_noise();
   });
   if (!list.empty() && motion_.evaluate(time_, y_.data(), true)) project_onto_constraints(balance);
   list = known;

@@ -46,14 +46,15 @@ bool ClockGroup::sample_guards(double time, const double* y, Watch& out) {
   out.gaps.resize(motion_.pairs().size());
   out.gap_curvature_bound.resize(motion_.pairs().size());
   bool finite = solved;
-  Contact contact;
+  Constraint contact;
   for (std::size_t i = 0; i < out.gaps.size(); ++i) {
     if (is_active_[i] != 0) continue;
     motion_.contact(i, contact);
-    const double spin = contact.columns > 2 ? state.v[contact.v + 2] : 0.0;
+    const Constraint::Block& body = contact.blocks[0];
+    const double spin = body.columns > 2 ? state.v[body.v + 2] : 0.0;
     // A point on an arm r that turns at w: its place has the sixth derivative w^6 r, its drift is w^2 r.
     out.gap_curvature_bound[i] = spin * spin * spin * spin * std::hypot(contact.drift[0], contact.drift[1]);
-    out.gaps[i] = {contact.gap, contact.velocity(0, state.v), contact.acceleration(0, acceleration)};
+    out.gaps[i] = {contact.gap, contact.normal_velocity(state.v), contact.normal_acceleration(acceleration)};
     finite = finite && std::isfinite(out.gaps[i].second);
   }
   out.seen.time = time;
@@ -86,8 +87,8 @@ void ClockGroup::see(StepLook& out) {
   out.slips.resize(closed.size());
   for (std::size_t i = 0; i < closed.size(); ++i) {
     const double sign = closed[i].slip_sign();
-    out.slips[i] = {sign * closed[i].at.velocity(1, work.trial.v.data()),
-                    sign * closed[i].at.acceleration(1, work.acceleration.data()), 0.0};
+    out.slips[i] = {sign * closed[i].at.tangential_velocity(work.trial.v.data()),
+                    sign * closed[i].at.tangential_acceleration(work.acceleration.data()), 0.0};
   }
   motion_.active().margins(work_->margins);
   out.margins.resize(work_->margins.size());
@@ -176,11 +177,11 @@ void ClockGroup::predict_gaps(Found& found) {
     QuantityOf gap([&](double time) -> QuantityLook {
       sample(time);
       const MotionWorkspace& work = work_->motion;
-      Contact contact;
+      Constraint contact;
       motion_.contact(i, contact);
       return {time,
-              {contact.gap, contact.velocity(0, work.trial.v.data()),
-               contact.acceleration(0, work.acceleration.data())},
+              {contact.gap, contact.normal_velocity(work.trial.v.data()),
+               contact.normal_acceleration(work.acceleration.data())},
               bend};
     });
     const double until = found.guard == Guard::nothing ? never : found.time;
@@ -244,14 +245,14 @@ ClockGroup::Rest ClockGroup::rest_of(const Found& rough) {
   const MotionWorkspace& work = work_->motion;
   const double* const velocity = work.trial.v.data();
   if (rough.guard == Guard::gap) {
-    Contact contact;
+    Constraint contact;
     motion_.contact(rough.which, contact);
-    return {contact.gap - level(rough.which), contact.velocity(0, velocity), gap_noise_ / 16.0, true};
+    return {contact.gap - level(rough.which), contact.normal_velocity(velocity), gap_noise_ / 16.0, true};
   }
   if (rough.guard == Guard::slip) {
     const ActiveContact& closed = motion_.active().list()[rough.which];
-    return {closed.slip_sign() * closed.at.velocity(1, velocity) - slip_level(rough.which),
-            closed.slip_sign() * closed.at.acceleration(1, work.acceleration.data()), speed_noise() / 16.0,
+    return {closed.slip_sign() * closed.at.tangential_velocity(velocity) - slip_level(rough.which),
+            closed.slip_sign() * closed.at.tangential_acceleration(work.acceleration.data()), speed_noise() / 16.0,
             true};
   }
   if (rough.guard == Guard::kink) {

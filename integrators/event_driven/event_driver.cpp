@@ -198,7 +198,7 @@ void EventDriver::report_contacts(const EventBalance& balance, StepReport& repor
     entry.key = event.contact;
     entry.body = event.body;
     entry.obstacle = event.obstacle;
-    const bool stop = event.contact.of.owner == FeatureKey::Owner::joint;
+    const bool stop = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = stop ? 1 : assembly_->layout()->dimension();
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;

@@ -49,11 +49,11 @@ Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
     if (slides_[i].out) continue;
-    Contact& contact = contacts_.emplace_back(candidates[i].at);
+    Constraint& contact = contacts_.emplace_back(candidates[i].at);
     taking_part_.push_back(i);
     // In accelerations: what the velocity of the obstacle is to velocities, minus the drift is to these.
-    for (std::size_t row = 0; row < Contact::max_rows; ++row) {
-      contact.obstacle_velocity[row] = contact.obstacle_velocity_after[row] = -contact.drift[row];
+    for (std::size_t row = 0; row < Constraint::max_rows; ++row) {
+      contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     contact.friction = slides_[i].sign == 0.0 ? contact.law.sticking_friction()
@@ -67,11 +67,11 @@ Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std
   motion.couple(cluster_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
-    if (sign != 0.0 && contacts_[c].rows > 1) cluster_.slide(c, -sign * contacts_[c].friction);
+    if (sign != 0.0 && contacts_[c].type != ConstraintType::limit) cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
   const bool presses =
-      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
+      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(), [&](const Constraint& contact) {
         return motion.depends_on_joint_force(contact);
       });
   const bool solved =
@@ -131,9 +131,10 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     Slide& slide = slides_[i];
-    const auto rate = [&](int row) { return candidate.at.acceleration(row, acceleration_.data()); };
+    const double lifts = candidate.at.normal_acceleration(acceleration_.data());
+    const double slides = candidate.at.tangential_acceleration(acceleration_.data());
     if (slide.out) {
-      if (rate(0) >= -no_acceleration * std::max(size, std::abs(rate(0)))) continue;
+      if (lifts >= -no_acceleration * std::max(size, std::abs(lifts))) continue;
       slide.out = false;
       changed = true;
     } else if (slide.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
@@ -142,11 +143,11 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
       changed = true;
     } else if (candidate.slip == 0.0 && !candidate.frictionless && !slide.back &&
                candidate.mode != ContactMode::open &&
-               slide.sign * rate(1) < -std::max(no_acceleration * size, exhausted)) {
+               slide.sign * slides < -std::max(no_acceleration * size, exhausted)) {
       // One at a time: it may be what takes the others along.
-      if (astray != nullptr && std::abs(rate(1)) <= farthest) continue;
+      if (astray != nullptr && std::abs(slides) <= farthest) continue;
       astray = &slide;
-      farthest = std::abs(rate(1));
+      farthest = std::abs(slides);
     }
   }
   if (changed || astray == nullptr) return changed;

@@ -23,7 +23,7 @@ namespace carom {
 struct Candidate {
   ContactPair pair;
   Index place = none;  ///< of the pair among those of the motion
-  Contact at;
+  Constraint at;
   double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
   ContactMode present = ContactMode::open;  ///< before the decision
   ContactMode mode = ContactMode::open;     ///< decided
@@ -76,7 +76,7 @@ private:
 
   ContactCluster cluster_;
   SolutionList solutions_;
-  std::vector<Contact> contacts_;
+  std::vector<Constraint> contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::vector<Slide> slides_;
   std::vector<double> zero_, acceleration_;

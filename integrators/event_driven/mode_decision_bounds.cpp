@@ -39,12 +39,12 @@ void ModeDecision::complete_modes(SmoothMotion& motion, std::span<Candidate> can
   for (const double b : cluster_.problem().vector()) size = std::max(size, std::abs(b));
   std::vector<std::size_t> added;  // candidates
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& contact = contacts_[c];
+    const Constraint& contact = contacts_[c];
     const std::size_t i = taking_part_[c];
     if (contact.has_dry_friction() && candidates[i].slip == 0.0 && !candidates[i].breaks) {
       // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
       // bound is zero modes cannot be told from the force.
-      const double along = contact.acceleration(1, acceleration_.data());
+      const double along = contact.tangential_acceleration(acceleration_.data());
       if (std::abs(along) <= no_acceleration * size) {
         candidates[i].mode = ContactMode::stick;
       } else if (slides_[i].sign == 0.0) {
@@ -54,8 +54,8 @@ void ModeDecision::complete_modes(SmoothMotion& motion, std::span<Candidate> can
     if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
     const int normal = cluster_.first_row(c);
     if (cluster_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
-    if (contact.acceleration(0, acceleration_.data()) > no_acceleration * size) continue;
-    const double along = contact.rows > 1 ? contact.acceleration(1, acceleration_.data()) : 0.0;
+    if (contact.normal_acceleration(acceleration_.data()) > no_acceleration * size) continue;
+    const double along = contact.rows > 1 ? contact.tangential_acceleration(acceleration_.data()) : 0.0;
     double sign = slides_[i].sign;
     if (sign == 0.0 && std::abs(along) > no_acceleration * size) sign = along;
     candidates[i].mode = sign == 0.0  ? ContactMode::stick

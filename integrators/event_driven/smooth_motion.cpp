@@ -140,7 +140,7 @@ SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, I
   for (Index i = 0; i < work_count_; ++i) tolerances_[size_ - 1 - i] = mass * options.absolute_tolerance;
 }
 
-void SmoothMotion::contact(std::size_t pair, Contact& out) const {
+void SmoothMotion::contact(std::size_t pair, Constraint& out) const {
   detector_->contact(pairs_[pair], work_->trial.view(), work_->evaluation, work_->places, out);
 }
 
@@ -224,9 +224,9 @@ void SmoothMotion::rates(double time, const double* y, double* rates) {
   }
   for (const ActiveContact& contact : active_.list()) {
     double& rubbed = contact.at.has_dry_friction() ? in_joints : sliding;
-    rubbed -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.velocity(1, state.v));
-    external += contact.normal * contact.at.obstacle_velocity[0] +
-                contact.tangential * contact.at.obstacle_velocity[1];
+    rubbed -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
+    external += contact.normal * contact.at.surface_velocity[0] +
+                contact.tangential * contact.at.surface_velocity[1];
   }
   if (joints_.depends_on_time()) {
     // Reactions do the work of what is prescribed: G v = -rate.

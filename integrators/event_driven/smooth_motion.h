@@ -121,14 +121,14 @@ public:
   /// Lets a problem of contacts know what joints bind the bodies; the workspace holds the configuration.
   void couple(ContactCluster& cluster);
   /// True if the bound of friction in a joint follows from forces.
-  [[nodiscard]] bool depends_on_joint_force(const Contact& contact) const {
+  [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const {
     return pressure_.depends_on_joint_force(contact);
   }
   /// True if that of any in the component does.
   [[nodiscard]] bool bears_any() const { return !pressure_.empty(); }
   /// Solves the problem of an impact that was coupled. Bounds of friction in joints that follow from impulses
   /// are found by repetition; it is not solved where they do not settle. \param contacts those of the problem
-  bool solve(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain);
+  bool solve(ContactCluster& cluster, std::span<Constraint> contacts, SolverChain& chain);
   /// Forces of closed contacts in place of those at hand, as the flow finds them, with bounds of friction in
   /// joints as they are; then the bounds that follow, their largest relative change, and the margins of the
   /// forces. The workspace holds an evaluation without reactions. False where there are no forces.
@@ -142,7 +142,7 @@ public:
   /// Kinetic energy of the group of a body in the workspace's state [J].
   [[nodiscard]] double kinetic_energy(Index body) const;
   /// The contact of a pair in the workspace's state.
-  void contact(std::size_t pair, Contact& out) const;
+  void contact(std::size_t pair, Constraint& out) const;
   /// Guards of the component's elements.
   [[nodiscard]] const ComponentGuards& guards() const { return guards_; }
   /// True if guards can be looked at along a path of coordinates (step_path.h).
@@ -169,7 +169,7 @@ private:
   // Parts of the Jacobian: changes of a contact's load, its forces as they are, and of the accelerations
   // along its rows, those of the bodies as they are.
   struct ContactChange {
-    static constexpr std::size_t most = Contact::max_columns;
+    static constexpr std::size_t most = Constraint::max_columns;
     template <std::size_t N>
     using ByMove = std::array<std::array<double, N>, most>;  // by what is moved
 

@@ -16,7 +16,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::size_t most_columns = Contact::max_columns;
+constexpr std::size_t most_columns = Constraint::max_columns;
 using OfContact = std::array<double, most_columns>;
 
 /// Row of a contact along which a force acts.
@@ -24,17 +24,19 @@ OfContact direction(const ActiveContact& contact, bool tangent) {
   OfContact result{};
   const double ratio = tangent ? 0.0 : -contact.slip_sign() * contact.friction;
   for (std::size_t i = 0; i < most_columns; ++i) {
-    result[i] = contact.at.row(tangent ? 1 : 0)[i];
+    result[i] = contact.at.row(tangent ? contact.at.tangent_row() : 0)[i];
     if (ratio != 0.0) result[i] += ratio * contact.at.row(1)[i];
   }
   return result;
 }
 
 /// Velocities that a contact moves.
-std::size_t columns_of(const Contact& contact, std::array<Index, most_columns>& out) {
+std::size_t columns_of(const Constraint& contact, std::array<Index, most_columns>& out) {
   std::size_t count = 0;
-  for (int i = 0; i < contact.columns; ++i) out[count++] = contact.v + static_cast<Index>(i);
-  for (int i = 0; i < contact.other_columns; ++i) out[count++] = contact.other_v + static_cast<Index>(i);
+  for (int b = 0; b < contact.bodies; ++b) {
+    const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
+    for (int i = 0; i < block.columns; ++i) out[count++] = block.v + static_cast<Index>(i);
+  }
   return count;
 }
 
@@ -160,17 +162,17 @@ SmoothMotion::ContactChange SmoothMotion::change_of(const ActiveContact& contact
   MotionWorkspace& work = *work_;
   ContactChange change;
   change.count = columns_of(contact.at, change.columns);
-  Contact moved;
+  Constraint moved;
   const auto look = [&](OfContact& load, std::array<double, 2>& rows) {
     detector_->contact(contact.pair, work.trial.view(), work.evaluation, work.places, moved);
     const double slip = -contact.slip_sign() * contact.friction_at(moved, work.trial.v.data());
     const double tangential = contact.sticks() ? contact.tangential : slip * contact.normal;
     for (std::size_t i = 0; i < change.count; ++i) {
-      load[i] = contact.normal * moved.row(0)[i] + tangential * moved.row(1)[i];
+      load[i] = tangential * moved.row(moved.tangent_row())[i];
+      if (!moved.has_dry_friction()) load[i] += contact.normal * moved.row(0)[i];
     }
-    for (const int row : {0, 1}) {
-      rows[static_cast<std::size_t>(row)] = moved.acceleration(row, work.acceleration.data());
-    }
+    rows = {moved.normal_acceleration(work.acceleration.data()),
+            moved.tangential_acceleration(work.acceleration.data())};
   };
   const auto difference = [&](double step, const auto& move, OfContact& load, std::array<double, 2>& rows) {
     OfContact load_behind{};
@@ -221,7 +223,7 @@ void SmoothMotion::differentiate_pressure(const ActiveContact& contact, std::vec
   const std::size_t count = columns_of(contact.at, columns);
   const auto pressed = [&](double& force, double value) {
     force = value;
-    Contact moved = contact.at;
+    Constraint moved = contact.at;
     pressure_.take(forces.data(), 1.0);
     pressure_.press(moved, at);
     return moved.friction_bound;
@@ -233,7 +235,7 @@ void SmoothMotion::differentiate_pressure(const ActiveContact& contact, std::vec
         difference_quotient([&](double value) { return pressed(forces[row], value); }, force, largest);
     forces[row] = force;
     for (std::size_t i = 0; i < count; ++i) {
-      const double load = -contact.slip_sign() * contact.friction * slope * contact.at.row(1)[i];
+      const double load = -contact.slip_sign() * contact.friction * slope * contact.at.row(contact.at.tangent_row())[i];
       const auto moved = static_cast<Index>(unknown(columns[i]));
       out.push_back({.row = moved, .column = row_multipliers_[row], .of_state = load});
     }
@@ -256,8 +258,9 @@ void SmoothMotion::differentiate_contacts(std::vector<RateDerivative>& out, Inde
   for (const auto& [equation, force] : active_.pivots()) {
     const ContactChange& held = contact_changes_[equation.contact];
     const std::size_t row = equation.tangent ? 1 : 0;
+    const Constraint& at = contacts[equation.contact].at;
     for (std::size_t j = 0; j < held.count; ++j) {
-      out.push_back({multiplier, held.columns[j], contacts[equation.contact].at.row(static_cast<int>(row))[j],
+      out.push_back({multiplier, held.columns[j], at.row(equation.tangent ? at.tangent_row() : 0)[j],
                      -held.row_by_velocity[j][row], -held.row_by_position[j][row]});
     }
     const ContactChange& pushed = contact_changes_[force.contact];

@@ -70,7 +70,7 @@ double SmoothMotion::largest_load() const {
   return largest;
 }
 
-bool SmoothMotion::solve(ContactCluster& cluster, std::span<Contact> contacts, SolverChain& chain) {
+bool SmoothMotion::solve(ContactCluster& cluster, std::span<Constraint> contacts, SolverChain& chain) {
   MotionWorkspace& work = *work_;
   work.multipliers.resize(joints_.size());
   // Little is captured, so that nothing is allocated.
@@ -98,8 +98,7 @@ std::span<const double> SmoothMotion::joint_multipliers() {
   const Range v = assembly_->components()[component_].v;
   std::copy(work.momentum.begin() + v.begin, work.momentum.begin() + v.end, answer.begin() + v.begin);
   for (const ActiveContact& contact : active_.list()) {
-    contact.at.add_transposed(0, contact.normal, answer.data());
-    contact.at.add_transposed(1, contact.tangential, answer.data());
+    contact.at.add_force(contact.normal, contact.tangential, answer.data());
   }
   assembly_->for_bodies(component_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
     kind.apply_inverse_mass(slots, answer.data() + at, answer.data() + at);

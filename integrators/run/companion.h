@@ -5,7 +5,7 @@
 
 #include <carom/contact/solvers/chain_statistics.h>
 #include <carom/contact/solvers/contact_solver.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/energy_ledger.h>
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/load_history.h>
@@ -51,7 +51,7 @@ struct Companion {
   std::int64_t grid_steps = 0;  ///< n
   double next_step = 0.0;       ///< of step control; 0: as described [s]
   PresentLoads loads;           ///< at the state
-  std::vector<std::pair<ContactKey, ContactMode>> modes;  ///< contacts of the last step, by key
+  std::vector<std::pair<ConstraintKey, ContactMode>> modes;  ///< contacts of the last step, by key
   std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()
 };
 

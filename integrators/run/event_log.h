@@ -5,7 +5,7 @@
 /// points.
 
 #include <carom/contact/solvers/contact_solver.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
@@ -46,7 +46,7 @@ inline constexpr std::size_t event_kind_count = 11;
 struct EventRecord {
   double time = 0.0;                        ///< [s]
   EventKind kind = EventKind::impact;       ///< what happened
-  ContactKey contact{};                     ///< of a contact
+  ConstraintKey contact{};                     ///< of a contact
   BodyId body{};                            ///< its body
   ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
   ElementId element{};                      ///< of a kink, or whose law of time jumps

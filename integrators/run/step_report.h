@@ -5,7 +5,7 @@
 
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 #include <carom/core/ids.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/model_finding.h>
@@ -21,7 +21,7 @@ namespace carom {
 
 /// One contact that took part in a step. Directions: normal first, then tangential (one in the plane).
 struct ContactRecord {
-  ContactKey key;       ///< identity
+  ConstraintKey key;       ///< identity
   BodyId body;          ///< the body
   ObstacleId obstacle;  ///< what it touches
   int directions = 2;   ///< 2 in the plane, 3 in space

@@ -41,7 +41,7 @@ void GapProjection::find(Index component, const Detector& detector, const Obstac
     return;
   }
   auto wanted = which.taking_part.begin();
-  for (const Contact& contact : found_) {
+  for (const Constraint& contact : found_) {
     auto at = wanted;
     while (at != which.taking_part.end() && at->key != contact.key) ++at;
     if (at == which.taking_part.end()) continue;  // has not taken part
@@ -66,33 +66,33 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
     find(component, detector, places, which, 2.0 * result.shift, state, evaluation);
     // Bodies that joints bind come last, and together.
-    const auto owner = [&](const Contact& contact) {
-      return assembly.is_jointed(contact.body) ? none : contact.body;
+    const auto owner = [&](const Constraint& contact) {
+      return assembly.is_jointed(contact.body()) ? none : contact.body();
     };
     std::stable_sort(contacts_.begin(), contacts_.end(),
-                     [&](const Contact& a, const Contact& b) { return owner(a) < owner(b); });
+                     [&](const Constraint& a, const Constraint& b) { return owner(a) < owner(b); });
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;
     for (std::size_t first = 0; first < contacts_.size();) {
       std::size_t last = first + 1;
       while (last < contacts_.size() && owner(contacts_[last]) == owner(contacts_[first])) ++last;
-      const std::span<const Contact> of_body(contacts_.data() + first, last - first);
-      const BodySlot body = assembly.layout()->bodies()[of_body.front().body];
-      const bool bound = assembly.is_jointed(of_body.front().body);
+      const std::span<const Constraint> of_body(contacts_.data() + first, last - first);
+      const BodySlot body = assembly.layout()->bodies()[of_body.front().body()];
+      const bool bound = assembly.is_jointed(of_body.front().body());
       const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
       const bool moved = std::any_of(displacement_.begin() + own.begin, displacement_.begin() + own.end,
                                      [](double number) { return number != 0.0; });
-      for (const Contact& contact : of_body) {
+      for (const Constraint& contact : of_body) {
         if (-contact.gap <= worst) continue;
         worst = -contact.gap;
         result.left = &contact;
         result.together = of_body;
       }
       const bool deep = std::any_of(of_body.begin(), of_body.end(),
-                                    [&](const Contact& at) { return at.gap < -2.0 * depth; });
+                                    [&](const Constraint& at) { return at.gap < -2.0 * depth; });
       const bool open = moved && std::all_of(of_body.begin(), of_body.end(),
-                                             [](const Contact& at) { return at.gap > 0.0; });
+                                             [](const Constraint& at) { return at.gap > 0.0; });
       // Where turning bodies have been moved far their joints are off by the square of it.
       const bool loose = bound && moved && off(joints, state, evaluation) > 2.0 * depth;
       if (deep || open || loose) {
@@ -113,9 +113,9 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
   return result;
 }
 
-bool GapProjection::move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
+bool GapProjection::move_body(const Assembly& assembly, std::span<const Constraint> contacts, SolverChain& chain,
                               State& state, double depth) {
-  const BodySlot& body = assembly.layout()->bodies()[contacts.front().body];
+  const BodySlot& body = assembly.layout()->bodies()[contacts.front().body()];
   const BodyKind& kind = *assembly.body_kinds()[body.kind];
   const std::size_t columns = body.v_size;
   const auto rows = static_cast<int>(contacts.size());
@@ -152,7 +152,7 @@ bool GapProjection::move_body(const Assembly& assembly, std::span<const Contact>
   return true;
 }
 
-bool GapProjection::move_bound(const Assembly& assembly, Index component, std::span<const Contact> contacts,
+bool GapProjection::move_bound(const Assembly& assembly, Index component, std::span<const Constraint> contacts,
                                SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
                                JointConstraints& joints) {
   const std::size_t size = state.v.size();

@@ -28,14 +28,14 @@ public:
   struct Result {
     bool moved = false;             ///< a body was moved
     double shift = 0.0;             ///< largest displacement of a body, angles weighed by its size [m]
-    const Contact* left = nullptr;  ///< deepest contact that could not be opened
+    const Constraint* left = nullptr;  ///< deepest contact that could not be opened
     /// The contacts of its bodies that had to be open together, it among them. Valid, as `left`, until the
     /// next projection.
-    std::span<const Contact> together{};
+    std::span<const Constraint> together{};
   };
   /// Gaps that are to be opened.
   struct Which {
-    std::span<const Contact> taking_part{};  ///< these, in the order of the detector,
+    std::span<const Constraint> taking_part{};  ///< these, in the order of the detector,
     bool all = false;                        ///< or all, those that a displacement closes included
   };
 
@@ -51,15 +51,15 @@ private:
   void find(Index component, const Detector& detector, const ObstaclePlaces& places, const Which& which,
             double margin, const State& state, const Evaluation& evaluation);
   /// Makes a better estimate for one body; false if there is none.
-  bool move_body(const Assembly& assembly, std::span<const Contact> contacts, SolverChain& chain,
+  bool move_body(const Assembly& assembly, std::span<const Constraint> contacts, SolverChain& chain,
                  State& state, double depth);
 
   /// Likewise for all bodies of a component that joints bind.
-  bool move_bound(const Assembly& assembly, Index component, std::span<const Contact> contacts,
+  bool move_bound(const Assembly& assembly, Index component, std::span<const Constraint> contacts,
                   SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
                   JointConstraints& joints);
 
-  std::vector<Contact> found_, contacts_;
+  std::vector<Constraint> found_, contacts_;
   ContactProblem problem_;
   std::vector<double> unmoved_;       // q
   std::vector<double> displacement_;  // d, over all velocities

@@ -219,7 +219,7 @@ private:
   [[noreturn]] void fail_account(Index component, const State& state, double step);
   [[noreturn]] void fail_internal(ElementId element, const State& state, double step) const;
   [[noreturn]] void fail_linearisation(Index component, const State& state, double step, const char* why);
-  [[noreturn]] void fail_projection(const Contact& left, const State& state, double step) const;
+  [[noreturn]] void fail_projection(const Constraint& left, const State& state, double step) const;
   [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state,
                                 double step) const;
 
@@ -290,10 +290,10 @@ private:
   std::vector<double> dv_impulses_;  // changes of velocity by contact, empty until anything touches
   std::vector<double> free_;         // velocities without contact and joints, likewise
   std::vector<double> update_;       // changes of velocities, of the linearly implicit iteration
-  std::vector<std::pair<ContactKey, ContactMode>> joint_friction_modes_;  // of friction in joints
-  std::vector<ContactKey> sticking_;  // in the last step, ordered; where static friction asks
+  std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes_;  // of friction in joints
+  std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   LastingContacts lasting_;           // contacts of the last step that turning may have opened
-  std::vector<Contact> contacts_;
+  std::vector<Constraint> contacts_;
   std::vector<ContactCluster> clusters_;
   std::size_t clusters_in_use_ = 0;
   std::vector<Range> block_clusters_;  // by block of the component at hand, if there are any

@@ -169,8 +169,8 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the obstacles.
     for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-      const Contact& contact = cluster.contacts()[c];
-      for (int i = contact.begin_row(); i < contact.rows; ++i) {
+      const Constraint& contact = cluster.contacts()[c];
+      for (int i = 0; i < contact.rows; ++i) {
         const auto row = static_cast<std::size_t>(cluster.first_row(c) + i);
         const double size = std::abs(cluster.problem().vector()[row]) + contact.speed(i, trial_.v.data());
         scale += std::abs(cluster.impulses()[row]) * size;
@@ -188,30 +188,30 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
 
 /// Friction in a joint, along its row at the start or halfway; the velocities halfway are at hand.
 void TimeStepper::book_joint_friction(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
-  const Contact& at = cluster.contacts()[contact];
-  const auto place = static_cast<std::size_t>(cluster.first_row(contact) + 1);
+  const Constraint& at = cluster.contacts()[contact];
+  const auto place = static_cast<std::size_t>(cluster.first_row(contact));
   JointReaction reaction;
   const double moment = cluster.impulses()[place];
   const double mean_rate = after_ == trial_.v.data()
-                               ? at.times(1, midpoint_.v.data())
-                               : 0.5 * (cluster.before()[place] + at.velocity_after(1, after_));
+                               ? at.times(0, midpoint_.v.data())
+                               : 0.5 * (cluster.before()[place] + at.velocity_after(0, after_));
   reaction.moment = moment;
   flows_[EnergyFlow::joint_friction] -= moment * mean_rate;
   sum.gain += moment * mean_rate;
   sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(cluster.before()[place]), std::abs(mean_rate));
   report_.joint_impulses.push_back(
-      {JointId{at.key.of.serial, assembly_->system().token()}, reaction, trial_.time});
+      {JointId{at.key.a.serial, assembly_->system().token()}, reaction, trial_.time});
   const ContactMode mode = cluster.modes()[contact];
   joint_friction_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
 void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
-  const Contact& at = cluster.contacts()[contact];
+  const Constraint& at = cluster.contacts()[contact];
   ContactRecord& entry = report_.contacts.emplace_back();
   entry.key = at.key;
-  entry.body = assembly_->layout()->id(at.body);
-  if (at.key.against.owner == FeatureKey::Owner::obstacle) {
-    entry.obstacle = {at.key.against.serial, assembly_->system().token()};
+  entry.body = assembly_->layout()->id(at.body());
+  if (at.key.b.owner == FeatureKey::Owner::obstacle) {
+    entry.obstacle = {at.key.b.serial, assembly_->system().token()};
   }
   entry.directions = at.rows;
   entry.gap = at.gap;

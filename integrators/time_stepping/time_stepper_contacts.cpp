@@ -29,7 +29,7 @@ void TimeStepper::find_contacts(Index component, const State& state) {
   detector_.find_joint_friction(component, state.view(), start_, contacts_);
   if (contacts_.empty()) return;
   if (detector_.has_static_friction()) {
-    for (Contact& contact : contacts_) {
+    for (Constraint& contact : contacts_) {
       if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
       contact.friction = contact.law.sticking_friction();
     }
@@ -51,7 +51,7 @@ void TimeStepper::find_contacts(Index component, const State& state) {
   // body.
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
-    while (last < contacts_.size() && contacts_[last].body == contacts_[first].body) ++last;
+    while (last < contacts_.size() && contacts_[last].body() == contacts_[first].body()) ++last;
     add_cluster(state, first, last);
     first = last;
   }
@@ -65,7 +65,7 @@ void TimeStepper::share_out_clusters(Index component) {
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    while (next < clusters_in_use_ && clusters_[next].contacts().front().body < block.bodies.end) ++next;
+    while (next < clusters_in_use_ && clusters_[next].contacts().front().body() < block.bodies.end) ++next;
     block_clusters_[part] = {first, next};
     if (next > first)
       std::fill(dv_impulses_.begin() + block.v.begin, dv_impulses_.begin() + block.v.end, 0.0);
@@ -99,7 +99,7 @@ bool TimeStepper::solve(ContactCluster& cluster, SolverChain& chain, const State
                         const Companion& companion, double step) {
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
-  const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body];
+  const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body()];
   for (Index k = body.v; k < body.v + body.v_size; ++k) {
     dv_impulses_[k] = half * (load0[k] + evaluation_.force[k]);
   }

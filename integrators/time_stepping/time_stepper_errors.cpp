@@ -31,7 +31,7 @@ SolverFailure failure_of(const ContactCluster& cluster, const Detector& detector
                          double step) {
   SolverFailure failure = failure_at(state, step);
   failure.residual = cluster.report().residual;
-  for (const Contact& contact : cluster.contacts()) failure.parts.push_back(detector.name(contact.key));
+  for (const Constraint& contact : cluster.contacts()) failure.parts.push_back(detector.name(contact.key));
   failure.problem = std::make_shared<const ContactProblem>(cluster.problem());
   return failure;
 }
@@ -123,7 +123,7 @@ void TimeStepper::fail_contraction(Index component, const State& state, const Co
   std::vector<std::string> jumping;
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (!clusters_[i].changed_modes()) continue;
-    for (const Contact& contact : clusters_[i].contacts()) jumping.push_back(detector_.name(contact.key));
+    for (const Constraint& contact : clusters_[i].contacts()) jumping.push_back(detector_.name(contact.key));
   }
   const bool implicit = iteration_ == Iteration::linearly_implicit;
   if (!std::isfinite(judge.change())) {
@@ -242,7 +242,7 @@ void TimeStepper::fail_linearisation(Index component, const State& state, double
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::fail_projection(const Contact& left, const State& state, double step) const {
+void TimeStepper::fail_projection(const Constraint& left, const State& state, double step) const {
   SolverFailure failure = failure_at(state, step);
   failure.residual = -left.gap;
   failure.parts.push_back(detector_.name(left.key));

@@ -23,7 +23,7 @@ namespace carom {
 /// Whether anything but friction in joints takes part.
 bool TimeStepper::strikes() const {
   return std::any_of(contacts_.begin(), contacts_.end(),
-                     [](const Contact& contact) { return !contact.has_dry_friction(); });
+                     [](const Constraint& contact) { return !contact.has_dry_friction(); });
 }
 
 void TimeStepper::solve_joint_contacts(Index component, const State& state, double step) {
@@ -70,12 +70,12 @@ void TimeStepper::update_friction_rows(Index component) {
   const Range v = assembly_->components()[component].v;
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i] + dv_contact_[i];
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Contact& contact = contacts_[c];
+    Constraint& contact = contacts_[c];
     const JointView halfway{midpoint_.view(), middle_evaluation_.rotation.data()};
     detector_.update_friction_rows({trial_.view(), evaluation_.rotation.data()}, contact);
-    const double at_end = contact.times(1, scratch_.data());
+    const double at_end = contact.times(0, scratch_.data());
     detector_.update_friction_rows(halfway, contact);
-    contact.obstacle_velocity_after[1] = contact.times(1, scratch_.data()) - at_end;
+    contact.surface_velocity_after[0] = contact.times(0, scratch_.data()) - at_end;
     clusters_.front().press(c);
   }
 }

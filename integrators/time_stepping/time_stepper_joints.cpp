@@ -50,7 +50,7 @@ void TimeStepper::start_joints(Index component, const State& state, double step)
   const Range v = assembly_->components()[component].v;
   work.reactions = Reactions::halfway;
   std::fill(work.impulse.begin(), work.impulse.end(), 0.0);
-  for (Contact& contact : contacts_) contact.friction_bound *= step;
+  for (Constraint& contact : contacts_) contact.friction_bound *= step;
   for (std::vector<double>* const numbers : {&dv_impulses_, &reaction_, &dv_contact_, &displacement_}) {
     clear(*numbers, v);
   }

@@ -34,7 +34,7 @@ struct Closed {
         evaluation(make_evaluation(assembly)) {
     for (const ContactPair& pair : detector.pairs(0)) {
       evaluate_positions(assembly, 0, state.view(), evaluation);
-      Contact at;
+      Constraint at;
       detector.contact(pair, state.view(), evaluation, at);
       if (at.gap > 1e-2) continue;
       ActiveContact& closed = contacts.list().emplace_back();
@@ -174,7 +174,7 @@ TEST(ActiveSet, ADiscThatRolls) {
 double largest_margin(const Closed& closed) {
   const auto& list = closed.contacts.list();
   const auto n = static_cast<Eigen::Index>(list.size());
-  Eigen::MatrixXd balance(list[0].at.columns, 2 * n);
+  Eigen::MatrixXd balance(list[0].at.columns(), 2 * n);
   Eigen::VectorXd force(2 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ActiveContact& contact = list[static_cast<std::size_t>(i)];
@@ -326,7 +326,7 @@ TEST(ActiveSet, CorrectionsAreTheSmallestInTheSenseOfTheMasses) {
   closed.state.v = {0.3, -0.2, 0.7};
   closed.contacts.list().pop_back();
   closed.update_and_factor();
-  const Contact at = closed[0].at;
+  const Constraint at = closed[0].at;
   ASSERT_NEAR(at.gap, 1e-3, 1e-15);
   std::vector<double> of_position(3, 0.0), of_velocity(3, 0.0);
   ASSERT_TRUE(closed.contacts.corrections(closed.assembly, closed.state.v.data(), of_position.data(),

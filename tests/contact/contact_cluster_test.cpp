@@ -51,7 +51,7 @@ protected:
   }
 
   Assembly assembly_;
-  std::vector<Contact> contacts_;
+  std::vector<Constraint> contacts_;
   SolverChain chain_;
 };
 

@@ -230,7 +230,7 @@ TEST(JointStops, SlideBouncesOnItsStopUntilItRests) {
     EXPECT_NEAR(impacts[i].time, time, 1e-10) << i;
     EXPECT_NEAR(impacts[i].velocity_before[0], -speed, 1e-10) << i;
     EXPECT_NEAR(impacts[i].impulse[0], 2.0 * (1.0 + e) * speed, 1e-10) << i;
-    EXPECT_EQ(impacts[i].contact.of.serial, stop.serial);
+    EXPECT_EQ(impacts[i].contact.a.serial, stop.serial);
     speed *= e;
     time += 2.0 * speed / a;
   }

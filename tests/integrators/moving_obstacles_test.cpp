@@ -247,10 +247,10 @@ TEST(MovingObstacles, GapsAreProjectedToWhereThePlaneIs) {
   const auto depth_of = [&detector](const Simulation& run) {
     Evaluation evaluation = make_evaluation(run.assembly());
     evaluate_positions(run.assembly(), 0, run.state().view(), evaluation);
-    std::vector<Contact> contacts;
+    std::vector<Constraint> contacts;
     detector.find(0, run.state().view(), evaluation, 0.0, contacts);
     double depth = 0.0;
-    for (const Contact& contact : contacts) {
+    for (const Constraint& contact : contacts) {
       for (const ContactRecord& record : run.report().contacts) {
         if (record.key == contact.key) depth = std::max(depth, -contact.gap);
       }

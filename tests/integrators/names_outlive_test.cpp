@@ -103,7 +103,7 @@ TEST(NamesOutlive, EventsOfRemovedParts) {
 
 TEST(NamesOutlive, ReportsAndStatesOfTimeStepping) {
   Simulation simulation(scene(), TimeStepping{.step = 1e-3});
-  std::vector<ContactKey> keys;
+  std::vector<ConstraintKey> keys;
   std::vector<std::string> names;
   simulation.observe([&](const Simulation& now) {
     for (const ContactRecord& contact : now.report().contacts) {
@@ -189,9 +189,9 @@ TEST(NamesOutlive, KeysMadeByHand) {
   Simulation simulation(scene(), EventDriven{});
   using Owner = FeatureKey::Owner;
   const FeatureKey floor{Owner::obstacle, 0, 0};
-  EXPECT_EQ(simulation.name(ContactKey{}), "no contact");
+  EXPECT_EQ(simulation.name(ConstraintKey{}), "no contact");
   EXPECT_EQ(simulation.name({{Owner::body, 0, 0}, floor}), "particle 'ball' on half-plane 'floor'");
-  const std::vector<ContactKey> bad{{{Owner::body, 99, 0}, floor},
+  const std::vector<ConstraintKey> bad{{{Owner::body, 99, 0}, floor},
                                     {{Owner::shape, 99, 0}, floor},
                                     {{Owner::shape, 0, 7}, floor},
                                     {{Owner::joint, 99, 0}, {Owner::joint, 99, 0}},
@@ -204,7 +204,7 @@ TEST(NamesOutlive, KeysMadeByHand) {
                                     {{Owner::body, 0, 0}, {static_cast<Owner>(77), 0, 0}},
                                     {{Owner::body, 0, 0}, {}},
                                     {{Owner::body, none, 0}, floor}};
-  for (const ContactKey& key : bad) {
+  for (const ConstraintKey& key : bad) {
     EXPECT_MODEL_ERROR((void)simulation.name(key), "contact:", "allowed");
     EXPECT_MODEL_ERROR((void)contact_name(System(), key), "contact:", "allowed");
   }

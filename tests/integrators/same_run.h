@@ -56,7 +56,7 @@ inline std::vector<std::uint64_t> bits_of(const carom::Simulation& simulation) {
   bits.push_back(static_cast<std::uint64_t>(companion.grid_steps));
   for (const auto& [key, mode] : companion.modes) {
     bits.insert(bits.end(),
-                {key.of.serial, key.of.feature, key.against.serial, static_cast<std::uint64_t>(mode)});
+                {key.a.serial, key.a.feature, key.b.serial, static_cast<std::uint64_t>(mode)});
   }
   return bits;
 }

@@ -54,18 +54,19 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   const Detector detector(model.assembly);
   const Index component = 0;  // all hang together
   ASSERT_TRUE(detector.has_dry_friction(component));
-  std::vector<Contact> found;
+  std::vector<Constraint> found;
   detector.find_joint_friction(component, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 1u);
-  const Contact& contact = found[0];
+  const Constraint& contact = found[0];
   EXPECT_TRUE(contact.has_dry_friction());
-  EXPECT_EQ(contact.begin_row(), 1);
+  EXPECT_EQ(contact.type, ConstraintType::joint_friction);
+  EXPECT_EQ(contact.rows, 1);
   EXPECT_EQ(contact.friction_bound, 0.5);
   EXPECT_EQ(contact.law.sticking_friction(), 1.5);
   EXPECT_EQ(contact.gap, 0.0);
   EXPECT_EQ(detector.name(contact.key), wheel.system.name(friction));
-  EXPECT_EQ(contact.velocity(0, model.state.v.data()), 0.0);
-  EXPECT_DOUBLE_EQ(contact.velocity(1, model.state.v.data()), model.state.rate(slide));
+  EXPECT_EQ(contact.normal_velocity(model.state.v.data()), 0.0);
+  EXPECT_DOUBLE_EQ(contact.tangential_velocity(model.state.v.data()), model.state.rate(slide));
   EXPECT_TRUE(detector.pairs(component).empty());
   EXPECT_EQ(detector.rubbing(component).size(), 1u);
 }

@@ -59,8 +59,8 @@ inline InclineRun run_incline(const scenes::Incline& incline, bool is_bar, doubl
   }
   carom::Simulation simulation(std::move(system), mode);
   InclineRun run;
-  const auto add = [&](double time, const carom::ContactKey& key, const auto& at) {
-    const bool upper = is_bar ? key.of.feature == 1 : at.body == pair.upper;
+  const auto add = [&](double time, const carom::ConstraintKey& key, const auto& at) {
+    const bool upper = is_bar ? key.a.feature == 1 : at.body == pair.upper;
     run.impacts.push_back({time, upper, std::string(to_string(at.mode)), at.velocity_before[0]});
   };
   simulation.observe([&](const carom::Simulation& now) {

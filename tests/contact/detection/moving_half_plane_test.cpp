@@ -69,19 +69,19 @@ public:
 
   std::size_t pairs() const { return pairs_.size(); }
   /// The contact of a pair at a time, body and particle moving along their course.
-  Contact contact(std::size_t pair, double t) {
+  Constraint contact(std::size_t pair, double t) {
     go_to(t);
-    Contact contact;
+    Constraint contact;
     detector_.contact(pairs_[pair].pair, state_.view(), evaluation_, contact);
     return contact;
   }
   /// The same from a step of length h that begins there.
-  Contact contact_of_step(std::size_t pair, double t, double h) {
+  Constraint contact_of_step(std::size_t pair, double t, double h) {
     go_to(t);
     ObstaclePlaces now, after;
     detector_.place(t, now);
     detector_.place(t + h, after);
-    std::vector<Contact> found;
+    std::vector<Constraint> found;
     for (Index component = 0; component < assembly_.components().size(); ++component) {
       detector_.find(component, state_.view(), evaluation_, now, &after, infinity, found);
     }
@@ -158,7 +158,7 @@ TEST(MovingHalfPlane, NormalVelocityIsTheRateOfTheGap) {
     const double t = random.uniform(-2.0, 2.0);
     for (std::size_t pair = 0; pair < model.pairs(); ++pair) {
       const double expected = rate([&](double time) { return model.contact(pair, time).gap; }, t);
-      const Contact contact = model.contact(pair, t);
+      const Constraint contact = model.contact(pair, t);
       EXPECT_NEAR(contact.velocity(0, model.state().v.data()), expected, by_differences);
     }
   }
@@ -174,7 +174,7 @@ TEST(MovingHalfPlane, AccelerationIsTheRateOfTheContactVelocity) {
       for (int row = 0; row < 2; ++row) {
         const double expected = rate(
             [&](double time) {
-              const Contact contact = model.contact(pair, time);
+              const Constraint contact = model.contact(pair, time);
               return contact.velocity(row, model.state().v.data());
             },
             t);
@@ -192,7 +192,7 @@ TEST(MovingHalfPlane, ItsVelocityIsThatOfThePlaceThatIsTouched) {
     const Motion plane(random);
     MovingPlane model(random, radius, plane);
     const double t = random.uniform(-2.0, 2.0), h = random.uniform(0.0, 0.1);
-    const Contact contact = model.contact_of_step(0, t, h);
+    const Constraint contact = model.contact_of_step(0, t, h);
     const Vec<2> n(contact.row(0)[0], contact.row(0)[1]);
     // The arm from the centre of mass to the place that is touched, from the rows of the jacobian.
     const double rx = contact.row(0)[2], ry = -contact.row(1)[2];
@@ -209,9 +209,9 @@ TEST(MovingHalfPlane, ItsVelocityIsThatOfThePlaceThatIsTouched) {
     for (int row = 0; row < 2; ++row) {
       const auto at = static_cast<std::size_t>(row);
       const Vec<2> direction = row == 0 ? n : tangent;
-      EXPECT_NEAR(contact.obstacle_velocity[at],
+      EXPECT_NEAR(contact.surface_velocity[at],
                   rate([&](double time) { return direction.dot(where(time)); }, t), by_differences);
-      EXPECT_NEAR(contact.obstacle_velocity_after[at],
+      EXPECT_NEAR(contact.surface_velocity_after[at],
                   rate([&](double time) { return direction.dot(where(time)); }, t + h), by_differences);
     }
   }

@@ -86,7 +86,7 @@ void expect_run_right(const Json& data, bool is_bar, const EventDriven& options,
     const EventRecord& found = simulation.events()[i];
     EXPECT_EQ(found.kind, EventKind::impact);
     EXPECT_EQ(std::string(to_string(found.mode)), reference_mode(impacts[i])) << i;
-    EXPECT_EQ(is_bar ? found.contact.of.feature == 1 : found.body == second,
+    EXPECT_EQ(is_bar ? found.contact.a.feature == 1 : found.body == second,
               reference_upper(impacts[i], is_bar));
     errors.time(found.time, impacts[i].at("t").get<double>(), found.time);
     for (std::size_t row = 0; row < 2; ++row) {  // the reference has the tangent first

@@ -27,13 +27,13 @@ double deepest(const Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   Evaluation evaluation = make_evaluation(assembly);
   const Detector detector(assembly);
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, simulation.state().view(), evaluation);
     detector.find(component, simulation.state().view(), evaluation, 0.0, contacts);
   }
   double depth = 0.0;
-  for (const Contact& contact : contacts) {
+  for (const Constraint& contact : contacts) {
     for (const ContactRecord& record : simulation.report().contacts) {
       if (record.key == contact.key) depth = std::min(depth, contact.gap);
     }

@@ -1,4 +1,4 @@
-#include <carom/core/contact.h>
+#include <carom/core/constraint.h>
 
 namespace carom {
 

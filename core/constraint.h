@@ -1,0 +1,193 @@
+#pragma once
+
+/// \file
+/// A constraint that pushes or rubs: which features meet, how deep, and the map from the velocities of its
+/// bodies to the velocities along its rows.
+
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+#include <carom/core/surface.h>
+
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <string_view>
+
+namespace carom {
+
+/// One feature of something that can touch.
+struct FeatureKey {
+  /// What the feature belongs to.
+  enum class Owner : std::uint8_t { body, shape, obstacle, joint };
+
+  Owner owner = Owner::body;  ///< what it belongs to
+  Index serial = none;        ///< serial number of the owner
+  Index feature = 0;          ///< number of the feature within its owner
+  friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
+};
+
+/// Identity of a constraint: two features, the lesser first. Of a limit of a joint, and of friction in one,
+/// both are that of the joint. It keys reports, modes and warm starts and survives edits and checkpoints.
+struct ConstraintKey {
+  FeatureKey a;  ///< feature of a body or shape, or of a joint
+  FeatureKey b;  ///< feature of the other body, of what is fixed to the ground, or of the same joint
+  friend auto operator<=>(const ConstraintKey&, const ConstraintKey&) = default;
+};
+
+/// State of one planar contact after its problem is solved.
+enum class ContactMode : std::uint8_t {
+  open,           ///< no impulse
+  stick,          ///< mean tangential velocity zero
+  slip_positive,  ///< mean tangential velocity > 0, friction -mu P_n
+  slip_negative,  ///< mean tangential velocity < 0, friction +mu P_n
+  slip            ///< slipping in the plane of a spatial contact
+};
+
+/// Name of a mode: "open", "stick", "slip+", "slip-", "slip".
+[[nodiscard]] CAROM_API std::string_view to_string(ContactMode mode);
+
+/// Origin of a constraint. It says which sets the impulses along its rows lie in; the rest is the same for
+/// all.
+enum class ConstraintType : std::uint8_t {
+  contact,         ///< row 0 along the normal, P_n >= 0; the others tangential, bounded by friction times P_n
+  limit,           ///< one row, P >= 0: limit of a joint's coordinate
+  joint_friction,  ///< one row, |P| <= friction times friction_bound: dry friction along a joint's coordinate
+  motor_bound      ///< likewise: a motor whose force has a largest size
+};
+
+/// A constraint of one to three bodies at one configuration, against each other or against what is fixed to
+/// the ground. Row 0 of a contact is the normal direction (from `b` of the key towards `a`), the others are
+/// tangential (in the plane: the normal turned clockwise).
+struct Constraint {
+  static constexpr int max_rows = 3;
+  static constexpr int max_bodies = 3;
+  static constexpr int max_columns = 12;  ///< of two bodies in space; three in the plane have 9
+
+  /// Columns of one body.
+  struct Block {
+    Index body = none;  ///< in the order of assembly
+    Index v = 0;        ///< its first velocity
+    int columns = 0;    ///< its velocities
+  };
+
+  ConstraintKey key;                                    ///< identity
+  ConstraintType type = ConstraintType::contact;        ///< origin
+  int rows = 0;                                         ///< of a contact 2 in the plane, 3 in space
+  int bodies = 0;                                       ///< blocks in use
+  std::array<Block, std::size_t{max_bodies}> blocks{};  ///< bodies whose velocities have columns
+  Index source = none;          ///< of a limit and of friction in a joint: its number in the detector
+  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
+                                ///< or impulse
+  double gap = 0.0;             ///< negative where violated [m]
+  /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
+  /// with which it may still approach at its end [m/s]. Else 0.
+  double allowed_approach = 0.0;
+  Surface law;  ///< coefficients
+  /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
+  /// law.sticking_friction() where it stuck in the step before.
+  double friction = 0.0;
+  std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
+      jacobian{};  ///< row-major, stride max_columns, block after block
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      surface_velocity{};  ///< of the moving ground shape where it is touched, along the rows [m/s]
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      surface_velocity_after{};  ///< likewise of the same place at the end of a time step; else the same as
+                                 ///< surface_velocity [m/s]
+
+  /// True of friction in a joint and of what is like it: a row without a normal.
+  [[nodiscard]] bool has_dry_friction() const { return type >= ConstraintType::joint_friction; }
+  /// Row along which it may stick: the first tangential one.
+  [[nodiscard]] int tangent_row() const { return has_dry_friction() ? 0 : 1; }
+  /// True if a row is bounded by friction.
+  [[nodiscard]] bool is_tangential(int i) const { return i >= tangent_row(); }
+  /// Restitution along a row.
+  [[nodiscard]] double restitution(int i) const {
+    return is_tangential(i) ? law.tangential_restitution : law.normal_restitution;
+  }
+  /// Its first body.
+  [[nodiscard]] Index body() const { return blocks[0].body; }
+  /// Appends a body. \param v first of its velocities \param columns their number
+  void add_body(Index body, Index v, int columns) {
+    blocks[static_cast<std::size_t>(bodies++)] = {body, v, columns};
+  }
+  /// Number of columns of all bodies.
+  [[nodiscard]] int columns() const {
+    int sum = 0;
+    for (int b = 0; b < bodies; ++b) sum += blocks[static_cast<std::size_t>(b)].columns;
+    return sum;
+  }
+  /// Row i of the Jacobian, max_columns numbers.
+  [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
+  [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }
+  /// Row i times numbers of the bodies. \param numbers an array over all velocities
+  [[nodiscard]] double times(int i, const double* numbers) const {
+    double sum = 0.0;
+    for_columns(i, [&](double h, Index v) { sum += h * numbers[v]; });
+    return sum;
+  }
+  /// Adds row i, transposed, times a number. \param out an array over all velocities
+  void add_transposed(int i, double factor, double* out) const {
+    for_columns(i, [&](double h, Index v) { out[v] += factor * h; });
+  }
+  /// Velocity along row i: of the bodies, against the surface. \param velocities of all bodies
+  [[nodiscard]] double velocity(int i, const double* velocities) const {
+    return times(i, velocities) - surface_velocity[static_cast<std::size_t>(i)];
+  }
+  /// Sum of the magnitudes that the velocity along row i is the sum of [m/s]: what its rounding is to be
+  /// measured with. \param velocities of all bodies
+  [[nodiscard]] double speed(int i, const double* velocities) const {
+    double sum = std::abs(surface_velocity[static_cast<std::size_t>(i)]);
+    for_columns(i, [&](double h, Index v) { sum += std::abs(h * velocities[v]); });
+    return sum;
+  }
+  /// Speed of sliding [m/s]. \param velocities of all bodies
+  [[nodiscard]] double sliding_speed(const double* velocities) const {
+    const double along = velocity(tangent_row(), velocities);
+    return rows < 3 ? std::abs(along) : std::hypot(along, velocity(2, velocities));
+  }
+  /// Velocity along the normal; 0 of a row without one. \param velocities of all bodies
+  [[nodiscard]] double normal_velocity(const double* velocities) const {
+    return has_dry_friction() ? 0.0 : velocity(0, velocities);
+  }
+  /// Velocity along the tangent of the plane, or along the coordinate of the joint; 0 of a limit.
+  [[nodiscard]] double tangential_velocity(const double* velocities) const {
+    return velocity(tangent_row(), velocities);
+  }
+  /// Rates of both. \param accelerations of all bodies
+  [[nodiscard]] double normal_acceleration(const double* accelerations) const {
+    return has_dry_friction() ? 0.0 : acceleration(0, accelerations);
+  }
+  [[nodiscard]] double tangential_acceleration(const double* accelerations) const {
+    return acceleration(tangent_row(), accelerations);
+  }
+  /// Adds a force, or impulse, in the plane to loads. \param normal of a row without one: nothing
+  /// \param out an array over all velocities
+  void add_force(double normal, double tangential, double* out) const {
+    if (!has_dry_friction()) add_transposed(0, normal, out);
+    add_transposed(tangent_row(), tangential, out);
+  }
+  /// Velocity along row i after the time step or impact. \param velocities of all bodies, then
+  [[nodiscard]] double velocity_after(int i, const double* velocities) const {
+    return times(i, velocities) - surface_velocity_after[static_cast<std::size_t>(i)];
+  }
+  /// Rate of the velocity along row i. \param accelerations of all bodies
+  [[nodiscard]] double acceleration(int i, const double* accelerations) const {
+    return times(i, accelerations) + drift[static_cast<std::size_t>(i)];
+  }
+
+private:
+  /// Calls f(number of row i, its place among all velocities).
+  template <class F>
+  void for_columns(int i, F&& f) const {
+    const double* h = row(i);
+    for (int b = 0; b < bodies; ++b) {
+      const Block& block = blocks[static_cast<std::size_t>(b)];
+      for (int c = 0; c < block.columns; ++c) f(*h++, block.v + static_cast<Index>(c));
+    }
+  }
+};
+
+}  // namespace carom
