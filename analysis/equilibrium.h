@@ -45,7 +45,7 @@ struct JointForce {
 
 /// Forces of a closed contact or a limit in equilibrium.
 struct ContactForce {
-  ConstraintKey key;                      ///< identity
+  ConstraintKey key;                   ///< identity
   std::string name;                    ///< "particle 'lower' on half-plane #0"
   double normal = 0.0;                 ///< force, >= 0 [N; N m of the stop of an angle]
   std::array<double, 2> tangential{};  ///< along the contact's other rows [N]; one of them in the plane

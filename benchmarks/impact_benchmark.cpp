@@ -3,7 +3,7 @@
 // seconds.
 
 #include <carom/carom.h>
-#include <carom/contact/contact_cluster.h>
+#include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/core/assembly.h>
 
@@ -150,12 +150,13 @@ public:
   }
   Result operator()(std::size_t body) {
     const carom::Constraint& contact = contacts_[body];
-    cluster_.build(assembly_, {&contact, 1}, velocity_.data());
+    cluster_.build({&contact, 1}, velocity_.data());
+    cluster_.respond(masses_);
     cluster_.set_free_velocity(velocity_.data());
     if (!cluster_.solve(chain_).usable()) throw std::logic_error("impact not solved");
     std::array<double, 3> after{};
     for (std::size_t k = 0; k < 3; ++k) after[k] = velocity_[contact.blocks[0].v + k];
-    cluster_.apply(after.data() - contact.blocks[0].v);
+    cluster_.map().add_velocities(after.data() - contact.blocks[0].v);
     return {cluster_.impulses()[0], cluster_.impulses()[1], after[1] + contact.row(0)[2] * after[2],
             after[0] + contact.row(1)[2] * after[2]};
   }
@@ -172,7 +173,8 @@ private:
   carom::Assembly assembly_;
   std::vector<carom::Constraint> contacts_;
   std::vector<double> velocity_;
-  carom::ContactCluster cluster_;
+  carom::MassResponse masses_{assembly_};
+  carom::IslandProblem cluster_;
   carom::SolverChain chain_;
 };
 

@@ -129,7 +129,7 @@ void FrictionBoundSolver::find_null_space(const ContactProblem& problem) {
 }
 
 void FrictionBoundSolver::take_forces(const FrictionBoundProblem& problem, bool least) {
-  ContactCluster& cluster = problem.cluster;
+  IslandProblem& cluster = problem.cluster;
   null_.clear();
   if (least) {
     found_.assign(cluster.impulses().begin(), cluster.impulses().end());
@@ -169,7 +169,7 @@ bool FrictionBoundSolver::settle(const FrictionBoundProblem& problem, SolverChai
       const double before = contact.friction_bound;
       change = std::max(change, problem.pressure.press(contact, problem.at));
       iteration.add(before, contact.friction_bound);
-      problem.cluster.press(c);
+      problem.cluster.update_bound(c);
     }
     if (iteration.settled(change)) return true;
     if (!iteration.accelerates()) continue;
@@ -177,7 +177,7 @@ bool FrictionBoundSolver::settle(const FrictionBoundProblem& problem, SolverChai
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       if (!problem.pressure.depends_on_joint_force(problem.contacts[c])) continue;
       problem.contacts[c].friction_bound = iteration.guess(bound++);
-      problem.cluster.press(c);
+      problem.cluster.update_bound(c);
     }
   }
   return false;

@@ -4,8 +4,8 @@
 /// Problem: friction in joints is bound by the forces in the joints, which follow from the impulses of
 /// contact and of friction. Find bounds, impulses and forces that agree.
 
-#include <carom/contact/contact_cluster.h>
 #include <carom/contact/friction_bounds.h>
+#include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
@@ -19,12 +19,12 @@ namespace carom {
 
 /// One problem of contacts with friction in joints. All members must outlive the calls.
 struct FrictionBoundProblem {
-  ContactCluster& cluster;
+  IslandProblem& cluster;
   std::span<Constraint> contacts;  ///< those of the cluster
-  FrictionBounds& pressure;     ///< of friction in the joints
-  JointView at;                 ///< where forces of joints are looked at
-  double duration = 1.0;        ///< as for FrictionBounds::take() [s]
-  double size = 0.0;            ///< likewise
+  FrictionBounds& pressure;        ///< of friction in the joints
+  JointView at;                    ///< where forces of joints are looked at
+  double duration = 1.0;           ///< as for FrictionBounds::take() [s]
+  double size = 0.0;               ///< likewise
   /// Multipliers of all rows of the joints under the impulses that the cluster has.
   std::function<const double*()> multipliers;
 };

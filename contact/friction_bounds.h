@@ -25,7 +25,9 @@ public:
   /// True if no friction is bound by the force of a joint.
   [[nodiscard]] bool empty() const { return bearings_.empty(); }
   /// True if that of a contact is.
-  [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const { return find(contact) != nullptr; }
+  [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const {
+    return find(contact) != nullptr;
+  }
   /// The rows, among those of the component, whose multipliers bound that of a contact; empty if none do.
   [[nodiscard]] Range rows(const Constraint& contact) const;
   /// Takes note of the multipliers of all rows of the component's joints: forces, or impulses over a duration

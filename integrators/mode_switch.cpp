@@ -1,6 +1,7 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
-#include <carom/contact/contact_cluster.h>
+#include <carom/contact/island_partition.h>
+#include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/integrators/mode_switch.h>
@@ -48,8 +49,10 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   State trial = state;
   Evaluation evaluation = make_evaluation(assembly);
   SolverChain chain;
-  ContactCluster cluster;
+  IslandProblem cluster;
+  IslandPartition partition;
   GapProjection projection;
+  const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
   ObstaclePlaces places;
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
@@ -61,28 +64,21 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
     detector.find(component, trial.view(), evaluation, 0.0, contacts);
     JointConstraints joints(assembly, component);
     joints.update_and_factor({trial.view(), evaluation.rotation.data()});
-    std::vector<Constraint> in_order = contacts;  // what answers together stands together
-    const auto group = [&](const Constraint& contact) { return assembly.mechanism(contact.body()); };
-    std::stable_sort(in_order.begin(), in_order.end(),
-                     [&](const Constraint& a, const Constraint& b) { return group(a) < group(b); });
-    for (std::size_t first = 0; first < in_order.size();) {
-      std::size_t last = first + 1;
-      while (last < in_order.size() && group(in_order[last]) == group(in_order[first])) ++last;
-      const std::span<const Constraint> of_body(in_order.data() + first, last - first);
-      first = last;
+    MassResponse masses(assembly);
+    JointResponse with_joints(joints);
+    const auto islands =
+        partition.arrange(contacts, bodies, [&](Index body) { return assembly.mechanism(body); });
+    for (const Range island : islands) {
+      const std::span<const Constraint> of_body(contacts.data() + island.begin, island.size());
       const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Constraint& contact) {
         return contact.normal_velocity(trial.v.data()) < 0.0;
       });
       if (!approaches) continue;
-      cluster.build(assembly, of_body, trial.v.data());
-      if (!joints.empty()) cluster.couple(joints);
+      cluster.build(of_body, trial.v.data());
+      cluster.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
       cluster.set_free_velocity(trial.v.data());
       if (!cluster.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
-      if (joints.empty()) {
-        cluster.apply(trial.v.data());
-      } else {
-        cluster.apply_coupled(trial.v.data());
-      }
+      cluster.map().add_velocities(trial.v.data());
       for (std::size_t c = 0; c < of_body.size(); ++c) {
         EventRecord& event = told.emplace_back();
         event.time = state.time;

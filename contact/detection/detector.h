@@ -170,7 +170,8 @@ private:
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
   [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
-  void add(const BodySlot& body, const Feature& feature, const Query& query, std::vector<Constraint>& out) const;
+  void add(const BodySlot& body, const Feature& feature, const Query& query,
+           std::vector<Constraint>& out) const;
   // Position of the centre of a feature from its body's centre of mass.
   template <int D>
   [[nodiscard]] static Vec<D> arm(const BodySlot& body, const Feature& feature, const Evaluation& evaluation);

@@ -104,7 +104,8 @@ void Detector::make_stop(Index number, const StateView& state, const Evaluation&
 std::vector<ContactPair> Detector::rubbing(Index component) const {
   std::vector<ContactPair> out;
   const Range range = of_component_[component].rubbing;
-  for (Index i = range.begin; i < range.end; ++i) out.push_back({stops_[i].bodies.front(), none, none, none, i});
+  for (Index i = range.begin; i < range.end; ++i)
+    out.push_back({stops_[i].bodies.front(), none, none, none, i});
   return out;
 }
 

@@ -20,9 +20,8 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
     }
     // A centre of mass has no arm: an obstacle that turns can alone open such a contact.
     if (moving_ == 0) continue;
-    const auto obstacle = std::find_if(obstacles_.begin(), obstacles_.end(), [&key](const Obstacle& at) {
-      return at.serial == key.b.serial;
-    });
+    const auto obstacle = std::find_if(obstacles_.begin(), obstacles_.end(),
+                                       [&key](const Obstacle& at) { return at.serial == key.b.serial; });
     const BodyId body{key.a.serial, token};
     if (obstacle == obstacles_.end() || obstacle->moving == none || !layout.contains(body)) continue;
     out.add(key, layout.index(body));

@@ -58,7 +58,7 @@ private:
 
   double step_ = 0.0;
   std::vector<ConstraintKey> keys_;  // ascending
-  std::vector<Index> centres_;    // likewise
+  std::vector<Index> centres_;       // likewise
 };
 
 }  // namespace carom

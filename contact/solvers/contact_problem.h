@@ -43,6 +43,7 @@ public:
 
   /// W, row-major, rows() x rows().
   [[nodiscard]] std::span<const double> matrix() const { return w_; }
+  [[nodiscard]] std::span<double> matrix() { return w_; }
 
   /// b = gamma_f + E gamma^- [m/s].
   [[nodiscard]] std::span<const double> vector() const { return b_; }

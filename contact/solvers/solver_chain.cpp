@@ -7,10 +7,12 @@
 #include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/contact/solvers/solution_list.h>
+#include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -50,9 +52,12 @@ struct SolverChain::Workspace {
   ProjectionSolver projection;
   SolutionList list;
   NewtonPolish polish;
+  WarmStart warm_start;
   ChainStatistics statistics;
   std::vector<double> trial, trial_xi, xi;
   std::vector<ContactMode> modes;
+  std::vector<double> start;  // impulses of a start
+  std::vector<ContactMode> start_modes;
 
   // What the solvers tried so far have brought.
   struct Attempt {
@@ -286,6 +291,34 @@ ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double
   work.conclude(problem, impulse, attempt);
   work.count(attempt);
   return report;
+}
+
+void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution) {
+  Workspace& work = *work_;
+  ContactReport& report = solution.report;
+  const bool warm = std::exchange(solution.known, true) && report.usable();
+  const bool several = problem.groups().size() > 1;
+  solution.changed_modes = false;
+  Residual found;
+  const auto keep = [&](std::span<const ContactMode> modes, std::vector<double>& impulse) {
+    if (!work.warm_start.keep_modes(problem, modes, impulse, found)) return false;
+    report.residual = found.value;
+    report.worst_group = found.group;
+    return true;
+  };
+  if (warm && several && keep(solution.modes, solution.impulse)) return;
+  if (warm) {
+    work.start.assign(solution.impulse.begin(), solution.impulse.end());
+    work.start_modes.assign(solution.modes.begin(), solution.modes.end());
+  }
+  report = solve(problem, solution.impulse);
+  solution.modes.assign(work.modes.begin(), work.modes.end());
+  solution.changed_modes = warm && solution.modes != work.start_modes;
+  if (!solution.changed_modes || several || !keep(work.start_modes, work.start)) return;
+  if (report.usable()) report.outcome = Outcome::several_solutions;
+  solution.impulse.swap(work.start);
+  solution.modes.swap(work.start_modes);
+  solution.changed_modes = false;
 }
 
 ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& problem,

@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace carom {
 
@@ -46,6 +47,15 @@ struct ContactReport {
   [[nodiscard]] bool was_tried(SolverId id) const { return (tried >> static_cast<unsigned>(id) & 1u) != 0; }
 };
 
+/// Answer of a contact problem, and what solvers start from in the next one of the same rows.
+struct ContactSolution {
+  std::vector<double> impulse;     ///< P, by row [N s]
+  std::vector<ContactMode> modes;  ///< by group
+  ContactReport report;
+  bool known = false;          ///< a start: an answer, usable or not, to a problem of the same rows
+  bool changed_modes = false;  ///< the answer has other modes than what it started from
+};
+
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
 /// by principal pivoting (Johansson 1999), then Lemke, then projection, and up to three by enumeration of
 /// the modes when all else failed. Of several solutions of one contact the one with the smallest normal
@@ -65,6 +75,12 @@ public:
   /// attempt (zero where it is proved that there is none). The report's residual is that of what was written.
   /// Throws std::invalid_argument when `impulse` has another size or the problem is not grouped.
   [[nodiscard]] ContactReport solve(const ContactProblem& problem, std::span<double> impulse);
+
+  /// Likewise from a start (if `solution.known`), which it replaces. Several contacts keep to the modes of
+  /// the start as long as they are those of a solution, and solvers are spared; one contact is asked for its
+  /// solution first, which costs less. Only solvers can tell that there are several solutions; the report
+  /// keeps to their word. \param solution `impulse` sized rows()
+  void solve(const ContactProblem& problem, ContactSolution& solution);
 
   /// The same by one solver alone, polished and judged as in the chain. A solver that is not made for the
   /// problem answers not_solved ("not applicable") with zero impulses. The statistics are left alone.

@@ -7,8 +7,8 @@
 ///
 /// A component goes at its own pace: it makes steps as long as its flow likes and is looked at in between.
 
-#include <carom/contact/contact_cluster.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
@@ -43,7 +43,7 @@ struct CAROM_API DriverWorkspace {
   MotionWorkspace motion;
   FlowPool flows;  ///< a component has one in its turn, and between turns if it cannot do without
   SolverChain chain;
-  ContactCluster cluster;
+  IslandProblem cluster;
   ModeDecision decision;
   std::vector<Constraint> contacts;  // of all pairs of a component
   std::vector<Constraint> touching;  // of one body
@@ -192,7 +192,7 @@ private:
   [[noreturn]] void fail_loads();
   [[noreturn]] void fail_flow(const SolverError& error);
   [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
-                         const ContactCluster* cluster = nullptr) const;
+                         const IslandProblem* cluster = nullptr) const;
 
   // Forces that have outgrown all others by this are infinite nearby: W_nn - s mu W_nt has fallen to the
   // inverse part of what it was.

@@ -269,7 +269,7 @@ void ClockGroup::count_event() {
 }
 
 void ClockGroup::fail(const std::string& what, std::vector<std::string> parts,
-                      const ContactCluster* cluster) const {
+                      const IslandProblem* cluster) const {
   std::string message = "event-driven at t = " + to_text(time_) + " s: " + what;
   if (parts.empty()) {
     const Index body = assembly_->components()[motion_.component()].bodies.begin;

@@ -26,7 +26,8 @@ EnergyFlow line_of(EventKind kind, int row) {
 }  // namespace
 
 /// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
-std::string ClockGroup::record_approach(const std::vector<Constraint>& contacts, const double* velocity) const {
+std::string ClockGroup::record_approach(const std::vector<Constraint>& contacts,
+                                        const double* velocity) const {
   const auto slower = [&](const Constraint& a, const Constraint& b) {
     return a.normal_velocity(velocity) > b.normal_velocity(velocity);
   };
@@ -87,9 +88,9 @@ void ClockGroup::resolve_body(std::size_t first, std::size_t last, double fastes
   const bool captured = fastest <= options_.capture_speed;
   if (captured) take_captured(first, last);
   const double energy_before = motion_.kinetic_energy(touching.front().body());
-  ContactCluster& cluster = work_->cluster;
-  cluster.build(*assembly_, touching, velocity);
-  motion_.couple(cluster);
+  IslandProblem& cluster = work_->cluster;
+  cluster.build(touching, velocity);
+  motion_.respond(cluster);
   cluster.set_free_velocity(velocity);
   const bool solved = motion_.solve(cluster, touching, work_->chain);
   // Slower than the capture speed all that touches closes anyway.
@@ -104,7 +105,7 @@ void ClockGroup::resolve_body(std::size_t first, std::size_t last, double fastes
     if (cluster.report().outcome == Outcome::no_solution) what += "; " + record_approach(touching, velocity);
     fail(what, std::move(names), &cluster);
   }
-  motion_.apply(cluster, velocity);
+  cluster.map().add_velocities(velocity);
   const Range v = assembly_->components()[motion_.component()].v;
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));
@@ -167,15 +168,15 @@ void ClockGroup::close_captured(EventBalance& balance) {
 }
 
 void ClockGroup::book_impact(EventKind kind, double energy_before, EventBalance& balance) {
-  const ContactCluster& cluster = work_->cluster;
+  const IslandProblem& cluster = work_->cluster;
   const MotionWorkspace& work = work_->motion;
   double gain = 0.0, scale = 0.0;
-  const double energy_after = motion_.kinetic_energy(cluster.contacts().front().body());
+  const double energy_after = motion_.kinetic_energy(cluster.constraints().front().body());
   // Before those of this instant are remembered.
   const double pile_up =
       kind == EventKind::accumulation ? accumulation_time() : std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-    const Constraint& contact = cluster.contacts()[c];
+  for (std::size_t c = 0; c < cluster.constraints().size(); ++c) {
+    const Constraint& contact = cluster.constraints()[c];
     if (contact.has_dry_friction()) {
       const auto place = static_cast<std::size_t>(cluster.first_row(c));
       const double before = cluster.before()[place], after = contact.tangential_velocity(work.trial.v.data());
@@ -215,8 +216,8 @@ void ClockGroup::book_impact(EventKind kind, double energy_before, EventBalance&
   balance.energy_gain += gain;
   if (!options_.refuse_energy_gain) return;
   std::vector<std::string> names;
-  names.reserve(cluster.contacts().size());
-  for (const Constraint& contact : cluster.contacts()) names.push_back(detector_->name(contact.key));
+  names.reserve(cluster.constraints().size());
+  for (const Constraint& contact : cluster.constraints()) names.push_back(detector_->name(contact.key));
   fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids", std::move(names),
        &cluster);
 }
@@ -228,7 +229,7 @@ void ClockGroup::record_joints(EventBalance& balance) {
   MotionWorkspace& work = work_->motion;
   const Range v = joints.velocities();
   std::fill(work.of_velocity.begin() + v.begin, work.of_velocity.begin() + v.end, 0.0);
-  work_->cluster.add_loads(1.0, work.of_velocity.data());
+  work_->cluster.map().add_loads(1.0, work.of_velocity.data());
   joints.apply_inverse_mass(work.of_velocity.data());
   work.multipliers.resize(joints.size());
   joints.project(JointLevel::change, work.of_velocity.data(), work.multipliers.data());
@@ -237,8 +238,8 @@ void ClockGroup::record_joints(EventBalance& balance) {
     balance.flows[EnergyFlow::external] -= work.multipliers[i] * joints.rate(i);
   }
   list_impulses(balance);
-  for (std::size_t c = 0; c < work_->cluster.contacts().size(); ++c) {
-    const Constraint& contact = work_->cluster.contacts()[c];
+  for (std::size_t c = 0; c < work_->cluster.constraints().size(); ++c) {
+    const Constraint& contact = work_->cluster.constraints()[c];
     if (!contact.has_dry_friction()) continue;
     JointReaction reaction;
     reaction.moment = work_->cluster.impulses()[static_cast<std::size_t>(work_->cluster.first_row(c))];

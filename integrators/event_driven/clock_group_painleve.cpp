@@ -99,13 +99,13 @@ Decision ClockGroup::decide_candidates(std::size_t first, std::size_t last) {
 /// Of the answers listed those with impulses that change something count; the number of the one that takes
 /// most energy, size() if there is none.
 std::size_t ClockGroup::most_dissipative_solution() {
-  ContactCluster& cluster = work_->cluster;
+  IslandProblem& cluster = work_->cluster;
   std::size_t best = solutions_.size();
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < solutions_.size(); ++s) {
     double change = 0.0, loss = 0.0;
-    for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-      const Constraint& contact = cluster.contacts()[c];
+    for (std::size_t c = 0; c < cluster.constraints().size(); ++c) {
+      const Constraint& contact = cluster.constraints()[c];
       for (int row = 0; row < contact.rows; ++row) {
         const auto place = static_cast<std::size_t>(cluster.first_row(c) + row);
         const double before = cluster.before()[place];
@@ -140,12 +140,12 @@ void ClockGroup::impact_without_collision(EventBalance& balance) {
     contact.surface_velocity_after[0] += rounding;
     names.push_back(detector_->name(candidates[i].at.key));
   }
-  ContactCluster& cluster = work_->cluster;
+  IslandProblem& cluster = work_->cluster;
   bool solved = false;
   std::size_t best = 0;
   do {
-    cluster.build(*assembly_, touching, velocity);
-    motion_.couple(cluster);
+    cluster.build(touching, velocity);
+    motion_.respond(cluster);
     cluster.set_free_velocity(velocity);
     solved = cluster.solve(work_->chain).usable() &&
              solutions_.enumerate(cluster.problem()) != Outcome::not_solved;
@@ -162,7 +162,7 @@ void ClockGroup::impact_without_collision(EventBalance& balance) {
   }
   cluster.set_impulses(solutions_.impulse(best));
   const double energy_before = motion_.kinetic_energy(touching.front().body());
-  motion_.apply(cluster, velocity);
+  cluster.map().add_velocities(velocity);
   const Range v = assembly_->components()[motion_.component()].v;
   std::copy(velocity + v.begin, velocity + v.end,
             y_.begin() + static_cast<std::ptrdiff_t>(motion_.v_begin()));

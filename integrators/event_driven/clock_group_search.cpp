@@ -252,8 +252,8 @@ ClockGroup::Rest ClockGroup::rest_of(const Found& rough) {
   if (rough.guard == Guard::slip) {
     const ActiveContact& closed = motion_.active().list()[rough.which];
     return {closed.slip_sign() * closed.at.tangential_velocity(velocity) - slip_level(rough.which),
-            closed.slip_sign() * closed.at.tangential_acceleration(work.acceleration.data()), speed_noise() / 16.0,
-            true};
+            closed.slip_sign() * closed.at.tangential_acceleration(work.acceleration.data()),
+            speed_noise() / 16.0, true};
   }
   if (rough.guard == Guard::kink) {
     motion_.read_guards(guards_now_);

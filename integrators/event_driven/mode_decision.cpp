@@ -35,14 +35,14 @@ Decision ModeDecision::decide(const Assembly& assembly, SmoothMotion& motion, st
   zero_.assign(assembly.layout()->v_size(), 0.0);
   Decision decision = Decision::failed;
   for (int round = 0; round < most_rounds; ++round) {
-    decision = solve(assembly, motion, candidates, acceleration, chain);
+    decision = solve(motion, candidates, acceleration, chain);
     if (decision == Decision::impossible || decision == Decision::failed) return decision;
     if (!revise(candidates)) return decision;
   }
   return decision;
 }
 
-Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
+Decision ModeDecision::solve(SmoothMotion& motion, std::span<Candidate> candidates,
                              const double* acceleration, SolverChain& chain) {
   contacts_.clear();
   taking_part_.clear();
@@ -63,11 +63,12 @@ Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std
     acceleration_.assign(acceleration, acceleration + zero_.size());
     return Decision::made;
   }
-  cluster_.build(assembly, contacts_, zero_.data());
-  motion.couple(cluster_);
+  cluster_.build(contacts_, zero_.data());
+  motion.respond(cluster_);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
-    if (sign != 0.0 && contacts_[c].type != ConstraintType::limit) cluster_.slide(c, -sign * contacts_[c].friction);
+    if (sign != 0.0 && contacts_[c].type != ConstraintType::limit)
+      cluster_.slide(c, -sign * contacts_[c].friction);
   }
   cluster_.set_free_velocity(acceleration);
   const bool presses =
@@ -89,7 +90,7 @@ Decision ModeDecision::solve(const Assembly& assembly, SmoothMotion& motion, std
     decision = Decision::several;
   }
   acceleration_.assign(acceleration, acceleration + zero_.size());
-  motion.apply(cluster_, acceleration_.data());
+  cluster_.map().add_velocities(acceleration_.data());
   return decision;
 }
 

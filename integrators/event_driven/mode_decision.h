@@ -7,7 +7,7 @@
 /// several, is Painleve's: it is told which contact and which quantity is to blame.
 
 #include <carom/contact/active_set.h>
-#include <carom/contact/contact_cluster.h>
+#include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
@@ -53,7 +53,7 @@ public:
   Decision decide(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
                   const double* acceleration, SolverChain& chain);
   /// The last problem, and what is known of its answer.
-  [[nodiscard]] const ContactCluster& cluster() const { return cluster_; }
+  [[nodiscard]] const IslandProblem& cluster() const { return cluster_; }
 
 private:
   struct Slide {
@@ -61,8 +61,8 @@ private:
     bool out = false;   // taken as open
     bool back = false;  // was taken to break loose or slip and did not
   };
-  Decision solve(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
-                 const double* acceleration, SolverChain& chain);
+  Decision solve(SmoothMotion& motion, std::span<Candidate> candidates, const double* acceleration,
+                 SolverChain& chain);
   bool revise(std::span<Candidate> candidates);
   void name_culprit(std::span<Candidate> candidates);
   bool keep_present(std::span<Candidate> candidates);
@@ -74,7 +74,7 @@ private:
   void complete_modes(SmoothMotion& motion, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
-  ContactCluster cluster_;
+  IslandProblem cluster_;
   SolutionList solutions_;
   std::vector<Constraint> contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem

@@ -86,7 +86,7 @@ bool ModeDecision::settle_bounds(SmoothMotion& motion, std::span<Candidate> cand
   for (int turn = 0; turn < BoundIteration::most_repetitions; ++turn) {
     if (!cluster_.solve(chain).usable()) return false;
     acceleration_.assign(acceleration, acceleration + zero_.size());
-    motion.apply(cluster_, acceleration_.data());
+    cluster_.map().add_velocities(acceleration_.data());
     read_modes(candidates, cluster_.impulses());
     complete_modes(motion, candidates);
     list_closed(candidates);
@@ -101,7 +101,7 @@ bool ModeDecision::settle_bounds(SmoothMotion& motion, std::span<Candidate> cand
       const ActiveContact& closed = active_[at++];
       if (!motion.depends_on_joint_force(contacts_[c])) continue;
       contacts_[c].friction_bound = guesses ? iteration.guess(bound++) : closed.at.friction_bound;
-      cluster_.press(c);
+      cluster_.update_bound(c);
     }
     if (settled) return true;
   }

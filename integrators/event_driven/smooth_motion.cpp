@@ -225,8 +225,8 @@ void SmoothMotion::rates(double time, const double* y, double* rates) {
   for (const ActiveContact& contact : active_.list()) {
     double& rubbed = contact.at.has_dry_friction() ? in_joints : sliding;
     rubbed -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
-    external += contact.normal * contact.at.surface_velocity[0] +
-                contact.tangential * contact.at.surface_velocity[1];
+    external +=
+        contact.normal * contact.at.surface_velocity[0] + contact.tangential * contact.at.surface_velocity[1];
   }
   if (joints_.depends_on_time()) {
     // Reactions do the work of what is prescribed: G v = -rate.

@@ -7,10 +7,10 @@
 ///     and the works of dashpots, friction, prescribed loads and moving obstacles.
 
 #include <carom/contact/active_set.h>
-#include <carom/contact/contact_cluster.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/friction_bound_solver.h>
 #include <carom/contact/friction_bounds.h>
+#include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/joint_constraints.h>
@@ -118,24 +118,22 @@ public:
   [[nodiscard]] const JointConstraints& joints() const { return joints_; }
   /// Bodies that answer an impulse on a body: itself, or all that joints bind to it, named by the first.
   [[nodiscard]] Index mechanism(Index body) const { return assembly_->mechanism(body); }
-  /// Lets a problem of contacts know what joints bind the bodies; the workspace holds the configuration.
-  void couple(ContactCluster& cluster);
+  /// Makes the matrix of a problem from the masses and joints; the workspace holds the configuration.
+  void respond(IslandProblem& problem);
   /// True if the bound of friction in a joint follows from forces.
   [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const {
     return pressure_.depends_on_joint_force(contact);
   }
   /// True if that of any in the component does.
   [[nodiscard]] bool bears_any() const { return !pressure_.empty(); }
-  /// Solves the problem of an impact that was coupled. Bounds of friction in joints that follow from impulses
+  /// Solves the problem of an impact. Bounds of friction in joints that follow from impulses
   /// are found by repetition; it is not solved where they do not settle. \param contacts those of the problem
-  bool solve(ContactCluster& cluster, std::span<Constraint> contacts, SolverChain& chain);
+  bool solve(IslandProblem& cluster, std::span<Constraint> contacts, SolverChain& chain);
   /// Forces of closed contacts in place of those at hand, as the flow finds them, with bounds of friction in
   /// joints as they are; then the bounds that follow, their largest relative change, and the margins of the
   /// forces. The workspace holds an evaluation without reactions. False where there are no forces.
   bool update_bounds(std::vector<ActiveContact>& contacts, std::vector<ForceMargin>& margins,
                      BoundIteration& iteration, double& change);
-  /// Adds what the impulses of a problem that was coupled do to the velocities.
-  void apply(const ContactCluster& cluster, double* velocity) const;
   /// Multipliers of the joints in the workspace's state, contacts acting as they do; the workspace holds an
   /// evaluation with reactions.
   [[nodiscard]] std::span<const double> joint_multipliers();

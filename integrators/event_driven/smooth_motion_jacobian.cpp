@@ -235,7 +235,8 @@ void SmoothMotion::differentiate_pressure(const ActiveContact& contact, std::vec
         difference_quotient([&](double value) { return pressed(forces[row], value); }, force, largest);
     forces[row] = force;
     for (std::size_t i = 0; i < count; ++i) {
-      const double load = -contact.slip_sign() * contact.friction * slope * contact.at.row(contact.at.tangent_row())[i];
+      const double load =
+          -contact.slip_sign() * contact.friction * slope * contact.at.row(contact.at.tangent_row())[i];
       const auto moved = static_cast<Index>(unknown(columns[i]));
       out.push_back({.row = moved, .column = row_multipliers_[row], .of_state = load});
     }

@@ -70,7 +70,7 @@ double SmoothMotion::largest_load() const {
   return largest;
 }
 
-bool SmoothMotion::solve(ContactCluster& cluster, std::span<Constraint> contacts, SolverChain& chain) {
+bool SmoothMotion::solve(IslandProblem& cluster, std::span<Constraint> contacts, SolverChain& chain) {
   MotionWorkspace& work = *work_;
   work.multipliers.resize(joints_.size());
   // Little is captured, so that nothing is allocated.
@@ -78,7 +78,7 @@ bool SmoothMotion::solve(ContactCluster& cluster, std::span<Constraint> contacts
     MotionWorkspace& at = *work_;
     const Range v = assembly_->components()[component_].v;
     std::fill(at.of_velocity.begin() + v.begin, at.of_velocity.begin() + v.end, 0.0);
-    cluster.add_loads(1.0, at.of_velocity.data());
+    cluster.map().add_loads(1.0, at.of_velocity.data());
     joints_.apply_inverse_mass(at.of_velocity.data());
     joints_.project(JointLevel::change, at.of_velocity.data(), at.multipliers.data());
     return static_cast<const double*>(at.multipliers.data());
@@ -108,16 +108,10 @@ std::span<const double> SmoothMotion::joint_multipliers() {
   return work.multipliers;
 }
 
-void SmoothMotion::couple(ContactCluster& cluster) {
-  if (!joints_.empty()) cluster.couple(joints_);
-}
-
-void SmoothMotion::apply(const ContactCluster& cluster, double* velocity) const {
-  if (joints_.empty()) {
-    cluster.apply(velocity);
-  } else {
-    cluster.apply_coupled(velocity);
-  }
+void SmoothMotion::respond(IslandProblem& problem) {
+  MassResponse masses(*assembly_);
+  JointResponse with_joints(joints_);
+  problem.respond(joints_.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
 }
 
 bool SmoothMotion::follow_jump(std::span<double> y, double noise, double& work) {

@@ -52,7 +52,7 @@ struct Companion {
   double next_step = 0.0;       ///< of step control; 0: as described [s]
   PresentLoads loads;           ///< at the state
   std::vector<std::pair<ConstraintKey, ContactMode>> modes;  ///< contacts of the last step, by key
-  std::vector<Rhythm> rhythms;                            ///< of the periodic events, in the order of every()
+  std::vector<Rhythm> rhythms;  ///< of the periodic events, in the order of every()
 };
 
 }  // namespace carom

@@ -46,7 +46,7 @@ inline constexpr std::size_t event_kind_count = 11;
 struct EventRecord {
   double time = 0.0;                        ///< [s]
   EventKind kind = EventKind::impact;       ///< what happened
-  ConstraintKey contact{};                     ///< of a contact
+  ConstraintKey contact{};                  ///< of a contact
   BodyId body{};                            ///< its body
   ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
   ElementId element{};                      ///< of a kink, or whose law of time jumps

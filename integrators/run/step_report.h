@@ -21,7 +21,7 @@ namespace carom {
 
 /// One contact that took part in a step. Directions: normal first, then tangential (one in the plane).
 struct ContactRecord {
-  ConstraintKey key;       ///< identity
+  ConstraintKey key;    ///< identity
   BodyId body;          ///< the body
   ObstacleId obstacle;  ///< what it touches
   int directions = 2;   ///< 2 in the plane, 3 in space

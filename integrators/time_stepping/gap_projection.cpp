@@ -27,6 +27,15 @@ double off(JointConstraints& joints, const State& state, const Evaluation& evalu
   return worst;
 }
 
+/// The first body of a component that a joint binds; `none` if there is none.
+Index first_jointed(const Assembly& assembly, Index component) {
+  const Range bodies = assembly.components()[component].bodies;
+  for (Index body = bodies.begin; body < bodies.end; ++body) {
+    if (assembly.is_jointed(body)) return body;
+  }
+  return none;
+}
+
 }  // namespace
 
 /// Contacts near enough to matter, of those that are asked for (both lists are in the detector's order).
@@ -65,19 +74,16 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
     find(component, detector, places, which, 2.0 * result.shift, state, evaluation);
-    // Bodies that joints bind come last, and together.
-    const auto owner = [&](const Constraint& contact) {
-      return assembly.is_jointed(contact.body()) ? none : contact.body();
-    };
-    std::stable_sort(contacts_.begin(), contacts_.end(),
-                     [&](const Constraint& a, const Constraint& b) { return owner(a) < owner(b); });
+    // Bodies that joints bind move together.
+    const Index jointed = first_jointed(assembly, component);
+    const auto islands =
+        partition_.arrange(contacts_, static_cast<Index>(assembly.layout()->bodies().size()),
+                           [&](Index body) { return assembly.is_jointed(body) ? jointed : body; });
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;
-    for (std::size_t first = 0; first < contacts_.size();) {
-      std::size_t last = first + 1;
-      while (last < contacts_.size() && owner(contacts_[last]) == owner(contacts_[first])) ++last;
-      const std::span<const Constraint> of_body(contacts_.data() + first, last - first);
+    for (const Range island : islands) {
+      const std::span<const Constraint> of_body(contacts_.data() + island.begin, island.size());
       const BodySlot body = assembly.layout()->bodies()[of_body.front().body()];
       const bool bound = assembly.is_jointed(of_body.front().body());
       const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
@@ -101,7 +107,6 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
                   : move_body(assembly, of_body, chain, state, depth);
         improved = better || improved;
       }
-      first = last;
     }
     if (!improved) return result;
     result.moved = true;
@@ -113,50 +118,41 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
   return result;
 }
 
-bool GapProjection::move_body(const Assembly& assembly, std::span<const Constraint> contacts, SolverChain& chain,
-                              State& state, double depth) {
+/// W = G B G^T of the normal rows, each with P >= 0.
+void GapProjection::state_problem(std::span<const Constraint> contacts, BodyResponse& response) {
+  normals_.clear();
+  for (const Constraint& contact : contacts) normals_.push_back({&contact, 0});
+  delassus_.build(normals_, response);
+  problem_.reset(static_cast<int>(contacts.size()));
+  delassus_.write(problem_.matrix().data());
+  problem_.group();
+  multipliers_.assign(contacts.size(), 0.0);
+}
+
+bool GapProjection::move_body(const Assembly& assembly, std::span<const Constraint> contacts,
+                              SolverChain& chain, State& state, double depth) {
   const BodySlot& body = assembly.layout()->bodies()[contacts.front().body()];
   const BodyKind& kind = *assembly.body_kinds()[body.kind];
   const std::size_t columns = body.v_size;
-  const auto rows = static_cast<int>(contacts.size());
   double* const displacement = displacement_.data() + body.v;
-  problem_.reset(rows);
-  response_.resize(contacts.size() * columns);
-  multipliers_.assign(contacts.size(), 0.0);
-  const auto dot = [&](const double* row, const double* column) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < columns; ++k) sum += row[k] * column[k];
-    return sum;
-  };
+  MassResponse masses(assembly);
+  state_problem(contacts, masses);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    kind.apply_inverse_mass({body.slot, body.slot + 1}, contacts[i].row(0), response_.data() + i * columns);
-    problem_.vector()[i] = contacts[i].gap + depth - dot(contacts[i].row(0), displacement);
+    problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data());
   }
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < rows; ++j) {
-      problem_.w(i, j) = dot(contacts[static_cast<std::size_t>(i)].row(0),
-                             response_.data() + static_cast<std::size_t>(j) * columns);
-    }
-  }
-  problem_.group();
   if (!chain.solve(problem_, multipliers_).usable()) return false;
-  for (std::size_t k = 0; k < columns; ++k) {
-    displacement[k] = 0.0;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      displacement[k] += response_[i * columns + k] * multipliers_[i];
-    }
-  }
+  std::fill_n(displacement, columns, 0.0);
+  delassus_.add_response(multipliers_, displacement_.data());
   moved_.assign(body.q_size, 0.0);
   kind.advance({body.slot, body.slot + 1}, unmoved_.data() + body.q, displacement, moved_.data());
   std::copy(moved_.begin(), moved_.end(), state.q.begin() + body.q);
   return true;
 }
 
-bool GapProjection::move_bound(const Assembly& assembly, Index component, std::span<const Constraint> contacts,
-                               SolverChain& chain, State& state, const Evaluation& evaluation, double depth,
-                               JointConstraints& joints) {
+bool GapProjection::move_bound(const Assembly& assembly, Index component,
+                               std::span<const Constraint> contacts, SolverChain& chain, State& state,
+                               const Evaluation& evaluation, double depth, JointConstraints& joints) {
   const std::size_t size = state.v.size();
-  const auto rows = static_cast<int>(contacts.size());
   joints.update_and_factor({state.view(), evaluation.rotation.data()});
   of_joints_.resize(joints.size());
   joints.residuals(JointLevel::change, displacement_.data(), of_joints_.data());
@@ -164,34 +160,22 @@ bool GapProjection::move_bound(const Assembly& assembly, Index component, std::s
   joints.solve(of_joints_.data());
   towards_.assign(size, 0.0);
   joints.add_response(of_joints_.data(), towards_.data());
-  problem_.reset(rows);
-  response_.assign(contacts.size() * size, 0.0);
-  multipliers_.assign(contacts.size(), 0.0);
+  JointResponse with_joints(joints);
+  state_problem(contacts, with_joints);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    double* const response = response_.data() + i * size;
-    contacts[i].add_transposed(0, 1.0, response);
-    joints.constrained_response(response);
     problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data()) +
                            contacts[i].times(0, towards_.data());
   }
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < rows; ++j) {
-      problem_.w(i, j) = contacts[static_cast<std::size_t>(i)].times(
-          0, response_.data() + static_cast<std::size_t>(j) * size);
-    }
-  }
-  problem_.group();
   if (!chain.solve(problem_, multipliers_).usable()) return false;
   const auto& bodies = assembly.layout()->bodies();
   const Range all = assembly.components()[component].bodies;
   moved_.resize(state.q.size());
+  delassus_.add_response(multipliers_, towards_.data());
   for (Index body = all.begin; body < all.end; ++body) {
     if (!assembly.is_jointed(body)) continue;
     const BodySlot slot = bodies[body];
     for (Index k = slot.v; k < slot.v + slot.v_size; ++k) {
       displacement_[k] = towards_[k];
-      for (std::size_t i = 0; i < contacts.size(); ++i)
-        displacement_[k] += response_[i * size + k] * multipliers_[i];
     }
     assembly.body_kinds()[slot.kind]->advance({slot.slot, slot.slot + 1}, unmoved_.data() + slot.q,
                                               displacement_.data() + slot.v, moved_.data() + slot.q);

@@ -9,7 +9,9 @@
 /// core/dynamics/joint_constraints.h, and  d' = K G^T y + d0  with the smallest d0 for which  J d0 = J d -
 /// j(q + d).
 
+#include <carom/contact/delassus.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/island_partition.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
@@ -26,8 +28,8 @@ class CAROM_API GapProjection {
 public:
   /// Outcome of a projection.
   struct Result {
-    bool moved = false;             ///< a body was moved
-    double shift = 0.0;             ///< largest displacement of a body, angles weighed by its size [m]
+    bool moved = false;                ///< a body was moved
+    double shift = 0.0;                ///< largest displacement of a body, angles weighed by its size [m]
     const Constraint* left = nullptr;  ///< deepest contact that could not be opened
     /// The contacts of its bodies that had to be open together, it among them. Valid, as `left`, until the
     /// next projection.
@@ -36,7 +38,7 @@ public:
   /// Gaps that are to be opened.
   struct Which {
     std::span<const Constraint> taking_part{};  ///< these, in the order of the detector,
-    bool all = false;                        ///< or all, those that a displacement closes included
+    bool all = false;                           ///< or all, those that a displacement closes included
   };
 
   /// Moves bodies until the gaps asked for are at most rounding below zero; those that keep a body from
@@ -50,6 +52,7 @@ public:
 private:
   void find(Index component, const Detector& detector, const ObstaclePlaces& places, const Which& which,
             double margin, const State& state, const Evaluation& evaluation);
+  void state_problem(std::span<const Constraint> contacts, BodyResponse& response);
   /// Makes a better estimate for one body; false if there is none.
   bool move_body(const Assembly& assembly, std::span<const Constraint> contacts, SolverChain& chain,
                  State& state, double depth);
@@ -60,11 +63,14 @@ private:
                   JointConstraints& joints);
 
   std::vector<Constraint> found_, contacts_;
+  IslandPartition partition_;
+  std::vector<ImpulseDirection> normals_;
+  Delassus delassus_;
   ContactProblem problem_;
   std::vector<double> unmoved_;       // q
   std::vector<double> displacement_;  // d, over all velocities
   std::vector<double> lengths_;       // of the assembly
-  std::vector<double> response_, multipliers_, moved_;
+  std::vector<double> multipliers_, moved_;
   std::vector<double> towards_, of_joints_;  // d0; multipliers of joints
 };
 

@@ -11,6 +11,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       stop_(stop),
       workers_(std::max(options.threads, 1)),
       detector_(assembly),
+      masses_(assembly),
       prescribed_(assembly),
       trial_(assembly.layout()),
       evaluation_(make_evaluation(assembly)) {

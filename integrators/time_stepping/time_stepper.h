@@ -28,10 +28,10 @@
 /// Friction in joints is a row of the contact problem with |P| <= h times its bound. Without contacts its
 /// force acts halfway, against the rate that the coordinate has at the end (time_stepper_joint_contacts.cpp).
 
-#include <carom/contact/contact_cluster.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/friction_bound_solver.h>
 #include <carom/contact/friction_bounds.h>
+#include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/coupling_rating.h>
@@ -108,7 +108,7 @@ private:
   void solve_contacts(Index component, const Block& block, Index part, const State& state,
                       const Companion& companion, double step);
   /// Impulses of a cluster against the guess of the loads; false if there are none.
-  [[nodiscard]] bool solve(ContactCluster& cluster, SolverChain& chain, const State& state,
+  [[nodiscard]] bool solve(IslandProblem& cluster, SolverChain& chain, const State& state,
                            const Companion& companion, double step);
   /// Throws SolverError unless all contacts were solved in the last of so many sweeps.
   void demand_solved(Index component, const State& state, const Companion& companion, double step,
@@ -202,10 +202,10 @@ private:
     bool impact = false;  // something closed faster than the capture speed
   };
   void book_contacts(Index component, const State& state, double step);
-  void record(const ContactCluster& cluster, std::size_t contact);
-  void book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum);
-  void book_gain(const ContactCluster& cluster, const ContactWork& work, const State& state, double step);
-  void book_joint_friction(const ContactCluster& cluster, std::size_t contact, ContactWork& sum);
+  void record(const IslandProblem& cluster, std::size_t contact);
+  void book_contact(const IslandProblem& cluster, std::size_t contact, ContactWork& sum);
+  void book_gain(const IslandProblem& cluster, const ContactWork& work, const State& state, double step);
+  void book_joint_friction(const IslandProblem& cluster, std::size_t contact, ContactWork& sum);
   void rate(Index component, const State& state, double step, double contraction);
 
   void demand_finite_loads(Index component, const StateView& at, const State& state, double step);
@@ -214,13 +214,13 @@ private:
                                      double step, const FixedPointJudge& judge);
   [[nodiscard]] JointId worst_joint(Index component, double& violation) const;
   [[noreturn]] static void fail_motion(const SolverError& error, const State& state, double step);
-  [[noreturn]] void fail_contact(Index component, const ContactCluster& cluster, const State& state,
+  [[noreturn]] void fail_contact(Index component, const IslandProblem& cluster, const State& state,
                                  double step);
   [[noreturn]] void fail_account(Index component, const State& state, double step);
   [[noreturn]] void fail_internal(ElementId element, const State& state, double step) const;
   [[noreturn]] void fail_linearisation(Index component, const State& state, double step, const char* why);
   [[noreturn]] void fail_projection(const Constraint& left, const State& state, double step) const;
-  [[noreturn]] void refuse_gain(const ContactCluster& cluster, double gain, const State& state,
+  [[noreturn]] void refuse_gain(const IslandProblem& cluster, double gain, const State& state,
                                 double step) const;
 
   /// The step of a component as elements see it, `f` called with it.
@@ -247,6 +247,7 @@ private:
   const StopRequest* stop_;  // may be null
   Workers workers_;
   Detector detector_;
+  MassResponse masses_;
   PrescribedJoints prescribed_;
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 
@@ -292,9 +293,9 @@ private:
   std::vector<double> update_;       // changes of velocities, of the linearly implicit iteration
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes_;  // of friction in joints
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
-  LastingContacts lasting_;           // contacts of the last step that turning may have opened
+  LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<Constraint> contacts_;
-  std::vector<ContactCluster> clusters_;
+  std::vector<IslandProblem> clusters_;
   std::size_t clusters_in_use_ = 0;
   std::vector<Range> block_clusters_;  // by block of the component at hand, if there are any
   std::vector<std::uint8_t> settled_;  // likewise: blocks whose loads were guessed by settle_contacts()

@@ -126,10 +126,10 @@ void TimeStepper::book_contacts(Index component, const State& state, double step
     after_ = allowed_.data();
   }
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
-    const ContactCluster& cluster = clusters_[i];
+    const IslandProblem& cluster = clusters_[i];
     ContactWork work;
-    for (std::size_t contact = 0; contact < cluster.contacts().size(); ++contact) {
-      if (cluster.contacts()[contact].has_dry_friction()) {
+    for (std::size_t contact = 0; contact < cluster.constraints().size(); ++contact) {
+      if (cluster.constraints()[contact].has_dry_friction()) {
         book_joint_friction(cluster, contact, work);
       } else {
         book_contact(cluster, contact, work);
@@ -139,9 +139,9 @@ void TimeStepper::book_contacts(Index component, const State& state, double step
   }
 }
 
-void TimeStepper::book_contact(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
+void TimeStepper::book_contact(const IslandProblem& cluster, std::size_t contact, ContactWork& sum) {
   record(cluster, contact);
-  if (detector_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.obstacle_work(contact);
+  if (detector_.has_moving_obstacles()) flows_[EnergyFlow::external] += cluster.map().surface_work(contact);
   const ContactRecord& entry = report_.contacts.back();
   sum.impact = sum.impact || entry.impact;
   for (int direction = 0; direction < entry.directions; ++direction) {
@@ -158,7 +158,7 @@ void TimeStepper::book_contact(const ContactCluster& cluster, std::size_t contac
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
 /// an error of the step: the law holds the velocity along the row at its start, which turns meanwhile.
-void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& work, const State& state,
+void TimeStepper::book_gain(const IslandProblem& cluster, const ContactWork& work, const State& state,
                             double step) {
   // Rounding of the sum of works; a gain above it is real.
   constexpr double rounding = 1e-13;
@@ -168,8 +168,8 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
   if (!work.impact) {
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the obstacles.
-    for (std::size_t c = 0; c < cluster.contacts().size(); ++c) {
-      const Constraint& contact = cluster.contacts()[c];
+    for (std::size_t c = 0; c < cluster.constraints().size(); ++c) {
+      const Constraint& contact = cluster.constraints()[c];
       for (int i = 0; i < contact.rows; ++i) {
         const auto row = static_cast<std::size_t>(cluster.first_row(c) + i);
         const double size = std::abs(cluster.problem().vector()[row]) + contact.speed(i, trial_.v.data());
@@ -187,8 +187,8 @@ void TimeStepper::book_gain(const ContactCluster& cluster, const ContactWork& wo
 }
 
 /// Friction in a joint, along its row at the start or halfway; the velocities halfway are at hand.
-void TimeStepper::book_joint_friction(const ContactCluster& cluster, std::size_t contact, ContactWork& sum) {
-  const Constraint& at = cluster.contacts()[contact];
+void TimeStepper::book_joint_friction(const IslandProblem& cluster, std::size_t contact, ContactWork& sum) {
+  const Constraint& at = cluster.constraints()[contact];
   const auto place = static_cast<std::size_t>(cluster.first_row(contact));
   JointReaction reaction;
   const double moment = cluster.impulses()[place];
@@ -205,8 +205,8 @@ void TimeStepper::book_joint_friction(const ContactCluster& cluster, std::size_t
   joint_friction_modes_.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
-void TimeStepper::record(const ContactCluster& cluster, std::size_t contact) {
-  const Constraint& at = cluster.contacts()[contact];
+void TimeStepper::record(const IslandProblem& cluster, std::size_t contact) {
+  const Constraint& at = cluster.constraints()[contact];
   ContactRecord& entry = report_.contacts.emplace_back();
   entry.key = at.key;
   entry.body = assembly_->layout()->id(at.body());

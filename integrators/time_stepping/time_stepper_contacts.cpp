@@ -65,7 +65,7 @@ void TimeStepper::share_out_clusters(Index component) {
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    while (next < clusters_in_use_ && clusters_[next].contacts().front().body() < block.bodies.end) ++next;
+    while (next < clusters_in_use_ && clusters_[next].constraints().front().body() < block.bodies.end) ++next;
     block_clusters_[part] = {first, next};
     if (next > first)
       std::fill(dv_impulses_.begin() + block.v.begin, dv_impulses_.begin() + block.v.end, 0.0);
@@ -74,7 +74,9 @@ void TimeStepper::share_out_clusters(Index component) {
 
 void TimeStepper::add_cluster(const State& state, std::size_t first, std::size_t last) {
   if (clusters_in_use_ == clusters_.size()) clusters_.emplace_back();
-  clusters_[clusters_in_use_++].build(*assembly_, {contacts_.data() + first, last - first}, state.v.data());
+  IslandProblem& problem = clusters_[clusters_in_use_++];
+  problem.build({contacts_.data() + first, last - first}, state.v.data());
+  if (iteration_ != Iteration::linearly_implicit && joints_.empty()) problem.respond(masses_);
 }
 
 void TimeStepper::solve_contacts(Index component, const State& state, const Companion& companion,
@@ -95,11 +97,11 @@ void TimeStepper::solve_contacts(Index component, const Block& block, Index part
   }
 }
 
-bool TimeStepper::solve(ContactCluster& cluster, SolverChain& chain, const State& state,
+bool TimeStepper::solve(IslandProblem& cluster, SolverChain& chain, const State& state,
                         const Companion& companion, double step) {
   const double half = 0.5 * step;
   const double* const load0 = start_of_sum(companion);
-  const BodySlot& body = assembly_->layout()->bodies()[cluster.contacts().front().body()];
+  const BodySlot& body = assembly_->layout()->bodies()[cluster.constraints().front().body()];
   for (Index k = body.v; k < body.v + body.v_size; ++k) {
     dv_impulses_[k] = half * (load0[k] + evaluation_.force[k]);
   }
@@ -111,7 +113,7 @@ bool TimeStepper::solve(ContactCluster& cluster, SolverChain& chain, const State
   }
   cluster.set_free_velocity(free_.data());
   if (!cluster.solve(chain).usable()) return false;
-  cluster.apply(dv_impulses_.data());
+  cluster.map().add_velocities(dv_impulses_.data());
   return true;
 }
 
@@ -173,7 +175,7 @@ void TimeStepper::demand_solved(Index component, const State& state, const Compa
                                 int sweeps) {
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (clusters_[i].report().usable()) continue;
-    const ContactCluster failed = clusters_[i];
+    const IslandProblem failed = clusters_[i];
     find_cause(component, state, companion, step, sweeps);
     fail_contact(component, failed, state, step);
   }

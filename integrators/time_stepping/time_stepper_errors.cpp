@@ -27,11 +27,11 @@ SolverFailure failure_at(const State& state, double step) {
   return failure;
 }
 
-SolverFailure failure_of(const ContactCluster& cluster, const Detector& detector, const State& state,
+SolverFailure failure_of(const IslandProblem& cluster, const Detector& detector, const State& state,
                          double step) {
   SolverFailure failure = failure_at(state, step);
   failure.residual = cluster.report().residual;
-  for (const Constraint& contact : cluster.contacts()) failure.parts.push_back(detector.name(contact.key));
+  for (const Constraint& contact : cluster.constraints()) failure.parts.push_back(detector.name(contact.key));
   failure.problem = std::make_shared<const ContactProblem>(cluster.problem());
   return failure;
 }
@@ -123,7 +123,8 @@ void TimeStepper::fail_contraction(Index component, const State& state, const Co
   std::vector<std::string> jumping;
   for (std::size_t i = 0; i < clusters_in_use_; ++i) {
     if (!clusters_[i].changed_modes()) continue;
-    for (const Constraint& contact : clusters_[i].contacts()) jumping.push_back(detector_.name(contact.key));
+    for (const Constraint& contact : clusters_[i].constraints())
+      jumping.push_back(detector_.name(contact.key));
   }
   const bool implicit = iteration_ == Iteration::linearly_implicit;
   if (!std::isfinite(judge.change())) {
@@ -183,7 +184,7 @@ void TimeStepper::fail_motion(const SolverError& error, const State& state, doub
   throw SolverError(place(state, step) + error.what(), std::move(failure));
 }
 
-void TimeStepper::fail_contact(Index component, const ContactCluster& cluster, const State& state,
+void TimeStepper::fail_contact(Index component, const IslandProblem& cluster, const State& state,
                                double step) {
   SolverFailure failure = failure_of(cluster, detector_, state, step);
   const auto b = cluster.problem().vector();
@@ -251,7 +252,7 @@ void TimeStepper::fail_projection(const Constraint& left, const State& state, do
   throw SolverError(message, std::move(failure));
 }
 
-void TimeStepper::refuse_gain(const ContactCluster& cluster, double gain, const State& state,
+void TimeStepper::refuse_gain(const IslandProblem& cluster, double gain, const State& state,
                               double step) const {
   SolverFailure failure = failure_of(cluster, detector_, state, step);
   std::string message = place(state, step) + "contact of " + listed(failure.parts) + " adds " +

@@ -70,7 +70,8 @@ void TimeStepper::linearise(Index component, const StateView& at, const Evaluati
   }
   if (clusters_in_use_ == 0) return;
   if (jointed(component)) return;  // coupled anew by every sweep
-  clusters_.front().couple(assembly_->components()[component].v, [this](double* x) { implicit_.solve(x); });
+  LinearisedResponse response(implicit_, assembly_->components()[component].v);
+  clusters_.front().respond(response);
 }
 
 /// One step of Newton's method from the iterate (trial velocities, impulses P, guess x, loads g that they
@@ -82,21 +83,27 @@ void TimeStepper::solve_implicit(Index component, const State& state, double ste
   const double weight = impulse_weight(step);
   for (Index i = v.begin; i < v.end; ++i) update_[i] = weight * (loads_end_[i] - evaluation_.force[i]);
   if (clusters_in_use_ > 0) {
-    ContactCluster& cluster = clusters_.front();
-    cluster.add_loads(-1.0, update_.data());
+    IslandProblem& cluster = clusters_.front();
+    cluster.map().add_loads(-1.0, update_.data());
     implicit_.solve(update_.data() + v.begin);
     for (Index i = v.begin; i < v.end; ++i) free_[i] = trial_.v[i] + update_[i];
     cluster.set_free_velocity(free_.data());
     std::fill(dv_impulses_.begin() + v.begin, dv_impulses_.begin() + v.end, 0.0);
-    cluster.add_loads(1.0 / weight, dv_impulses_.data());  // H^T P / w, of the iterate before
+    cluster.map().add_loads(1.0 / weight, dv_impulses_.data());  // H^T P / w, of the iterate before
     if (!cluster.solve(chains_.front()).usable()) fail_contact(component, cluster, state, step);
-    cluster.apply_coupled(update_.data());
-    cluster.add_loads(-1.0 / weight, dv_impulses_.data());
+    cluster.map().add_velocities(update_.data());
+    cluster.map().add_loads(-1.0 / weight, dv_impulses_.data());
     for (Index i = v.begin; i < v.end; ++i) {
       evaluation_.force[i] += dv_impulses_[i];
       dv_impulses_[i] = 0.0;
     }
-    cluster.apply(dv_impulses_.data());
+    MassResponse masses(*assembly_);
+    std::vector<ImpulseDirection> dirs;
+    for (const Constraint& c : cluster.constraints())
+      for (int i = 0; i < c.rows; ++i) dirs.push_back({&c, i});
+    Delassus d;
+    d.build(dirs, masses);
+    d.add_response(cluster.impulses(), dv_impulses_.data());
   } else {
     implicit_.solve(update_.data() + v.begin);
   }
@@ -118,21 +125,15 @@ void TimeStepper::guess_implicit(Index component, const State& state, double ste
   work.end.residuals(JointLevel::velocity, trial_.v.data(), work.left.data());
   implicit_.solve(update_.data() + v.begin, work.left.data());
   if (clusters_in_use_ > 0) {
-    ContactCluster& cluster = clusters_.front();
+    IslandProblem& cluster = clusters_.front();
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial_.v[i] + update_[i];
-    const auto solve = [this](double* x) { implicit_.solve(x); };
-    if (work.struck) {
-      cluster.couple(work.start);
-      cluster.couple_again(
-          [this, v](const double* x, double* p) { implicit_.apply_mass(x - v.begin, p - v.begin); }, solve);
-      allow_at_start(work, scratch_.data());
-    } else {
-      cluster.couple(v, solve);
-    }
+    LinearisedResponse response(implicit_, v, work.struck ? &work.start : nullptr);
+    cluster.respond(response);
+    if (work.struck) allow_at_start(work, scratch_.data());
     cluster.set_velocity(scratch_.data());
-    cluster.apply_coupled(update_.data(), -1.0);
+    cluster.map().add_velocities(update_.data(), -1.0);
     if (!cluster.solve(chains_.front()).usable()) fail_contact(component, cluster, state, step);
-    cluster.apply_coupled(update_.data());
+    cluster.map().add_velocities(update_.data());
   }
   implicit_.apply_mass(update_.data(), scratch_.data());
   implicit_.subtract_matrix(update_.data(), scratch_.data());

@@ -27,17 +27,21 @@ bool TimeStepper::strikes() const {
 }
 
 void TimeStepper::solve_joint_contacts(Index component, const State& state, double step) {
-  ContactCluster& cluster = clusters_.front();
+  IslandProblem& cluster = clusters_.front();
   JointWork& work = joints_[component];
   if (work.struck) {
     // The guess of Newton's method couples bodies by more than their joints.
-    if (iteration_ == Iteration::linearly_implicit) cluster.couple(work.start);
+    if (iteration_ == Iteration::linearly_implicit) {
+      JointResponse response(work.start);
+      cluster.respond(response);
+    }
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (contacts_[c].has_dry_friction()) cluster.press(c);
+      if (contacts_[c].has_dry_friction()) cluster.update_bound(c);
     }
   } else {
     update_friction_rows(component);
-    cluster.couple(work.mean);
+    JointResponse response(work.mean);
+    cluster.respond(response);
   }
   const Range v = assembly_->components()[component].v;
   for (Index i = v.begin; i < v.end; ++i) scratch_[i] = free_[i] + reaction_[i];
@@ -54,7 +58,7 @@ void TimeStepper::solve_joint_contacts(Index component, const State& state, doub
                                      }};
   if (!work.friction_bound.solve(pressed, chains_.front())) fail_contact(component, cluster, state, step);
   std::fill(dv_contact_.begin() + v.begin, dv_contact_.begin() + v.end, 0.0);
-  cluster.apply_coupled(dv_contact_.data());
+  cluster.map().add_velocities(dv_contact_.data());
 }
 
 /// Makes velocities obey the joints with the rows at the start and the rates at the end.
@@ -76,7 +80,7 @@ void TimeStepper::update_friction_rows(Index component) {
     const double at_end = contact.times(0, scratch_.data());
     detector_.update_friction_rows(halfway, contact);
     contact.surface_velocity_after[0] = contact.times(0, scratch_.data()) - at_end;
-    clusters_.front().press(c);
+    clusters_.front().update_bound(c);
   }
 }
 
@@ -87,7 +91,7 @@ void TimeStepper::add_contacts_to_joints(Index component) {
   const Range v = assembly_->components()[component].v;
   work.total = work.impulse;
   std::fill(scratch_.begin() + v.begin, scratch_.begin() + v.end, 0.0);
-  clusters_.front().add_loads(1.0, scratch_.data());
+  clusters_.front().map().add_loads(1.0, scratch_.data());
   answering.apply_inverse_mass(scratch_.data());
   answering.project(JointLevel::change, scratch_.data(), work.left.data());
   for (std::size_t row = 0; row < work.total.size(); ++row) work.total[row] += work.left[row];

@@ -64,7 +64,8 @@ void TimeStepper::start_joints(Index component, const State& state, double step)
   place_rows(work.start, view_of(state, start_), state, step);
   if (!work.struck) return;
   work.start.factor();
-  clusters_.front().couple(work.start);
+  JointResponse response(work.start);
+  clusters_.front().respond(response);
 }
 
 void TimeStepper::sweep_joints(Index component, const State& state, const Companion& companion, double step) {

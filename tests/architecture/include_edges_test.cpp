@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"core/numerics/a.h", "#include <carom/core/state.h>"},
                     BadLine{"core/a.h", "#include <carom/core/dynamics/joint_constraints.h>"},
                     BadLine{"contact/detection/a.h", "#include <carom/contact/solvers/residual.h>"},
-                    BadLine{"contact/solvers/a.h", "#include <carom/contact/contact_cluster.h>"},
+                    BadLine{"contact/solvers/a.h", "#include <carom/contact/island_problem.h>"},
                     BadLine{"contact/solvers/a.h", "#include <carom/contact/detection/half_space.h>"},
                     BadLine{"integrators/time_stepping/a.h", "#include <carom/integrators/simulation.h>"},
                     BadLine{"integrators/time_stepping/a.h",

@@ -192,18 +192,18 @@ TEST(NamesOutlive, KeysMadeByHand) {
   EXPECT_EQ(simulation.name(ConstraintKey{}), "no contact");
   EXPECT_EQ(simulation.name({{Owner::body, 0, 0}, floor}), "particle 'ball' on half-plane 'floor'");
   const std::vector<ConstraintKey> bad{{{Owner::body, 99, 0}, floor},
-                                    {{Owner::shape, 99, 0}, floor},
-                                    {{Owner::shape, 0, 7}, floor},
-                                    {{Owner::joint, 99, 0}, {Owner::joint, 99, 0}},
-                                    {{Owner::joint, 0, 5}, {Owner::joint, 0, 5}},
-                                    {{Owner::joint, 1, 2}, {Owner::joint, 1, 2}},
-                                    {{Owner::obstacle, 0, 0}, floor},
-                                    {{static_cast<Owner>(77), 0, 0}, floor},
-                                    {{Owner::body, 0, 0}, {Owner::obstacle, 99, 0}},
-                                    {{Owner::body, 0, 0}, {Owner::body, 0, 0}},
-                                    {{Owner::body, 0, 0}, {static_cast<Owner>(77), 0, 0}},
-                                    {{Owner::body, 0, 0}, {}},
-                                    {{Owner::body, none, 0}, floor}};
+                                       {{Owner::shape, 99, 0}, floor},
+                                       {{Owner::shape, 0, 7}, floor},
+                                       {{Owner::joint, 99, 0}, {Owner::joint, 99, 0}},
+                                       {{Owner::joint, 0, 5}, {Owner::joint, 0, 5}},
+                                       {{Owner::joint, 1, 2}, {Owner::joint, 1, 2}},
+                                       {{Owner::obstacle, 0, 0}, floor},
+                                       {{static_cast<Owner>(77), 0, 0}, floor},
+                                       {{Owner::body, 0, 0}, {Owner::obstacle, 99, 0}},
+                                       {{Owner::body, 0, 0}, {Owner::body, 0, 0}},
+                                       {{Owner::body, 0, 0}, {static_cast<Owner>(77), 0, 0}},
+                                       {{Owner::body, 0, 0}, {}},
+                                       {{Owner::body, none, 0}, floor}};
   for (const ConstraintKey& key : bad) {
     EXPECT_MODEL_ERROR((void)simulation.name(key), "contact:", "allowed");
     EXPECT_MODEL_ERROR((void)contact_name(System(), key), "contact:", "allowed");

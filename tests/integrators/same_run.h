@@ -55,8 +55,7 @@ inline std::vector<std::uint64_t> bits_of(const carom::Simulation& simulation) {
   append_bits(bits, companion.grid_start);
   bits.push_back(static_cast<std::uint64_t>(companion.grid_steps));
   for (const auto& [key, mode] : companion.modes) {
-    bits.insert(bits.end(),
-                {key.a.serial, key.a.feature, key.b.serial, static_cast<std::uint64_t>(mode)});
+    bits.insert(bits.end(), {key.a.serial, key.a.feature, key.b.serial, static_cast<std::uint64_t>(mode)});
   }
   return bits;
 }

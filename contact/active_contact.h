@@ -1,0 +1,50 @@
+#pragma once
+
+/// \file
+/// A contact that stays closed for a while: its mode, its forces, and the equation that a force is found by.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/solvers/contact_mode.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <cstddef>
+
+namespace carom {
+
+/// A contact in a smooth phase.
+struct ActiveContact {
+  ContactPair pair;                       ///< what touches
+  Index place = none;                     ///< of the pair in a list of all, where there is one
+  ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
+  bool frictionless = false;              ///< without friction: neither sticks nor cares which way it slips
+  Constraint at;                          ///< at the present configuration
+  double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
+  double normal = 0.0;                    ///< force; of friction in a joint Constraint::friction_bound [N]
+  double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
+  /// False where forces were shared out and it is at its end by chance: others set the margin.
+  bool sets_margin = true;
+
+  /// True if the tangent is a constraint.
+  [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
+  /// Sign of the sliding velocity, 0 if it sticks.
+  [[nodiscard]] double slip_sign() const {
+    return mode == ContactMode::slip_positive ? 1.0 : mode == ContactMode::slip_negative ? -1.0 : 0.0;
+  }
+  /// The coefficient of friction at a configuration and velocities of all bodies. A step may look beyond the
+  /// end of sliding: the curve goes on smoothly there.
+  [[nodiscard]] double friction_at(const Constraint& where, const double* velocities) const;
+};
+
+/// One of the equations that forces of closed contacts were found by, and the force that it was solved for.
+struct ContactPivot {
+  /// A direction of a contact.
+  struct Row {
+    std::size_t contact = 0;  ///< its place in the list
+    bool tangent = false;     ///< the tangent if it sticks; else the normal
+  };
+  Row equation;  ///< whose acceleration vanishes
+  Row force;     ///< that of a normal pushes in the direction of the cone of friction where the contact slips
+};
+
+}  // namespace carom

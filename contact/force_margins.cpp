@@ -1,0 +1,199 @@
+// Problem: margins of forces that closed contacts leave open.
+
+#include <carom/contact/force_margins.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+// Margin where nothing can come to an end: friction in joints that slips [N].
+constexpr double unbounded_margin = 1.0;
+
+// Of a multiplier of the margin, all of which sum to 1: rounding.
+constexpr double no_part = 1e-9;
+
+/// Lines of a contact: normal force, and both edges of friction where it sticks.
+std::size_t lines_of(const ActiveContact& contact) {
+  return (contact.at.has_dry_friction() ? 0U : 1U) + (contact.sticks() ? 2U : 0U);
+}
+
+}  // namespace
+
+void ForceMargins::clear() {
+  vectors_.clear();
+  numbers_.clear();
+}
+
+void ForceMargins::add(std::span<const ActiveContact> contacts, std::size_t first, std::size_t last,
+                       std::span<const ContactPivot::Row> rows, const FullPivoting& factors) {
+  for (std::size_t free = factors.rank(); free < factors.size(); ++free) {
+    factors.null_vector(free, work_);
+    vectors_.push_back({first, last, numbers_.size()});
+    numbers_.resize(numbers_.size() + 2 * (last - first), 0.0);
+    double* const vector = numbers_.data() + vectors_.back().begin;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const ActiveContact& contact = contacts[rows[i].contact];
+      double* const of_contact = vector + 2 * (rows[i].contact - first);
+      if (rows[i].tangent) {
+        of_contact[1] = work_[i];
+      } else {
+        of_contact[0] = work_[i];
+        if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * work_[i];
+      }
+    }
+  }
+}
+
+/// Margins of contacts as lines along a null vector; null: as they are.
+void ForceMargins::collect(std::span<const ActiveContact> contacts, const double* vector) {
+  lines_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ActiveContact& c = contacts[i];
+    const double dn = vector ? vector[2 * i] : 0.0;
+    const double dt = vector ? vector[2 * i + 1] : 0.0;
+    if (!c.at.has_dry_friction()) lines_.push_back({c.normal, dn});
+    if (!c.sticks()) continue;
+    lines_.push_back({c.friction * c.normal - c.tangential, c.friction * dn - dt});
+    lines_.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
+  }
+}
+
+/// Wedged contacts have no largest margin: one as large as the forces is enough.
+void ForceMargins::bound_wedged(std::span<const ActiveContact> contacts) {
+  const auto rises = [](const Line& line) { return line.slope > 0.0; };
+  const auto falls = [](const Line& line) { return line.slope < 0.0; };
+  if (std::any_of(lines_.begin(), lines_.end(), rises) && std::any_of(lines_.begin(), lines_.end(), falls)) {
+    return;
+  }
+  double size = 0.0;
+  for (const ActiveContact& contact : contacts) {
+    size += std::abs(contact.normal) + std::abs(contact.tangential);
+  }
+  lines_.push_back({size, 0.0});
+}
+
+double ForceMargins::least_at(double shift) const {
+  double value = std::numeric_limits<double>::infinity();
+  for (const Line& line : lines_) value = std::min(value, line.at + shift * line.slope);
+  return value;
+}
+
+double ForceMargins::least(std::span<const ActiveContact> contacts) {
+  collect(contacts, nullptr);
+  return lines_.empty() ? unbounded_margin : least_at(0.0);
+}
+
+void ForceMargins::distribute(std::span<ActiveContact> contacts, bool mark) {
+  for (std::size_t at = 0; at < vectors_.size();) {
+    std::size_t next = at + 1;
+    while (next < vectors_.size() && vectors_[next].first == vectors_[at].first) ++next;
+    const std::span<ActiveContact> group =
+        contacts.subspan(vectors_[at].first, vectors_[at].last - vectors_[at].first);
+    // A single vector leads to the largest margin; one after the other several lead to a good one.
+    if (!(next > at + 1 && follow_all(group, at, next, mark))) {
+      for (std::size_t vector = at; vector < next; ++vector) follow(group, vectors_[vector]);
+    }
+    at = next;
+  }
+}
+
+/// Makes the margin largest along one vector.
+void ForceMargins::follow(std::span<ActiveContact> contacts, const NullVector& of) {
+  const double* const vector = numbers_.data() + of.begin;
+  collect(contacts, vector);
+  bound_wedged(contacts);
+  double best_shift = 0.0, best = least_at(0.0);
+  for (const Line& a : lines_) {
+    for (const Line& b : lines_) {
+      if (!(a.slope >= 0.0 && b.slope <= 0.0 && a.slope > b.slope)) continue;
+      const double shift = (b.at - a.at) / (a.slope - b.slope);
+      const double value = least_at(shift);
+      if (value > best) {
+        best = value;
+        best_shift = shift;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts[i].normal += best_shift * vector[2 * i];
+    contacts[i].tangential += best_shift * vector[2 * i + 1];
+  }
+}
+
+/// The linear program of follow_all() as a complementarity problem.
+void ForceMargins::state_program(std::span<const ActiveContact> contacts, std::size_t from, int vectors,
+                                 double least, double bound) {
+  const int top = 2 * vectors;
+  int lines = 0;
+  for (const ActiveContact& contact : contacts) lines += static_cast<int>(lines_of(contact));
+  lcp_.reset(top + 1 + lines + 1);
+  int row = top + 1;
+  const auto line = [&](double at, const auto& slope) {
+    lcp_.q[static_cast<std::size_t>(row)] = at - least;
+    for (int k = 0; k < vectors; ++k) {
+      const double s = slope(numbers_.data() + vectors_[from + static_cast<std::size_t>(k)].begin);
+      lcp_.at(row, k) = s;
+      lcp_.at(row, vectors + k) = -s;
+      lcp_.at(k, row) = -s;
+      lcp_.at(vectors + k, row) = s;
+    }
+    lcp_.at(row, top) = -1.0;
+    lcp_.at(top, row) = 1.0;
+    ++row;
+  };
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ActiveContact& c = contacts[i];
+    const std::size_t at = 2 * i;
+    if (!c.at.has_dry_friction()) line(c.normal, [&](const double* vector) { return vector[at]; });
+    if (!c.sticks()) continue;
+    for (const double side : {-1.0, 1.0}) {
+      line(c.friction * c.normal + side * c.tangential,
+           [&](const double* vector) { return c.friction * vector[at] + side * vector[at + 1]; });
+    }
+  }
+  line(bound, [](const double*) { return 0.0; });
+  lcp_.q[static_cast<std::size_t>(top)] = -1.0;
+}
+
+/// Makes the margin of a group largest over all its vectors [from, to) at once. With x along the vectors,
+/// lines a_i + s_i x over the margins, and t = the least of them, the linear program
+///
+///     largest t' >= 0,   a_i + s_i (x+ - x-) >= t' + a_least,   t' + a_least <= bound,   x+, x- >= 0
+///
+/// as a complementarity problem. Wedged contacts have no largest margin: `bound` is one that is large enough.
+bool ForceMargins::follow_all(std::span<ActiveContact> contacts, std::size_t from, std::size_t to,
+                              bool mark) {
+  const int vectors = static_cast<int>(to - from), top = 2 * vectors;
+  double least = std::numeric_limits<double>::infinity(), size = 0.0;
+  for (const ActiveContact& c : contacts) {
+    size += std::abs(c.normal) + std::abs(c.tangential);
+    if (!c.at.has_dry_friction()) least = std::min(least, c.normal);
+    if (c.sticks()) least = std::min(least, c.friction * c.normal - std::abs(c.tangential));
+  }
+  if (!(size > 0.0) || !std::isfinite(size)) return false;
+  state_program(contacts, from, vectors, least, size);
+  work_.assign(static_cast<std::size_t>(lcp_.size), 0.0);
+  if (lemke_.solve(lcp_, work_).status != LcpStatus::solved) return false;
+  // Lines with a positive number are at the least in every solution; others may be at it in this one only.
+  auto begin = work_.begin() + top + 1;
+  for (std::size_t i = 0; mark && i < contacts.size(); ++i) {
+    const auto end = begin + static_cast<std::ptrdiff_t>(lines_of(contacts[i]));
+    contacts[i].sets_margin = std::any_of(begin, end, [](double number) { return number > no_part; });
+    begin = end;
+  }
+  for (int k = 0; k < vectors; ++k) {
+    const double shift = work_[static_cast<std::size_t>(k)] - work_[static_cast<std::size_t>(vectors + k)];
+    const double* const vector = numbers_.data() + vectors_[from + static_cast<std::size_t>(k)].begin;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      contacts[i].normal += shift * vector[2 * i];
+      contacts[i].tangential += shift * vector[2 * i + 1];
+    }
+  }
+  return true;
+}
+
+}  // namespace carom

@@ -1,0 +1,64 @@
+#pragma once
+
+/// \file
+/// How far the forces of closed contacts are from where their modes end. Forces that are not unique (a brick
+/// that sticks at two corners) are distributed so that the least margin is as large as can be.
+
+#include <carom/contact/active_contact.h>
+#include <carom/core/export.h>
+#include <carom/core/numerics/full_pivoting.h>
+#include <carom/core/numerics/lcp.h>
+#include <carom/core/numerics/lemke.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Margin of the contacts of one body, or of bodies that joints bind.
+struct ForceMargin {
+  std::size_t first = 0, last = 0;  ///< contacts
+  double margin = 0.0;              ///< the least normal force or distance from the edge of a cone [N]
+};
+
+/// Changes of forces that move nothing, by group, and the margins that they leave room for. Keeps its memory.
+class CAROM_API ForceMargins {
+public:
+  /// Forgets all groups.
+  void clear();
+  /// Adds the null vectors of a group. \param contacts all, \param first,last those of the group
+  /// \param rows of the equations \param factors of their matrix, with rank() < size()
+  void add(std::span<const ActiveContact> contacts, std::size_t first, std::size_t last,
+           std::span<const ContactPivot::Row> rows, const FullPivoting& factors);
+  /// Distributes forces that are not unique so that margins are largest. Lines of contacts that are at the
+  /// least margin by chance do not set it (ActiveContact::sets_margin).
+  /// \param mark whether to find out which contacts set the margin
+  void distribute(std::span<ActiveContact> contacts, bool mark);
+  /// Least margin of some contacts, as their forces are.
+  [[nodiscard]] double least(std::span<const ActiveContact> contacts);
+
+private:
+  struct NullVector {
+    std::size_t first = 0, last = 0;  // contacts
+    std::size_t begin = 0;            // in numbers_: normal and tangential numbers of the contacts in turn
+  };
+  struct Line {
+    double at = 0.0, slope = 0.0;  // a margin along a null vector
+  };
+  void collect(std::span<const ActiveContact> contacts, const double* vector);
+  void bound_wedged(std::span<const ActiveContact> contacts);
+  [[nodiscard]] double least_at(double shift) const;
+  void follow(std::span<ActiveContact> contacts, const NullVector& vector);
+  [[nodiscard]] bool follow_all(std::span<ActiveContact> contacts, std::size_t from, std::size_t to,
+                                bool mark);
+  void state_program(std::span<const ActiveContact> contacts, std::size_t from, int vectors, double least,
+                     double bound);
+
+  std::vector<NullVector> vectors_;
+  std::vector<double> numbers_, work_;
+  std::vector<Line> lines_;
+  Lemke lemke_;  // forces of more than one freedom
+  Lcp lcp_;
+};
+
+}  // namespace carom

@@ -1,0 +1,82 @@
+#pragma once
+
+/// \file
+/// The way back from the impulses P of constraints to the bodies: velocities, loads, work. An impulse P along
+/// a row with the velocities gamma^- before and gamma^+ after does the work P (gamma^- + gamma^+)/2 (exact
+/// for the kinetic energy); that of all rows together is what the law of impact gains or takes.
+
+#include <carom/contact/delassus.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <cmath>
+#include <span>
+
+namespace carom {
+
+/// Work of an impulse [J]. \param impulse [N s] \param before,after velocities along it [m/s]
+[[nodiscard]] inline double impulse_work(double impulse, double before, double after) {
+  return 0.5 * impulse * (before + after);
+}
+
+/// Work of the impulses of one problem, and the size of what it is the sum of.
+struct ImpulseWork {
+  /// Rounding of the sum of works, against its scale: a gain above it is real.
+  static constexpr double rounding = 1e-13;
+
+  double gain = 0.0;   ///< sum of works [J]
+  double scale = 0.0;  ///< sum of the magnitudes of its parts [J]
+
+  /// Adds an impulse; returns its work [J].
+  double add(double impulse, double before, double after) {
+    const double work = impulse_work(impulse, before, after);
+    gain += work;
+    scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
+    return work;
+  }
+  /// True if energy is gained, not rounding.
+  [[nodiscard]] bool is_gain() const { return gain > rounding * scale; }
+};
+
+/// One answer of one problem. A view: constraints, matrix and numbers must outlive it.
+class CAROM_API ImpulseMap {
+public:
+  /// \param first_row of each constraint \param before velocities gamma^- \param impulses P, both by row
+  ImpulseMap(std::span<const Constraint> constraints, std::span<const int> first_row,
+             const Delassus& delassus, std::span<const double> before, std::span<const double> impulses)
+      : constraints_(constraints),
+        first_row_(first_row),
+        delassus_(&delassus),
+        before_(before),
+        impulses_(impulses) {}
+
+  /// v += scale B H^T P. \param velocity of all bodies
+  void add_velocities(double* velocity, double scale = 1.0) const {
+    delassus_->add_response(impulses_, velocity, scale);
+  }
+  /// f += scale H^T P. \param load over all velocities
+  void add_loads(double scale, double* load) const;
+  /// Impulse along a row of a constraint.
+  [[nodiscard]] double impulse(std::size_t constraint, int row) const {
+    return impulses_[place(constraint, row)];
+  }
+  /// Velocity along it before.
+  [[nodiscard]] double before(std::size_t constraint, int row) const {
+    return before_[place(constraint, row)];
+  }
+  /// Work of the impulses of a constraint on the moving ground shape that it touches, P.(w^- + w^+)/2 with
+  /// the velocities w of the surface: what enters as external work [J].
+  [[nodiscard]] double surface_work(std::size_t constraint) const;
+
+private:
+  [[nodiscard]] std::size_t place(std::size_t constraint, int row) const {
+    return static_cast<std::size_t>(first_row_[constraint] + row);
+  }
+
+  std::span<const Constraint> constraints_;
+  std::span<const int> first_row_;
+  const Delassus* delassus_;
+  std::span<const double> before_, impulses_;
+};
+
+}  // namespace carom

@@ -1,0 +1,146 @@
+// Problem: state the law of contact for the constraints of an island.
+
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/contact_mode.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// Whether a problem has the form of one planar contact, so that only its numbers need to be filled in.
+bool is_one_planar_contact(const ContactProblem& problem) {
+  return problem.rows() == 2 && problem.groups().size() == 1 &&
+         problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
+}
+
+}  // namespace
+
+void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
+  constraints_ = constraints;
+  answer_.known = answer_.changed_modes = false;
+  // The same form as before is the hot path.
+  const bool same_form =
+      constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_);
+  directions_.clear();
+  if (same_form) {
+    problem_.sets()[1].coefficient = constraints[0].friction;
+  } else {
+    first_row_.clear();
+    int rows = 0;
+    for (const Constraint& constraint : constraints) {
+      first_row_.push_back(rows);
+      rows += constraint.rows;
+    }
+    const auto count = static_cast<std::size_t>(rows);
+    problem_.reset(rows);
+    before_.resize(count);
+    restitution_.resize(count);
+    answer_.impulse.resize(count);
+    slides_.assign(constraints.size(), 0.0);
+  }
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const Constraint& constraint = constraints[c];
+    for (int i = 0; i < constraint.rows; ++i) {
+      const std::size_t row = directions_.size();
+      directions_.push_back({&constraint, i});
+      before_[row] = constraint.velocity(i, velocity_before);
+      restitution_[row] = constraint.restitution(i);
+      answer_.impulse[row] = 0.0;
+      if (!same_form) set_row(c, i);
+    }
+  }
+  if (!same_form) problem_.group();
+}
+
+/// The set that impulses along a row lie in.
+void IslandProblem::set_row(std::size_t constraint, int row) {
+  const Constraint& at = constraints_[constraint];
+  if (at.has_dry_friction()) return update_bound(constraint);
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + row)];
+  if (row == 0) {
+    set.kind = SetKind::half_line;
+    return;
+  }
+  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
+  set.bound = first_row_[constraint];
+  set.coefficient = at.friction;
+}
+
+void IslandProblem::respond(BodyResponse& response) {
+  delassus_.build(directions_, response);
+  delassus_.write_symmetric(problem_.matrix().data());
+}
+
+void IslandProblem::update_bound(std::size_t constraint) {
+  const Constraint& at = constraints_[constraint];
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
+  const double slides = slides_[constraint] * at.friction_bound, bound = at.friction * at.friction_bound;
+  set.kind = SetKind::interval;
+  set.lower = slides_[constraint] != 0.0 ? slides : -bound;
+  set.upper = slides_[constraint] != 0.0 ? slides : bound;
+}
+
+void IslandProblem::slide(std::size_t constraint, double ratio) {
+  if (constraints_[constraint].has_dry_friction()) {
+    slides_[constraint] = ratio;
+    update_bound(constraint);
+  } else {
+    RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + 1)];
+    set.kind = SetKind::proportional;
+    set.coefficient = ratio;
+  }
+  problem_.group();
+}
+
+void IslandProblem::set_free_velocity(const double* velocity_free) {
+  const auto b = problem_.vector();
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const Constraint& constraint = constraints_[c];
+    for (int i = 0; i < constraint.rows; ++i) {
+      const auto row = static_cast<std::size_t>(first_row_[c] + i);
+      b[row] = constraint.velocity_after(i, velocity_free) + restitution_[row] * before_[row];
+    }
+    if (constraint.allowed_approach > 0.0) {
+      b[static_cast<std::size_t>(first_row_[c])] += constraint.allowed_approach;
+    }
+    for (int i = 0; i < constraint.rows; ++i) {
+      // Of what joints hold fast, against what moves around it, or has moved before [m/s].
+      constexpr double rounding = 1e-9, least = 1e-10;
+      const int row = first_row_[c] + i;
+      double& number = b[static_cast<std::size_t>(row)];
+      if (problem_.w(row, row) != 0.0) continue;
+      if (std::abs(number) <= rounding * constraint.speed(i, velocity_free) + least) number = 0.0;
+    }
+  }
+}
+
+void IslandProblem::set_velocity(const double* velocity) {
+  set_free_velocity(velocity);
+  for (int row = 0; row < problem_.rows(); ++row) {
+    for (int column = 0; column < problem_.rows(); ++column) {
+      problem_.vector()[static_cast<std::size_t>(row)] -=
+          problem_.w(row, column) * answer_.impulse[static_cast<std::size_t>(column)];
+    }
+  }
+}
+
+const ContactReport& IslandProblem::solve(SolverChain& chain) {
+  chain.solve(problem_, answer_);
+  return answer_.report;
+}
+
+void IslandProblem::set_impulses(std::span<const double> impulses) {
+  std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
+  xi_.resize(impulses.size());
+  problem_.velocities(answer_.impulse, xi_);
+  for (std::size_t group = 0; group < answer_.modes.size(); ++group) {
+    answer_.modes[group] = contact_mode(problem_, problem_.groups()[group], answer_.impulse, xi_);
+  }
+}
+
+void IslandProblem::forget_impulses() { std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0); }
+
+}  // namespace carom

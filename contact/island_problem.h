@@ -1,0 +1,81 @@
+#pragma once
+
+/// \file
+/// The contact problem of one island: the constraints that share bodies, directly or through what binds or
+/// couples these, and the velocities before and without impulses, as
+///     W = H B H^T,   b = H v_free + E H v^-,   v^+ = v_free + B H^T P,
+/// B the response of the bodies (contact/delassus.h); to b in normal direction Constraint::allowed_approach
+/// is added.
+
+#include <carom/contact/delassus.h>
+#include <carom/contact/impulse_map.h>
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Problem, matrix and answer of an island. Reuse it: its memory is kept.
+class CAROM_API IslandProblem {
+public:
+  /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
+  /// forgotten; respond() is to be called next.
+  void build(std::span<const Constraint> constraints, const double* velocity_before);
+  /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for
+  /// set_velocity().
+  void respond(BodyResponse& response);
+  /// Takes note of another Constraint::friction_bound of friction in a joint.
+  void update_bound(std::size_t constraint);
+  /// Makes a planar contact, or friction in a joint, slip whatever its tangential velocity: P_t = ratio P_n.
+  void slide(std::size_t constraint, double ratio);
+  /// Makes b from the velocities that the step would end with if no constraint acted, against those of the
+  /// surfaces then (Constraint::velocity_after).
+  void set_free_velocity(const double* velocity_free);
+  /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
+  void set_velocity(const double* velocity);
+  /// Solves; the answer before, if there is one since build(), is where solvers start from.
+  [[nodiscard]] const ContactReport& solve(SolverChain& chain);
+  /// Replaces the answer, and its modes, by another solution of the problem.
+  void set_impulses(std::span<const double> impulses);
+  /// Sets all impulses to zero.
+  void forget_impulses();
+
+  /// The problem.
+  [[nodiscard]] const ContactProblem& problem() const { return problem_; }
+  /// The constraints, in the order of build().
+  [[nodiscard]] std::span<const Constraint> constraints() const { return constraints_; }
+  /// Velocities gamma^- of all rows [m/s].
+  [[nodiscard]] std::span<const double> before() const { return before_; }
+  /// Impulses of all rows [N s].
+  [[nodiscard]] std::span<const double> impulses() const { return answer_.impulse; }
+  /// Modes of the constraints.
+  [[nodiscard]] std::span<const ContactMode> modes() const { return answer_.modes; }
+  /// True if the last answer has other modes than the one before it since build().
+  [[nodiscard]] bool changed_modes() const { return answer_.changed_modes; }
+  /// Report of the last answer.
+  [[nodiscard]] const ContactReport& report() const { return answer_.report; }
+  /// Place of row 0 of a constraint, the others behind it.
+  [[nodiscard]] int first_row(std::size_t constraint) const { return first_row_[constraint]; }
+  /// The way back of the last answer. Valid until the problem changes.
+  [[nodiscard]] ImpulseMap map() const {
+    return {constraints_, first_row_, delassus_, before_, answer_.impulse};
+  }
+
+private:
+  void set_row(std::size_t constraint, int row);
+
+  std::span<const Constraint> constraints_;
+  std::vector<ImpulseDirection> directions_;
+  Delassus delassus_;
+  ContactProblem problem_;
+  ContactSolution answer_;
+  std::vector<int> first_row_;
+  std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
+  std::vector<double> before_, restitution_, xi_;
+};
+
+}  // namespace carom

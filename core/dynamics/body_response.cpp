@@ -1,0 +1,60 @@
+#include <carom/core/dynamics/body_response.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+double largest(const double* numbers, Index count) {
+  double size = 0.0;
+  for (Index i = 0; i < count; ++i) size = std::max(size, std::abs(numbers[i]));
+  return size;
+}
+
+/// x becomes K x. Where joints hold a row fast (of a corner at a pin to the ground) nothing is left in place
+/// of a response by rounding, against which impulses would be as large as its inverse.
+bool answer_with(JointConstraints& joints, double* x) {
+  constexpr double held = 1e-12;  // of the response without joints: rounding
+  const Range v = joints.velocities();
+  // Joints count velocities from the first of all.
+  joints.apply_inverse_mass(x - v.begin);
+  const double alone = largest(x, v.size());
+  joints.project(JointLevel::change, x - v.begin);
+  if (largest(x, v.size()) > held * alone) return true;
+  std::fill_n(x, v.size(), 0.0);
+  return false;
+}
+
+}  // namespace
+
+bool BodyResponse::take_loads(Index, double*) { return false; }
+
+Range MassResponse::reach(Index body) const {
+  const BodySlot& slot = assembly_->layout()->bodies()[body];
+  return {slot.v, slot.v + slot.v_size};
+}
+
+bool MassResponse::answer(Index body, double* x) {
+  const BodySlot& slot = assembly_->layout()->bodies()[body];
+  assembly_->body_kinds()[slot.kind]->apply_inverse_mass({slot.slot, slot.slot + 1}, x, x);
+  return true;
+}
+
+bool JointResponse::answer(Index, double* x) { return answer_with(*joints_, x); }
+
+bool LinearisedResponse::take_loads(Index, double* x) {
+  if (at_impact_ == nullptr) return false;
+  static_cast<void>(answer_with(*at_impact_, x));
+  velocity_.assign(x, x + velocities_.size());
+  step_->apply_mass(velocity_.data() - velocities_.begin, x - velocities_.begin);
+  return true;
+}
+
+bool LinearisedResponse::answer(Index, double* x) {
+  step_->solve(x);
+  return true;
+}
+
+}  // namespace carom

@@ -1,0 +1,75 @@
+#pragma once
+
+/// \file
+/// How bodies answer impulses: by their masses alone (M^-1), with the joints that bind them (K, what joints
+/// leave of it), or as a linearised step does (A^-1, core/dynamics/implicit_solver.h). The matrix of a
+/// contact problem is made from any of them in one way (contact/delassus.h).
+
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/implicit_solver.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/export.h>
+
+#include <vector>
+
+namespace carom {
+
+/// A symmetric map from impulses to changes of velocity.
+class CAROM_API BodyResponse {
+public:
+  virtual ~BodyResponse() = default;
+
+  /// Velocities that an impulse on a body may change: a range that holds those of the body. Ranges of two
+  /// bodies are equal or have nothing in common.
+  [[nodiscard]] virtual Range reach(Index body) const = 0;
+  /// Impulses become changes of velocity. False where nothing moves: joints hold it fast; then they are zero.
+  /// \param body one of those pushed \param x over its reach, beginning with the first velocity there
+  virtual bool answer(Index body, double* x) = 0;
+  /// Impulses become the loads that act, where more acts than they: with them what joints answer at once.
+  /// Then W = D^T A^-1 D over these loads D. True if they are other loads. Arguments as for answer().
+  virtual bool take_loads(Index body, double* x);
+};
+
+/// M^-1: every body answers for itself.
+class CAROM_API MassResponse final : public BodyResponse {
+public:
+  /// \param assembly must outlive it
+  explicit MassResponse(const Assembly& assembly) : assembly_(&assembly) {}
+  [[nodiscard]] Range reach(Index body) const override;
+  bool answer(Index body, double* x) override;
+
+private:
+  const Assembly* assembly_;
+};
+
+/// K = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1 over one component: bodies that joints bind answer together.
+class CAROM_API JointResponse final : public BodyResponse {
+public:
+  /// \param joints not empty, factored wherever it is asked; must outlive it
+  explicit JointResponse(JointConstraints& joints) : joints_(&joints) {}
+  [[nodiscard]] Range reach(Index) const override { return joints_->velocities(); }
+  bool answer(Index body, double* x) override;
+
+private:
+  JointConstraints* joints_;
+};
+
+/// A^-1 of a linearised step of one component, which couples all its bodies.
+class CAROM_API LinearisedResponse final : public BodyResponse {
+public:
+  /// All must outlive it. \param at_impact joints whose answer to an impulse acts together with it, factored;
+  /// null: none
+  LinearisedResponse(ImplicitSolver& step, Range velocities, JointConstraints* at_impact = nullptr)
+      : step_(&step), velocities_(velocities), at_impact_(at_impact) {}
+  [[nodiscard]] Range reach(Index) const override { return velocities_; }
+  bool answer(Index body, double* x) override;
+  bool take_loads(Index body, double* x) override;
+
+private:
+  ImplicitSolver* step_;
+  Range velocities_;
+  JointConstraints* at_impact_;
+  std::vector<double> velocity_;
+};
+
+}  // namespace carom
