@@ -52,6 +52,10 @@ public:
   [[nodiscard]] Index v_size() const override { return D; }
   [[nodiscard]] bool has_orientation() const override { return false; }
   [[nodiscard]] double mass(Index slot) const override { return masses_[slot]; }
+  [[nodiscard]] BodyMasses masses(Index slot) const override {
+    constexpr auto layout = D == 2 ? BodyMasses::Layout::planar_points : BodyMasses::Layout::spatial_points;
+    return {.layout = layout, .stride = masses_.stride(), .mass = masses_.data() + masses_.stride() * slot};
+  }
   [[nodiscard]] double length_scale(Index, Index) const override { return 1.0; }
   [[nodiscard]] bool has_contact_point(Index slot) const override { return contact_[slot] != 0; }
   [[nodiscard]] MaterialId material(Index slot) const override { return material_[slot]; }
@@ -59,9 +63,6 @@ public:
   void rotations(Range, const double*, double*) const override {}
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
   void coordinate_rates(Range slots, const double* q, const double* v, double* rates) const override;
-  void sweep(Range slots, double step, const SweepArrays& arrays) const override;
-  void next_change(Range slots, double weight, double step, const LoadArrays& loads,
-                   SweepChange& change) const override;
   void apply_inverse_mass(Range slots, const double* f, double* a) const override;
   void apply_mass(Range slots, const double* v, double* p) const override;
   [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;

@@ -72,43 +72,6 @@ void RigidBodyKind<2>::coordinate_rates(Range slots, const double* /*q*/, const 
   std::copy_n(v, 3 * slots.size(), rates);
 }
 
-void RigidBodyKind<2>::sweep(Range slots, double step, const SweepArrays& a) const {
-  const double half = 0.5 * step;
-  Index at = 0;
-  for (Index slot = slots.begin; slot < slots.end; ++slot) {
-    const Inertia& mass = masses_[slot];
-    const double by_mass = half / mass.mass, by_inertia = half / mass.inertia;
-    for (Index i = 0; i < 3; ++i, ++at) {
-      const double inverse = i < 2 ? by_mass : by_inertia;
-      const double change_of_v =
-          inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
-      const double v = a.v0[at] + change_of_v;
-      double move = half * (a.v0[at] + v);
-      if (i == 2 && a.rational_turn) move = Space<2>::rational_turn(move);
-      a.cut[at] = static_cast<float>(change_of_v - (v - a.v0[at]));
-      a.q1[at] = a.q0[at] + move;
-      a.v1[at] = v;
-    }
-  }
-}
-
-void RigidBodyKind<2>::next_change(Range slots, double weight, double step, const LoadArrays& a,
-                                   SweepChange& change) const {
-  SweepChange seen = change;
-  Index at = 0;
-  for (Index slot = slots.begin; slot < slots.end; ++slot) {
-    const Inertia& mass = masses_[slot];
-    const double by_mass = weight * step / mass.mass;
-    const double by_inertia = weight * step * mass.gyration_radius / mass.inertia;
-    for (Index i = 0; i < 3; ++i, ++at) {
-      const double length = i < 2 ? 1.0 : mass.gyration_radius;
-      seen.take((i < 2 ? by_mass : by_inertia) * (a.led_to[at] - a.made_with[at]), a.q1[at] * length);
-      seen.take(0.0, step * a.v1[at] * length);
-    }
-  }
-  change = seen;
-}
-
 void RigidBodyKind<2>::apply_inverse_mass(Range slots, const double* f, double* a) const {
   for (Index slot = slots.begin; slot < slots.end; ++slot, f += 3, a += 3) {
     const Inertia& mass = masses_[slot];

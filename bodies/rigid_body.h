@@ -55,6 +55,14 @@ public:
   [[nodiscard]] Index v_size() const override { return 3; }
   [[nodiscard]] bool has_orientation() const override { return true; }
   [[nodiscard]] double mass(Index slot) const override { return masses_[slot].mass; }
+  [[nodiscard]] BodyMasses masses(Index slot) const override {
+    const Inertia& first = masses_[slot];
+    return {.layout = BodyMasses::Layout::planar_bodies,
+            .stride = sizeof(Inertia) / sizeof(double),
+            .mass = &first.mass,
+            .inertia = &first.inertia,
+            .gyration_radius = &first.gyration_radius};
+  }
   [[nodiscard]] double length_scale(Index slot, Index i) const override {
     return i < 2 ? 1.0 : masses_[slot].gyration_radius;
   }
@@ -64,9 +72,6 @@ public:
   void rotations(Range slots, const double* q, double* rotation) const override;
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
   void coordinate_rates(Range slots, const double* q, const double* v, double* rates) const override;
-  void sweep(Range slots, double step, const SweepArrays& arrays) const override;
-  void next_change(Range slots, double weight, double step, const LoadArrays& loads,
-                   SweepChange& change) const override;
   void apply_inverse_mass(Range slots, const double* f, double* a) const override;
   void apply_mass(Range slots, const double* v, double* p) const override;
   [[nodiscard]] double kinetic_energy(Range slots, const double* v) const override;

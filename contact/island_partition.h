@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace carom {
@@ -24,7 +23,7 @@ public:
   /// \param nodes how many there are \param nodes_of nodes_of(item, f) calls f(node) for the nodes (bodies,
   /// mechanisms, components) that an item joins, at least one
   template <class Item, class NodesOf>
-  std::span<const Range> arrange(std::vector<Item>& items, Index nodes, NodesOf&& nodes_of) {
+  std::span<const Range> arrange(std::span<Item> items, Index nodes, NodesOf&& nodes_of) {
     sets_.start(nodes);
     islands_.clear();
     for (const Item& item : items) {
@@ -52,14 +51,22 @@ public:
 
   /// Likewise of constraints. \param node_of node_of(body) names what answers together with a body
   template <class NodeOf>
-  std::span<const Range> arrange(std::vector<Constraint>& constraints, Index nodes,
-                                 NodeOf&& node_of) requires std::is_invocable_r_v<Index, NodeOf, Index> {
+  std::span<const Range> arrange_constraints(std::span<Constraint> constraints, Index nodes,
+                                             NodeOf&& node_of) {
     return arrange(constraints, nodes, [&](const Constraint& constraint, auto&& f) {
       for (int b = 0; b < constraint.bodies; ++b) {
         f(node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
       }
     });
   }
+
+  /// Parts all nodes; no items.
+  void clear(Index nodes) {
+    sets_.start(nodes);
+    islands_.clear();
+  }
+  /// The island of a node, named by its first node.
+  [[nodiscard]] Index island_of(Index node) { return sets_.find(node); }
 
 private:
   UnionFind sets_;

@@ -48,6 +48,8 @@ public:
   [[nodiscard]] const ContactProblem& problem() const { return problem_; }
   /// The constraints, in the order of build().
   [[nodiscard]] std::span<const Constraint> constraints() const { return constraints_; }
+  /// All their rows.
+  [[nodiscard]] std::span<const ImpulseDirection> directions() const { return directions_; }
   /// Velocities gamma^- of all rows [m/s].
   [[nodiscard]] std::span<const double> before() const { return before_; }
   /// Impulses of all rows [N s].

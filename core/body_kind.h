@@ -8,49 +8,27 @@
 #include <carom/core/fingerprint.h>
 #include <carom/core/ids.h>
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
 
 namespace carom {
 
-/// Arrays of one sweep of the trapezoidal rule; each points at the first number of a range of bodies.
-struct SweepArrays {
-  const double* q0 = nullptr;        ///< coordinates at the start of the step
-  const double* v0 = nullptr;        ///< velocities at the start
-  const float* carried = nullptr;    ///< compensation of the velocities: their rounding errors
-  const double* load0 = nullptr;     ///< loads at the start
-  const double* load1 = nullptr;     ///< loads at the end, of the previous iterate
-  const double* response = nullptr;  ///< change of velocity by contact, null without contact
-  double* q1 = nullptr;              ///< out: coordinates at the end
-  double* v1 = nullptr;              ///< out: velocities at the end
-  float* cut = nullptr;              ///< out: rounding error of v1
-  /// Turn by 2 atan(h w/2) instead of h w, w the mean spin. A lever r then moves by h w x (r0 + r1)/2
-  /// exactly, so that a force at the mean lever does the work of its own displacement.
-  bool rational_turn = false;
-};
-
-/// Arrays of the loads before and after a sweep, like SweepArrays.
-struct LoadArrays {
-  const double* made_with = nullptr;  ///< x
-  const double* led_to = nullptr;     ///< g
-  const double* q1 = nullptr;         ///< coordinates the sweep led to
-  const double* v1 = nullptr;         ///< velocities the sweep led to
-};
-
-/// Difference between an iterate and the next, angles times the radius of gyration [m].
-struct SweepChange {
-  double change = 0.0;  ///< largest change of positions and of h times velocities; NaN if any is
-  double size = 0.0;    ///< largest of the numbers themselves
-
-  /// Takes one number: its change and its size. A NaN is kept.
-  void take(double difference, double number) {
-    difference = difference < 0.0 ? -difference : difference;
-    number = number < 0.0 ? -number : number;
-    // Written so that a NaN is stored, and kept because no number compares greater.
-    if (difference > change || difference != difference) change = difference;
-    if (number > size || number != number) size = number;
-  }
+/// How the masses of bodies of a kind lie in memory, for loops over many of them: of body i of a range
+/// mass[stride * i], and the others likewise.
+struct BodyMasses {
+  /// Meaning of the numbers of a body.
+  enum class Layout : std::uint8_t {
+    planar_points,   ///< two coordinates
+    spatial_points,  ///< three
+    planar_bodies    ///< two coordinates and an angle
+  };
+  Layout layout = Layout::planar_points;    ///< of coordinates and velocities
+  Index stride = 1;                         ///< 0: all bodies have the same mass
+  const double* mass = nullptr;             ///< [kg]
+  const double* inertia = nullptr;          ///< of bodies that turn [kg m^2]
+  const double* gyration_radius = nullptr;  ///< likewise [m]
 };
 
 /// All bodies of one kind. Slots are the places of bodies within the kind; `q` and `v` point at the numbers
@@ -81,6 +59,8 @@ public:
   [[nodiscard]] virtual bool has_orientation() const = 0;
   /// Mass [kg].
   [[nodiscard]] virtual double mass(Index slot) const = 0;
+  /// Masses of the bodies from a slot on.
+  [[nodiscard]] virtual BodyMasses masses(Index slot) const = 0;
   /// Length that weights a change of velocity coordinate `i`: 1 for translations, the radius of
   /// gyration [m] for rotations.
   [[nodiscard]] virtual double length_scale(Index slot, Index i) const = 0;
@@ -97,13 +77,6 @@ public:
   virtual void advance(Range slots, const double* q0, const double* delta, double* q1) const = 0;
   /// dq/dt of a range from its coordinates and velocities.
   virtual void coordinate_rates(Range slots, const double* q, const double* v, double* rates) const = 0;
-  /// One sweep of the implicit trapezoidal rule with step h, bodies of a range at once:
-  ///     v1 = v0 + M^-1 h (load0 + load1)/2 + response,   q1 = q0 advanced by h (v0 + v1)/2.
-  virtual void sweep(Range slots, double step, const SweepArrays& arrays) const = 0;
-  /// Change that another sweep, with g instead of x, would make: velocities by `weight` M^-1 (g - x), and
-  /// coordinates by h/2 times that, which is less than h times it.
-  virtual void next_change(Range slots, double weight, double step, const LoadArrays& loads,
-                           SweepChange& change) const = 0;
   /// a = M^-1 f.
   virtual void apply_inverse_mass(Range slots, const double* f, double* a) const = 0;
   /// p = M v.

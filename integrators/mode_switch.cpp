@@ -66,8 +66,8 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
     joints.update_and_factor({trial.view(), evaluation.rotation.data()});
     MassResponse masses(assembly);
     JointResponse with_joints(joints);
-    const auto islands =
-        partition.arrange(contacts, bodies, [&](Index body) { return assembly.mechanism(body); });
+    const auto islands = partition.arrange_constraints(std::span(contacts), bodies,
+                                                       [&](Index body) { return assembly.mechanism(body); });
     for (const Range island : islands) {
       const std::span<const Constraint> of_body(contacts.data() + island.begin, island.size());
       const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Constraint& contact) {

@@ -1,0 +1,136 @@
+// Problem: rows of joints for every place of a step, past singular positions too.
+
+#include <carom/integrators/time_stepping/joint_rows.h>
+#include <carom/integrators/time_stepping/step_errors.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// Distance from a singular position from which on steps look at where they lead [rad]: more than they turn
+// joints by.
+constexpr double near_angle = 0.1;
+
+JointView view_of(const State& state, const Evaluation& evaluation) {
+  return {state.view(), evaluation.rotation.data()};
+}
+
+/// Brings rows to a configuration; a motion that is not finite there fails the step.
+void update(JointConstraints& rows, const JointView& at, const StepInput& in) {
+  try {
+    rows.update(at);
+  } catch (const SolverError& error) {
+    fail_motion(error, in);
+  }
+}
+
+/// The angle of a row from where it follows from others: pivots are as the squares of angles.
+double angle(const JointConstraints& joints, std::size_t row) {
+  return std::sqrt(std::max(joints.factors().pivot(row), dependent_pivot));
+}
+
+}  // namespace
+
+JointRows::JointRows(const Assembly& assembly, Index component)
+    : component_(component), end_(assembly, component), midpoint_(end_), start_(end_) {}
+
+void JointRows::place_start(const StepInput& in, StepTrial& trial) {
+  evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
+  update(start_, view_of(in.start, trial.at_start), in);
+}
+
+void JointRows::place_end(const StepInput& in, StepTrial& trial) {
+  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
+  update(end_, view_of(trial.end, trial.at_end), in);
+}
+
+void JointRows::place_gaps(const StepInput& in, StepTrial& trial) {
+  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
+  end_.update_gaps(view_of(trial.end, trial.at_end));
+}
+
+void JointRows::place(const StepInput& in, StepTrial& trial) {
+  trial.place_midpoint(in, component_);
+  evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
+  place_end(in, trial);
+  const bool halfway = reactions_ != Reactions::at_end;
+  update(midpoint_, halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end),
+         in);
+}
+
+/// Where rows depend on each other, those halfway may point across those at the end: with an angle a from
+/// there at the end, b halfway, sweeps contract by |1 - b/a|. Reactions along the rows at the end contract,
+/// and cost an error of second order once; where those halfway have some hold, the matrix of both does
+/// without. The angle at the start is 2 b - a.
+void JointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
+  end_.factor();
+  roundoff_growth_ = 1.0;
+  double nearest = 1.0;
+  for (std::size_t row = 0; row < end_.size(); ++row) {
+    const double pivot = end_.factors().pivot(row);
+    nearest = std::min(nearest, pivot);
+    if (pivot >= dependent_pivot) roundoff_growth_ = std::max(roundoff_growth_, 1.0 / std::sqrt(pivot));
+  }
+  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
+  if (nearest > near_angle * near_angle) return;
+  midpoint_.factor();
+  for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
+  evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
+  update(midpoint_, view_of(in.start, trial.at_start), in);
+  midpoint_.factor();
+  for (std::size_t row = 0; row < end_.size(); ++row) look_ahead(row, work[row], angle(midpoint_, row));
+  place(in, trial);
+}
+
+/// Rows of the reactions by one row. \param halfway,start its angles there
+void JointRows::look_ahead(std::size_t row, double halfway, double start) {
+  // A contraction that is good enough; halfway rows that have some hold, against those at the end.
+  constexpr double good_contraction = 0.7, some_hold = 0.1;
+  // Of a pivot, rounding beside the diagonal.
+  constexpr double least_pivot = 1e-17;
+  const double a = angle(end_, row);
+  if (a > near_angle) return;
+  halfway /= a;
+  start /= a;
+  const bool same_side =
+      std::abs(start - std::abs(2.0 * halfway - 1.0)) <= std::abs(start - (2.0 * halfway + 1.0));
+  const double contraction = std::abs(1.0 - (same_side ? halfway : -halfway));
+  if (contraction <= good_contraction) return;
+  // Rounding of positions, magnified by 1/a, turns the rows, and with that velocities.
+  const double true_angle = std::sqrt(std::max(end_.factors().pivot(row), least_pivot));
+  roundoff_growth_ = std::max(roundoff_growth_, contraction / true_angle);
+  near_singular_ = true;
+  if (reactions_ != Reactions::at_end) {
+    reactions_ = halfway >= some_hold ? Reactions::mixed : Reactions::at_end;
+  }
+}
+
+void JointRows::factor() {
+  if (reactions_ == Reactions::mixed) {
+    if (mixed_.factor(end_, midpoint_)) return;
+    reactions_ = Reactions::at_end;
+  }
+  end_.factor();
+}
+
+void JointRows::solve(std::vector<double>& r) {
+  if (reactions_ == Reactions::mixed) {
+    mixed_.solve(r.data());
+  } else {
+    end_.solve(r.data());
+  }
+}
+
+bool JointRows::correct_velocities(const StepInput& in, StepTrial& trial, std::vector<double>& residuals) {
+  update(end_, view_of(trial.end, trial.at_end), in);
+  end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());
+  if (!mixed_.factor(end_, midpoint_)) return false;
+  mixed_.solve(residuals.data());
+  midpoint_.add_response(residuals.data(), trial.end.v.data());
+  return true;
+}
+
+}  // namespace carom

@@ -1,0 +1,81 @@
+#pragma once
+
+/// \file
+/// Rows of the joints of one component in a step: G0 at the start, Gm halfway (or where the reactions push),
+/// G1 at the end; and the factors by which conditions at the end are met. Near a singular position, where
+/// rows depend on each other, the rows of the reactions are chosen so that sweeps contract.
+
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/dynamics/mixed_constraints.h>
+#include <carom/core/export.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Rows along which the joints of a component push.
+enum class Reactions : std::uint8_t {
+  halfway,  ///< those halfway
+  at_end,   ///< those at the end
+  mixed     ///< those halfway, by the matrix of both
+};
+
+/// The rows of a step. Memory of one component.
+class CAROM_API JointRows {
+public:
+  JointRows(const Assembly& assembly, Index component);
+
+  /// Begins a step: reactions along the rows halfway.
+  void start() { reactions_ = Reactions::halfway; }
+  /// Brings the rows at the start to it; evaluates rotations there. Throws SolverError where a prescribed
+  /// motion is not finite, as the others.
+  void place_start(const StepInput& in, StepTrial& trial);
+  /// Brings the rows at the end, and of the reactions, to the iterate, with rotations there and halfway.
+  void place(const StepInput& in, StepTrial& trial);
+  /// Brings the rows at the end alone there, rotations included.
+  void place_end(const StepInput& in, StepTrial& trial);
+  /// Brings the gaps at the end alone there, rotations included.
+  void place_gaps(const StepInput& in, StepTrial& trial);
+  /// Chooses the rows of the reactions at the first iterate, where place() has brought them, and factors the
+  /// rows at the end. \param work one number by row
+  void choose(const StepInput& in, StepTrial& trial, std::vector<double>& work);
+  /// Factors the matrix by which conditions at the end are met.
+  void factor();
+  /// r becomes multipliers of the reactions.
+  void solve(std::vector<double>& r);
+  /// Brings velocities onto the joints where bodies are now, by the mixed rows: where rounding of positions
+  /// turns rows too much. False if that matrix is singular. \param residuals work, then multipliers
+  [[nodiscard]] bool correct_velocities(const StepInput& in, StepTrial& trial,
+                                        std::vector<double>& residuals);
+
+  /// Rows of the reactions that answer a displacement at the end.
+  [[nodiscard]] JointConstraints& pushing() { return reactions_ == Reactions::mixed ? midpoint_ : end_; }
+  [[nodiscard]] JointConstraints& at_start() { return start_; }        ///< G0
+  [[nodiscard]] JointConstraints& at_midpoint() { return midpoint_; }  ///< Gm
+  [[nodiscard]] JointConstraints& at_end() { return end_; }            ///< G1
+  [[nodiscard]] const JointConstraints& at_end() const { return end_; }
+  [[nodiscard]] const JointConstraints& at_start() const { return start_; }
+  /// True if conditions are met by the matrix of both rows.
+  [[nodiscard]] bool is_mixed() const { return reactions_ == Reactions::mixed; }
+  /// True if reactions have left the rows halfway alone.
+  [[nodiscard]] bool is_singular() const { return reactions_ != Reactions::halfway; }
+  /// True near a singular position.
+  [[nodiscard]] bool is_near_singular() const { return near_singular_; }
+  /// Growth of rounding there.
+  [[nodiscard]] double roundoff_growth() const { return roundoff_growth_; }
+
+private:
+  void look_ahead(std::size_t row, double halfway, double start);
+
+  Index component_;
+  JointConstraints end_, midpoint_, start_;
+  MixedConstraints mixed_;
+  Reactions reactions_ = Reactions::halfway;
+  double roundoff_growth_ = 1.0;
+  bool near_singular_ = false;
+};
+
+}  // namespace carom

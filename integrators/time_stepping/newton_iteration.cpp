@@ -1,0 +1,145 @@
+// Problem: guess the loads at the end of a step by the derivatives of the elements, contact included.
+
+#include <carom/core/dynamics/body_response.h>
+#include <carom/integrators/time_stepping/newton_iteration.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace carom {
+
+NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepRule& rule, Index component,
+                                                JointStage* joints, IslandProblem* contact,
+                                                StepTrial& trial) {
+  const Range v = in.assembly.components()[component].v;
+  const Range q = in.assembly.components()[component].q;
+  update_.resize(trial.end.v.size());
+  scratch_.resize(trial.end.v.size());
+  if (joints == nullptr) {
+    std::copy(in.start.q.begin() + q.begin, in.start.q.begin() + q.end, trial.end.q.begin() + q.begin);
+    std::copy(in.start.v.begin() + v.begin, in.start.v.begin() + v.end, trial.end.v.begin() + v.begin);
+  }
+  Loads led_to = trial.loads_end.in_one();
+  evaluate_loads(in.assembly, component, in.start.view(), trial.at_start, led_to);
+  for (Index i = v.begin; i < v.end; ++i) {
+    trial.loads_guess[i] = rule.is_mean() ? 0.0 : -in.companion.loads.total[i];
+  }
+  if (contact != nullptr) contact->forget_impulses();
+  if (joints != nullptr) joints->place(in, trial);
+  if (!linearise(in, component, in.start.view(), trial.at_start, joints, contact)) return Outcome::singular;
+  matrix_.add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),
+                              trial.loads_end.total.data());
+  stale_ = false;
+  return Outcome::done;
+}
+
+bool NewtonIteration::linearise(const StepInput& in, Index component, const StateView& at,
+                                const Evaluation& evaluation, JointStage* joints, IslandProblem* contact) {
+  std::optional<ImplicitSolver::Border> border;
+  if (joints != nullptr) {
+    border.emplace(ImplicitSolver::Border{joints->rows().at_end(), joints->rows().at_midpoint()});
+  }
+  const auto outcome = matrix_.factor(in.assembly, component, at, evaluation, in.step,
+                                      border ? &*border : nullptr, contact != nullptr);
+  if (outcome == ImplicitSolver::Outcome::singular) return false;
+  // With joints W is made anew by every sweep.
+  if (contact == nullptr || joints != nullptr) return true;
+  LinearisedResponse response(matrix_, in.assembly.components()[component].v);
+  contact->respond(response);
+  return true;
+}
+
+NewtonIteration::Outcome NewtonIteration::step(const StepInput& in, const StepRule& rule, Index component,
+                                               IslandProblem* contact, SolverChain& chain, StepTrial& trial) {
+  const Range v = in.assembly.components()[component].v;
+  if (stale_ && !linearise(in, component, trial.end.view(), trial.at_end, nullptr, contact)) {
+    return Outcome::singular;
+  }
+  const double weight = rule.impulse_weight(in.step);
+  for (Index i = v.begin; i < v.end; ++i) {
+    update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
+  }
+  if (contact != nullptr) {
+    contact->map().add_loads(-1.0, update_.data());
+    matrix_.solve(update_.data() + v.begin);
+    for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];
+    contact->set_free_velocity(scratch_.data());
+    std::vector<double>& change = trial.dv_impulses;
+    std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
+    contact->map().add_loads(1.0 / weight, change.data());  // H^T P / w, of the iterate before
+    if (!contact->solve(chain).usable()) return Outcome::unsolved;
+    contact->map().add_velocities(update_.data());
+    contact->map().add_loads(-1.0 / weight, change.data());
+    for (Index i = v.begin; i < v.end; ++i) {
+      trial.loads_guess[i] += change[i];
+      change[i] = 0.0;
+    }
+    MassResponse masses(in.assembly);
+    by_masses_.build(contact->directions(), masses);
+    by_masses_.add_response(contact->impulses(), change.data());
+  } else {
+    matrix_.solve(update_.data() + v.begin);
+  }
+  matrix_.apply_mass(update_.data(), scratch_.data());
+  for (Index i = v.begin; i < v.end; ++i) trial.loads_guess[i] += scratch_[i] / weight;
+  return Outcome::done;
+}
+
+NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, const StepRule& rule,
+                                                           Index component, JointStage& joints,
+                                                           IslandProblem* contact, SolverChain& chain,
+                                                           StepTrial& trial) {
+  const Range v = in.assembly.components()[component].v;
+  joints.place(in, trial);
+  // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
+  // couplings would be loaded across them.
+  if (!linearise(in, component, trial.end.view(), trial.at_end, &joints, contact)) return Outcome::singular;
+  const double weight = rule.impulse_weight(in.step);
+  for (Index i = v.begin; i < v.end; ++i) {
+    update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
+  }
+  JointConstraints& end = joints.rows().at_end();
+  residuals_.resize(end.size());
+  end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
+  matrix_.solve(update_.data() + v.begin, residuals_.data());
+  if (contact != nullptr) {
+    for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];
+    LinearisedResponse response(matrix_, v, joints.is_struck() ? &joints.rows().at_start() : nullptr);
+    contact->respond(response);
+    if (joints.is_struck()) joints.allow_at_start(scratch_.data());
+    contact->set_velocity(scratch_.data());
+    contact->map().add_velocities(update_.data(), -1.0);
+    if (!contact->solve(chain).usable()) return Outcome::unsolved;
+    contact->map().add_velocities(update_.data());
+  }
+  matrix_.apply_mass(update_.data(), scratch_.data());
+  matrix_.subtract_matrix(update_.data(), scratch_.data());
+  for (Index i = v.begin; i < v.end; ++i) {
+    trial.loads_guess[i] = trial.loads_end.total[i] + scratch_[i] / weight;
+  }
+  return Outcome::done;
+}
+
+SweepChange NewtonIteration::change(const StepInput& in, Index component, const StepTrial& trial) const {
+  SweepChange change;
+  in.assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    const Index size = kind.v_size();
+    for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += size) {
+      for (Index i = 0; i < size; ++i) {
+        const double length = kind.length_scale(slot, i);
+        change.take(in.step * update_[v + i] * length, in.step * trial.end.v[v + i] * length);
+      }
+      for (Index i = 0; i < kind.q_size(); ++i) change.take(0.0, trial.end.q[q + i]);
+    }
+  });
+  return change;
+}
+
+void NewtonIteration::note_contraction(int sweeps, double contraction) {
+  // Newton's method contracts ever faster; with a frozen matrix by a steady ratio. Beyond this one a fresh
+  // matrix is cheaper than more sweeps.
+  constexpr double slow = 0.1;
+  stale_ = sweeps > 1 && contraction > slow;
+}
+
+}  // namespace carom

@@ -1,0 +1,287 @@
+// Problem: tell the ledger, the report and the statistics what a step did, and make the step's end the state.
+
+#include <carom/integrators/time_stepping/step_balance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+void StepBalance::begin(const StepInput& in) {
+  result_.flows = {};
+  result_.stored = {};
+  result_.joint_friction_modes.clear();
+  StepReport& report = result_.report;
+  report.contacts.clear();
+  report.joint_impulses.clear();
+  report.time = in.end_time;
+  report.step = in.step;
+  report.iteration = Iteration::fixed_point;
+  report.fallbacks = 0;
+  report.sweeps = 0;
+  report.local_sweeps = 0;
+  report.contraction = 0.0;
+  report.worst_coupling = {};
+  report.worst_coupling_rate = 0.0;
+  report.energy_gain = report.lasting_gain = 0.0;
+  report.projected = 0.0;
+  report.control = {};
+  coupling_work_ = {};
+  energy_position_projection_ = energy_velocity_projection_ = 0.0;
+}
+
+bool StepBalance::book_couplings(const StepInput& in, Index component, const StepTrial& trial) {
+  const Component& all = assembly_->components()[component];
+  StoredEnergies& stored = result_.stored;
+  for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += trial.energies.values[i];
+  double total = 0.0, dissipative = 0.0, external = 0.0;
+  for (Index part = 0; part < all.blocks.size(); ++part) {
+    const BlockWorks& works = trial.works[part];
+    stored[StoredEnergy::kinetic] += works.kinetic;
+    total += works.total;
+    dissipative += works.dissipative;
+    external += works.external;
+  }
+  double inside = 0.0;
+  if (!all.z.empty()) {
+    inside = trial.with_step(in, component,
+                             [&](const StepContext& at) { return internal_loss(*assembly_, component, at); });
+  }
+  // Potentials enter the ledger unseen by any sweep.
+  if (!std::isfinite(dissipative + external + inside + stored.total())) return false;
+  coupling_work_.add(total - dissipative - external + inside);
+  result_.flows[EnergyFlow::dashpot] += inside - dissipative;
+  result_.flows[EnergyFlow::external] += external;
+  return true;
+}
+
+void StepBalance::book_joints(const StepInput& in, Index component, JointStage& joints,
+                              const IslandProblem* contact, StepTrial& trial) {
+  const Assembly& assembly = *assembly_;
+  const Range q = assembly.components()[component].q, v = assembly.components()[component].v;
+  const JointConstraints &start = joints.rows().at_start(), &end = joints.rows().at_end();
+  const double* const total = joints.multipliers(contact);
+  trial.place_midpoint(in, component);
+  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
+  // along the rows at the start have none.
+  rates_.resize(end.size());
+  joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
+  for (std::size_t row = 0; row < rates_.size(); ++row) {
+    double rate = 0.0;
+    if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
+    result_.flows[EnergyFlow::external] -= total[row] * rate;
+    coupling_work_.add((joints.is_struck() ? joints.reactions()[row] : total[row]) * (rates_[row] + rate));
+  }
+  // Work of the conservative loads along the displacement, where that is not below the last digit of the
+  // coordinates: at rest it would add up, although nothing moves.
+  double taken = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) {
+    double load = trial.loads_end.total[i];
+    if (!trial.loads_end.dissipative.empty()) load -= trial.loads_end.dissipative[i];
+    if (!trial.loads_end.external.empty()) load -= trial.loads_end.external[i];
+    // Coordinates and velocities of the plane correspond one to one.
+    const double at = trial.end.q[q.begin + (i - v.begin)];
+    taken += load * (at - (at - joints.displacement()[i]));
+  }
+  energy_position_projection_ += taken;
+
+  evaluate_positions(assembly, component, trial.midpoint.view(), trial.at_midpoint);
+  const JointView halfway{trial.midpoint.view(), trial.at_midpoint.rotation.data()};
+  Index row = 0;
+  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+    const JointKind& of_kind = *assembly.joint_kinds()[kind];
+    const Range range = assembly.joints(component, kind);
+    for (Index joint = range.begin; joint < range.end; ++joint, row += of_kind.rows()) {
+      if (of_kind.rows() == 0) continue;
+      const JointReaction impulse = of_kind.reaction(halfway, joint, total + row);
+      result_.report.joint_impulses.push_back({assembly.joint_id(kind, joint), impulse, in.end_time});
+    }
+  }
+}
+
+double StepBalance::book_contacts(const IslandProblem& problem, const double* after, const StepTrial& trial) {
+  ImpulseWork work;
+  bool impact = false;
+  for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
+    if (problem.constraints()[contact].has_dry_friction()) {
+      book_joint_friction(problem, contact, after, trial, work);
+    } else {
+      book_contact(problem, contact, after, work, impact);
+    }
+  }
+  return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
+}
+
+void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
+                               ImpulseWork& sum, bool& impact) {
+  const ContactRecord& entry = record(problem, contact, after);
+  result_.flows[EnergyFlow::external] += problem.map().surface_work(contact);
+  impact = impact || entry.impact;
+  for (int direction = 0; direction < entry.directions; ++direction) {
+    const auto at = static_cast<std::size_t>(direction);
+    const double work = sum.add(entry.impulse[at], entry.velocity_before[at], entry.velocity_after[at]);
+    const EnergyFlow line = entry.impact
+                                ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                                : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+    result_.flows[line] -= work;
+  }
+}
+
+/// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
+/// an error of the step: the law holds the velocity along the row at its start, which turns meanwhile.
+/// Returns what an impact gained.
+double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
+                              const StepTrial& trial) {
+  ImpulseWork sum = work;
+  if (!sum.is_gain()) return 0.0;
+  if (!impact) {
+    // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
+    // velocities of the bodies, of those of the surfaces.
+    for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
+      const Constraint& contact = problem.constraints()[c];
+      for (int i = 0; i < contact.rows; ++i) {
+        const auto row = static_cast<std::size_t>(problem.first_row(c) + i);
+        const double size = std::abs(problem.problem().vector()[row]) + contact.speed(i, trial.end.v.data());
+        sum.scale += std::abs(problem.impulses()[row]) * size;
+        if (!sum.is_gain()) return 0.0;  // the scale only grows
+      }
+    }
+  }
+  result_.report.energy_gain += sum.gain;
+  if (impact) return sum.gain;
+  result_.report.lasting_gain += sum.gain;
+  return 0.0;
+}
+
+/// Friction in a joint, along its row at the start or halfway, where the trial has the mean velocities.
+void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
+                                      const StepTrial& trial, ImpulseWork& sum) {
+  const Constraint& at = problem.constraints()[contact];
+  const double moment = problem.map().impulse(contact, 0), before = problem.map().before(contact, 0);
+  const double mean_rate = after == trial.end.v.data() ? at.times(0, trial.midpoint.v.data())
+                                                       : 0.5 * (before + at.velocity_after(0, after));
+  JointReaction reaction;
+  reaction.moment = moment;
+  result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;
+  sum.gain += moment * mean_rate;
+  sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(before), std::abs(mean_rate));
+  result_.report.joint_impulses.push_back(
+      {JointId{at.key.a.serial, assembly_->system().token()}, reaction, result_.report.time});
+  const ContactMode mode = problem.modes()[contact];
+  result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
+}
+
+ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact, const double* after) {
+  const Constraint& at = problem.constraints()[contact];
+  const ImpulseMap map = problem.map();
+  ContactRecord& entry = result_.report.contacts.emplace_back();
+  entry.key = at.key;
+  entry.body = assembly_->layout()->id(at.body());
+  if (at.key.b.owner == FeatureKey::Owner::obstacle) {
+    entry.obstacle = {at.key.b.serial, assembly_->system().token()};
+  }
+  entry.directions = at.rows;
+  entry.gap = at.gap;
+  for (int row = 0; row < at.rows; ++row) {
+    const auto direction = static_cast<std::size_t>(row);
+    entry.velocity_before[direction] = map.before(contact, row);
+    entry.velocity_after[direction] = at.velocity_after(row, after);
+    entry.impulse[direction] = map.impulse(contact, row);
+    entry.work[direction] = impulse_work(entry.impulse[direction], entry.velocity_before[direction],
+                                         entry.velocity_after[direction]);
+  }
+  entry.mode = problem.modes()[contact];
+  entry.impact = entry.velocity_before[0] < -capture_speed_;
+  entry.outcome = problem.report().outcome;
+  entry.residual = problem.report().residual;
+  entry.solver = problem.report().solver;
+  return entry;
+}
+
+void StepBalance::book_projection(const GapProjection::Result& result, const StoredEnergies& before,
+                                  const StepTrial& trial) {
+  result_.report.projected = std::max(result_.report.projected, result.shift);
+  energy_position_projection_ += before.potential() - trial.energies.potential();
+  for (std::size_t i = 0; i < stored_energy_count; ++i) {
+    result_.stored.values[i] += trial.energies.values[i] - before.values[i];
+  }
+}
+
+void StepBalance::book_velocity_projection(double lost) {
+  energy_velocity_projection_ += lost;
+  result_.stored[StoredEnergy::kinetic] -= lost;
+}
+
+StepResult& StepBalance::finish(const StepInput& in) {
+  EnergyFlows& flows = result_.flows;
+  flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
+  flows[EnergyFlow::coupling_discretisation] = -(result_.stored.potential() + energy_position_projection_ -
+                                                 in.companion.ledger.potential() + coupling_work_.value());
+  return result_;
+}
+
+namespace {
+
+void add_to(Statistics& statistics, const StepReport& report) {
+  ++statistics.steps;
+  statistics.sweeps += report.sweeps;
+  ++statistics.steps_by_iteration[static_cast<std::size_t>(report.iteration)];
+  statistics.fallbacks += report.fallbacks;
+  statistics.most_sweeps = std::max(statistics.most_sweeps, report.sweeps);
+  statistics.largest_contraction = std::max(statistics.largest_contraction, report.contraction);
+  for (const ContactRecord& contact : report.contacts) {
+    ++statistics.contact_steps;
+    if (contact.impact) ++statistics.impacts;
+    if (contact.outcome == Outcome::several_solutions) ++statistics.several_solutions;
+    if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
+    statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
+    statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
+  }
+  if (report.energy_gain > report.lasting_gain) {
+    ++statistics.energy_gains;
+    statistics.energy_gained += report.energy_gain - report.lasting_gain;
+  }
+  if (report.lasting_gain > 0.0) {
+    ++statistics.lasting_gains;
+    statistics.lasting_gained += report.lasting_gain;
+  }
+}
+
+}  // namespace
+
+void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
+            Companion& companion, StepReport& report) {
+  const double step = in.step, end_time = in.end_time;
+  std::swap(state.q, trial.end.q);
+  std::swap(state.v, trial.end.v);
+  std::swap(state.z, trial.end.z);
+  state.time = end_time;
+  PresentLoads& loads = companion.loads;
+  loads.total.swap(trial.loads_end.total);
+  loads.dissipative.swap(trial.loads_end.dissipative);
+  loads.external.swap(trial.loads_end.external);
+  loads.valid = true;
+  loads.mean = memory.mean;
+  // The loads at the start are kept as those to which the next step compares its own.
+  companion.history = std::move(trial.history);
+  companion.history.sweeps = memory.sweeps;
+  if (memory.guesses) {
+    companion.history.go_on(step, trial.loads_end.total.size());
+    companion.history.before.swap(trial.loads_end.total);
+  } else {
+    companion.history.step = step;
+  }
+  std::swap(companion.rounding, trial.rounding);
+  companion.iterations.swap(memory.iterations);
+  companion.ledger.book(result.flows, result.stored);
+  companion.modes = result.joint_friction_modes;
+  for (const ContactRecord& contact : result.report.contacts) {
+    companion.modes.emplace_back(contact.key, contact.mode);
+  }
+  add_to(companion.statistics, result.report);
+  result.report.findings.swap(report.findings);
+  std::swap(report, result.report);
+}
+
+}  // namespace carom

@@ -1,0 +1,91 @@
+#pragma once
+
+/// \file
+/// The account of a step: works of what acted, energies at the end, records of contacts and joints. It is the
+/// result of the step, which its caller commits.
+
+#include <carom/contact/island_problem.h>
+#include <carom/core/energy_ledger.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/core/numerics/compensated_sum.h>
+#include <carom/integrators/run/iteration_memory.h>
+#include <carom/integrators/run/step_report.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/gap_projection.h>
+#include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_rule.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Result of a step, beside the trial.
+struct StepResult {
+  EnergyFlows flows;      ///< energy that left, by cause [J]
+  StoredEnergies stored;  ///< at the end [J]
+  StepReport report;      ///< of the step
+  std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
+};
+
+/// Adds up a step, component by component. Keeps memory.
+class CAROM_API StepBalance {
+public:
+  explicit StepBalance(const Assembly& assembly, const TimeStepping& options)
+      : assembly_(&assembly), capture_speed_(options.capture_speed) {}
+
+  /// Begins a step.
+  void begin(const StepInput& in);
+  /// Books what elements did: works and energies of the last iterate. False if one is not finite.
+  [[nodiscard]] bool book_couplings(const StepInput& in, Index component, const StepTrial& trial);
+  /// Books the work of reactions and of the way back onto the joints; records their impulses.
+  void book_joints(const StepInput& in, Index component, JointStage& joints, const IslandProblem* contact,
+                   StepTrial& trial);
+  /// Books the impulses of a contact problem. Returns the energy that an impact gained [J], else 0.
+  /// \param after velocities at the end as contact sees them
+  double book_contacts(const IslandProblem& problem, const double* after, const StepTrial& trial);
+  /// Books that bodies were moved out of ground shapes. \param before energies of the component before
+  void book_projection(const GapProjection::Result& result, const StoredEnergies& before,
+                       const StepTrial& trial);
+  /// Books a change of kinetic energy by bringing velocities back onto joints. \param lost [J]
+  void book_velocity_projection(double lost);
+
+  /// The report so far.
+  [[nodiscard]] StepReport& report() { return result_.report; }
+  /// Closes the account.
+  [[nodiscard]] StepResult& finish(const StepInput& in);
+
+private:
+  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum,
+                    bool& impact);
+  void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
+                           const StepTrial& trial, ImpulseWork& sum);
+  double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
+                   const StepTrial& trial);
+  ContactRecord& record(const IslandProblem& problem, std::size_t contact, const double* after);
+
+  const Assembly* assembly_;
+  double capture_speed_;
+  StepResult result_;
+  std::vector<double> rates_;  // by row of joints
+  CompensatedSum coupling_work_;
+  double energy_position_projection_ = 0.0;  // energy taken out by moving bodies [J]
+  double energy_velocity_projection_ = 0.0;  // and by what that changes of their velocities [J]
+};
+
+/// Memory of how the components of a step were iterated, for the next step.
+struct StepMemory {
+  std::vector<int> sweeps;     ///< by component, as many as were needed
+  IterationMemory iterations;  ///< with which the next step begins
+  bool guesses = false;        ///< whether any component has loads that change
+  bool mean = false;           ///< loads are mean loads of the step
+};
+
+/// Makes the end of a step the state, and takes its result over.
+CAROM_API void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result,
+                      State& state, Companion& companion, StepReport& report);
+
+}  // namespace carom

@@ -1,0 +1,255 @@
+// Problem: say what went wrong in a step, with names, and what would help.
+
+#include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/integrators/run/failure_file.h>
+#include <carom/integrators/time_stepping/step_errors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+bool all_finite(const std::vector<double>& numbers, Range range) {
+  return std::all_of(numbers.begin() + range.begin, numbers.begin() + range.end,
+                     [](double number) { return std::isfinite(number); });
+}
+
+std::string place(const StepInput& in) {
+  return "time stepping at t = " + to_text(in.start.time) + " s, step " + to_text(in.step) + " s: ";
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+void check_options(const TimeStepping& options) {
+  const auto refuse = [](const char* option, double value, const char* allowed) {
+    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
+                     "; allowed: " + allowed_instead(value, allowed));
+  };
+  if (!(is_admissible(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
+  if (!(is_admissible(options.tolerance) && options.tolerance >= 0.0)) {
+    refuse("tolerance", options.tolerance, "finite and >= 0 m");
+  }
+  if (options.force_rule > ForceRule::energy_momentum) {
+    refuse("force_rule", static_cast<double>(options.force_rule), "trapezoidal (0) or energy_momentum (1)");
+  }
+  if (options.iteration > Iteration::automatic) {
+    refuse("iteration", static_cast<double>(options.iteration),
+           "one of Iteration, fixed_point (0) to automatic (3)");
+  }
+  if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
+  if (options.threads < 1) refuse("threads", options.threads, "at least 1");
+  if (options.threads > 1 && !Workers::several_available()) {
+    refuse("threads", options.threads, "1, for the library was built without oneTBB (CAROM_WITH_TBB)");
+  }
+  if (options.control) {
+    const StepControl& control = *options.control;
+    if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
+      refuse("control.tolerance", control.tolerance, "finite and > 0 m");
+    }
+    if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
+      refuse("control.smallest", control.smallest, "finite and > 0 s");
+    }
+    if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
+      refuse("control.largest", control.largest, "finite and >= control.smallest");
+    }
+    if (!(options.step >= control.smallest && options.step <= control.largest)) {
+      refuse("step", options.step, "between control.smallest and control.largest");
+    }
+  }
+  if (!(is_admissible(options.capture_speed) && options.capture_speed >= 0.0)) {
+    refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
+  }
+  check_failure_directory(options.failure_directory, "time stepping");
+}
+
+void fail_motion(const SolverError& error, const StepInput& in) {
+  SolverFailure failure = error.failure();
+  failure.time = in.start.time;
+  failure.step = in.step;
+  throw SolverError(place(in) + error.what(), std::move(failure));
+}
+
+SolverError with_file(const SolverError& error, const TimeStepping& options) {
+  if (error.failure().problem == nullptr) return error;
+  const std::string message = error.what();
+  return {message + write_failure(options.failure_directory, error.failure(), message), error.failure()};
+}
+
+SolverFailure StepErrors::failure() const {
+  SolverFailure failure;
+  failure.time = in_.start.time;
+  failure.step = in_.step;
+  return failure;
+}
+
+SolverFailure StepErrors::failure_of(const IslandProblem& problem) const {
+  SolverFailure failure = this->failure();
+  failure.residual = problem.report().residual;
+  for (const Constraint& contact : problem.constraints())
+    failure.parts.push_back(detector_.name(contact.key));
+  failure.problem = std::make_shared<const ContactProblem>(problem.problem());
+  return failure;
+}
+
+void StepErrors::demand_finite_loads(const StateView& at) const {
+  evaluate_positions(in_.assembly, component_, at, trial_.at_end);
+  const ElementId cause = find_non_finite(in_.assembly, component_, at, trial_.at_end);
+  if (!cause.valid()) return;
+  SolverFailure failure = this->failure();
+  failure.parts.push_back(system().name(cause));
+  const std::string message = place(in_) + "the loads of " + failure.parts.front() + " are not finite";
+  throw SolverError(message, std::move(failure));
+}
+
+/// Throws if an element has loads that are not finite: at the start, or at the last iterate, whose bodies are
+/// still where loads can be asked for. Loads may overflow only because the iteration diverged; then no
+/// element is to blame.
+void StepErrors::find_cause(bool implicit) const {
+  const Component& all = in_.assembly.components()[component_];
+  demand_finite_loads(in_.start.view());
+  if (!implicit && all_finite(trial_.end.q, all.q) && all_finite(trial_.end.v, all.v)) {
+    demand_finite_loads(trial_.end.view());
+  }
+  // Where the iterates are lost, a law of time shows itself in the configuration of the start too.
+  StateView at_end = in_.start.view();
+  at_end.time = in_.end_time;
+  demand_finite_loads(at_end);
+}
+
+void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iteration, const JointStage* joints,
+                                  std::span<const IslandProblem> problems) const {
+  // The bound of the rating is pessimistic by itself; the rest is room for forces that stiffen on the way.
+  constexpr double caution = 0.9;
+  std::vector<std::string> jumping;
+  for (const IslandProblem& problem : problems) {
+    if (!problem.changed_modes()) continue;
+    for (const Constraint& contact : problem.constraints()) jumping.push_back(detector_.name(contact.key));
+  }
+  const bool implicit = iteration == Iteration::linearly_implicit;
+  const bool automatic = options_.iteration == Iteration::automatic;
+  if (!std::isfinite(judge.change())) find_cause(implicit);
+
+  SolverFailure failure = this->failure();
+  failure.residual = judge.change();
+  evaluate_positions(in_.assembly, component_, in_.start.view(), trial_.at_end);
+  const CouplingRating rating =
+      rate_couplings(in_.assembly, component_, in_.start.view(), trial_.at_end, in_.step);
+  std::string message = place(in_) + "the " + std::string(to_string(iteration)) +
+                        " iteration does not contract after " + std::to_string(judge.sweeps()) +
+                        " sweeps (last change " + to_text(judge.change()) + " m)";
+  if (automatic) message += ", nor do the Anderson and the linearly implicit iteration";
+  if (rating.worst.valid()) {
+    failure.parts.push_back(system().name(rating.worst));
+    failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * in_.step);
+    message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
+  }
+  if (joints != nullptr) {
+    double violation = 0.0;
+    const JointId joint = joints->worst_joint(violation);
+    if (joint.valid()) {
+      failure.parts.push_back(system().name(joint));
+      message += "; of the joints " + failure.parts.back() + " is violated most, by " + to_text(violation);
+    }
+  }
+  if (rating.component_rate >= 1.0) {
+    message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
+    if (!implicit && !automatic) message += ", as would the linearly implicit iteration";
+  } else {
+    // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
+    message += "; by their derivatives at its start the force elements contract (rate " +
+               to_text(rating.component_rate) + " together), so a force jumps or stiffens";
+    if (joints != nullptr) {
+      failure.suggested_step = 0.5 * in_.step;
+      message += ", or the joints turn far within the step or are near a singular position";
+    }
+    if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
+    failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_contact(const IslandProblem& problem) const {
+  SolverFailure failure = failure_of(problem);
+  const auto b = problem.problem().vector();
+  const bool finite = std::all_of(b.begin(), b.end(), [](double number) { return std::isfinite(number); });
+  // Loads that are not finite reach the contact first; the iterate before, if there was one, is still there.
+  if (!finite) {
+    demand_finite_loads(in_.start.view());
+    if (trial_.swept) demand_finite_loads(trial_.end.view());
+  }
+  std::string message = place(in_) + "contact problem of " + listed(failure.parts) + ": ";
+  if (problem.report().usable()) {
+    message += "friction in joints and the forces that bound it do not settle";
+  } else {
+    message += to_string(problem.report().outcome);
+    if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
+    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_);
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_account() const {
+  demand_finite_loads(trial_.end.view());
+  const ElementId cause =
+      find_non_finite_potential(in_.assembly, component_, trial_.end.view(), trial_.at_end);
+  SolverFailure failure = this->failure();
+  std::string message = place(in_);
+  if (cause.valid()) {
+    failure.parts.push_back(system().name(cause));
+    message += "the potential of " + failure.parts.front() + " is not finite";
+  } else {
+    message += "an energy is too large to be counted";
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_internal(ElementId element) const {
+  SolverFailure failure = this->failure();
+  failure.parts.push_back(system().name(element));
+  const std::string message =
+      place(in_) + "the internal variables of " + failure.parts.front() + " cannot be advanced";
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_linearisation() const {
+  evaluate_positions(in_.assembly, component_, in_.start.view(), trial_.at_end);
+  const CouplingRating rating =
+      rate_couplings(in_.assembly, component_, in_.start.view(), trial_.at_end, in_.step);
+  demand_finite_loads(in_.start.view());
+  SolverFailure failure = this->failure();
+  failure.suggested_step = 0.5 * in_.step;
+  std::string message = place(in_) + "the matrix of the linearly implicit iteration is singular";
+  if (rating.worst.valid()) {
+    failure.parts.push_back(system().name(rating.worst));
+    message += "; stiffest is " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_projection(const Constraint& left) const {
+  SolverFailure failure = this->failure();
+  failure.residual = -left.gap;
+  failure.parts.push_back(detector_.name(left.key));
+  const std::string message = place(in_) + "project_gaps: no displacement brings " + failure.parts.front() +
+                              " out, gap " + to_text(left.gap) + " m";
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {
+  SolverFailure failure = failure_of(problem);
+  std::string message = place(in_) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
+                        " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+  throw SolverError(message, std::move(failure));
+}
+
+}  // namespace carom

@@ -1,0 +1,69 @@
+#pragma once
+
+/// \file
+/// Errors of a step, with the names of the parts to blame and what would help. The failed trial is asked, the
+/// step is not repeated.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/island_problem.h>
+#include <carom/core/errors.h>
+#include <carom/core/export.h>
+#include <carom/core/numerics/fixed_point.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+
+#include <span>
+
+namespace carom {
+
+/// Demands options that can be. Throws ModelError naming the option.
+CAROM_API void check_options(const TimeStepping& options);
+
+/// Throws an error of a prescribed motion again, with the time of the step.
+[[noreturn]] void fail_motion(const SolverError& error, const StepInput& in);
+
+/// The error with the name of a file of its contact problem, if it has one and a directory is given.
+[[nodiscard]] SolverError with_file(const SolverError& error, const TimeStepping& options);
+
+/// Says why a step of one component failed.
+class CAROM_API StepErrors {
+public:
+  /// \param trial as the step left it; rotations in it are worked with
+  StepErrors(const StepInput& in, Index component, const Detector& detector, const TimeStepping& options,
+             StepTrial& trial)
+      : in_(in), component_(component), detector_(detector), options_(options), trial_(trial) {}
+
+  /// The iteration does not contract.
+  /// \param joints of the component; null: none \param problems of its contacts
+  [[noreturn]] void fail_contraction(const FixedPointJudge& judge, Iteration iteration,
+                                     const JointStage* joints, std::span<const IslandProblem> problems) const;
+  /// A contact problem is not solved.
+  [[noreturn]] void fail_contact(const IslandProblem& problem) const;
+  /// An energy is not finite.
+  [[noreturn]] void fail_account() const;
+  /// The internal variables of an element cannot be advanced.
+  [[noreturn]] void fail_internal(ElementId element) const;
+  /// The matrix of Newton's method is singular.
+  [[noreturn]] void fail_linearisation() const;
+  /// A gap cannot be opened.
+  [[noreturn]] void fail_projection(const Constraint& left) const;
+  /// An impact adds energy [J], which is refused.
+  [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
+
+private:
+  void demand_finite_loads(const StateView& at) const;
+  void find_cause(bool implicit) const;
+  [[nodiscard]] SolverFailure failure() const;
+  [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
+  [[nodiscard]] const System& system() const { return in_.assembly.system(); }
+
+  const StepInput& in_;
+  Index component_;
+  const Detector& detector_;
+  const TimeStepping& options_;
+  StepTrial& trial_;
+};
+
+}  // namespace carom

@@ -1,0 +1,66 @@
+#include <carom/core/numerics/pair.h>
+#include <carom/integrators/time_stepping/step_kernels.h>
+#include <carom/integrators/time_stepping/step_rule.h>
+
+namespace carom {
+
+namespace {
+
+/// Work of the impulse of loads a and b at the ends of a step: impulse times mean velocity, exact for the
+/// kinetic energy [J].
+double work(const double* a, const double* b, const State& start, const State& end, Range v, double step) {
+  Pair pairs = both(0.0);
+  Index i = v.begin;
+  for (; i + 1 < v.end; i += 2) {
+    pairs +=
+        (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) * (load_pair(a + i) + load_pair(b + i));
+  }
+  double sum = pairs[0] + pairs[1];
+  if (i < v.end) sum += (start.v[i] + end.v[i]) * (a[i] + b[i]);
+  return 0.25 * step * sum;
+}
+
+}  // namespace
+
+void StepRule::move(const StepInput& in, Index component, Range bodies, bool with_impulses,
+                    StepTrial& trial) const {
+  const double* const load0 = start_of_sum(in, trial);
+  in.assembly.for_bodies(component, bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    sweep_bodies(kind.masses(slots.begin), slots.size(), in.step,
+                 {in.start.q.data() + q, in.start.v.data() + v, in.companion.rounding.data() + v, load0 + v,
+                  trial.loads_guess.data() + v, with_impulses ? trial.dv_impulses.data() + v : nullptr,
+                  trial.end.q.data() + q, trial.end.v.data() + v, trial.rounding.data() + v, is_mean()});
+  });
+}
+
+SweepChange StepRule::next_change(const StepInput& in, Index component, Range bodies,
+                                  const StepTrial& trial) const {
+  SweepChange change;
+  in.assembly.for_bodies(component, bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    add_next_change(kind.masses(slots.begin), slots.size(), impulse_weight(in.step), in.step,
+                    {trial.loads_guess.data() + v, trial.loads_end.total.data() + v, trial.end.q.data() + q,
+                     trial.end.v.data() + v},
+                    change);
+  });
+  return change;
+}
+
+BlockWorks StepRule::works(const StepInput& in, Index component, const Block& block,
+                           const StepTrial& trial) const {
+  const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+    if (at_end.empty()) return 0.0;
+    const double* const first = is_mean() ? at_end.data() : at_start.data();
+    return work(first, at_end.data(), in.start, trial.end, block.v, in.step);
+  };
+  BlockWorks sums{};
+  sums.total = work(start_of_sum(in, trial), trial.loads_guess.data(), in.start, trial.end, block.v, in.step);
+  sums.dissipative = of_cause(in.companion.loads.dissipative, trial.loads_end.dissipative);
+  sums.external = of_cause(in.companion.loads.external, trial.loads_end.external);
+  in.assembly.for_bodies(component, block.bodies,
+                         [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+                           sums.kinetic += kind.kinetic_energy(slots, trial.end.v.data() + v);
+                         });
+  return sums;
+}
+
+}  // namespace carom

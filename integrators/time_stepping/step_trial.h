@@ -1,0 +1,93 @@
+#pragma once
+
+/// \file
+/// The end of a step as far as it is known: the iterate of positions and velocities, the guess at the loads
+/// that led to it, the loads that it leads to. A step that fails leaves it where it failed, to be asked why.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/core/force_kind.h>
+#include <carom/integrators/time_stepping/step_input.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Loads by cause, arrays over all velocities [N, N m].
+struct LoadsAtEnd {
+  std::vector<double> total;        ///< sum; where causes are evaluated its conservative part, until finish()
+  std::vector<double> dissipative;  ///< empty if no element books any
+  std::vector<double> external;     ///< likewise
+
+  /// Arrays for elements that book by cause.
+  [[nodiscard]] Loads by_cause();
+  /// An array for their sum alone.
+  [[nodiscard]] Loads in_one() { return {total.data(), total.data(), total.data()}; }
+  /// Adds the other causes to the conservative part, over the velocities `v`.
+  void finish(Range v);
+};
+
+/// Energy and work over a block of bodies [J]: kinetic energy at the end, works of the loads by cause.
+struct BlockWorks {
+  double kinetic = 0.0, total = 0.0, dissipative = 0.0, external = 0.0;
+};
+
+/// Quantities of which the model of a run needs some: they save what nobody asks for.
+struct StepNeeds {
+  bool dissipative = false;      ///< an element books dissipative loads,
+  bool external = false;         ///< or external ones
+  bool load_rotations = false;   ///< loads depend on rotations of bodies,
+  bool start_rotations = false;  ///< or they, or contacts, at the start
+  bool midpoint = false;         ///< an element, or a joint, is asked halfway
+};
+/// Reads them off a model. \param mean whether elements give mean loads
+[[nodiscard]] StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean);
+
+/// The trial of one step at a time. Keeps its memory.
+struct CAROM_API StepTrial {
+  StepTrial(const Assembly& assembly, const StepNeeds& model);
+
+  /// Takes over the history of loads and forgets the step before. \param in the next step
+  void begin(const StepInput& in, LoadHistory& history);
+  /// Gives the history back after a step that failed: nothing in it is pending any more.
+  void give_back(const StepInput& in, LoadHistory& history);
+
+  /// Guesses loads over a block by those of the last steps.
+  void guess_loads(const StepInput& in, Index block);
+  /// Takes the loads that the guess led to for the next guess.
+  void take_loads(Range v);
+  /// Brings the midpoint of a component to the iterate: positions, velocities, time.
+  void place_midpoint(const StepInput& in, Index component);
+  /// The step of a component as elements see it, `f` called with it.
+  template <class F>
+  auto with_step(const StepInput& in, Index component, F&& f) const {
+    const EvaluationContext start{in.assembly, in.start.view(), at_start, component};
+    const EvaluationContext there{in.assembly, end.view(), at_end, component};
+    const EvaluationContext middle{in.assembly, midpoint.view(), at_midpoint, component};
+    return f(StepContext{start, there, middle, in.step});
+  }
+  /// Room for velocities without contact, once anything touches.
+  void expect_impulses();
+
+  StepNeeds needs;                           ///< of the model
+  State end;                                 ///< q_{j+1}, v_{j+1}, z_{j+1} of the last sweep
+  State midpoint;                            ///< halfway, where elements or joints are asked
+  Evaluation at_start, at_midpoint, at_end;  ///< rotations
+  std::vector<double> loads_guess;           ///< F_{j+1}, or mean loads, as guessed
+  LoadsAtEnd loads_end;                      ///< those that the guess led to
+  std::vector<float> rounding;               ///< what rounding cuts off v_{j+1}
+  std::vector<double> dv_impulses;     ///< changes of velocity by impulses; empty until anything touches
+  std::vector<double> free;            ///< velocities without them, likewise
+  std::vector<BlockWorks> works;       ///< by block of the component at hand
+  StoredEnergies energies;             ///< potentials of the component at hand, by cause
+  LoadHistory history;                 ///< of the companion, during a step
+  std::vector<std::uint8_t> recorded;  ///< by block: its part of the last change, where that is pending
+  bool swept = false;                  ///< `end` is an iterate of the component at hand
+
+private:
+  void record_change(const StepInput& in, Index block);
+};
+
+}  // namespace carom

@@ -1,0 +1,198 @@
+// Problem: sweeps and the loads they lead to, with as little traffic to memory as can be: all that is to be
+// done with a block of bodies is done while its numbers are at hand.
+
+#include <carom/integrators/time_stepping/sweep_schedule.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace carom {
+
+SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs)
+    : assembly_(&assembly), workers_(std::max(options.threads, 1)) {
+  classify(options, needs);
+  Index most_blocks = 1;
+  for (const Component& component : assembly.components()) {
+    most_blocks = std::max(most_blocks, component.blocks.size());
+  }
+  changes_.resize(most_blocks);
+  earlier_changes_.resize(most_blocks);
+  local_.resize(most_blocks);
+}
+
+void SweepSchedule::classify(const TimeStepping& options, const StepNeeds& needs) {
+  const Assembly& assembly = *assembly_;
+  coupling_.assign(assembly.components().size(), CouplingClass::iterated);
+  const bool mean = options.force_rule == ForceRule::energy_momentum;
+  if (options.iteration == Iteration::linearly_implicit || mean || needs.load_rotations) return;
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    if (assembly.has_joints(component) || !assembly.components()[component].z.empty()) continue;
+    coupling_[component] = CouplingClass::constant_loads;
+    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+      if (assembly.elements(component, kind).empty() || assembly.force_kinds()[kind]->is_constant()) continue;
+      coupling_[component] = CouplingClass::streamable;
+    }
+  }
+}
+
+bool SweepSchedule::any_iterated() const {
+  return std::any_of(coupling_.begin(), coupling_.end(),
+                     [](CouplingClass coupling) { return coupling != CouplingClass::constant_loads; });
+}
+
+bool SweepSchedule::may_fuse(const SweepStages& stages, int sweeps, int expected) const {
+  return stages.blocks().size() > 1 && sweeps + 2 == expected;
+}
+
+void SweepSchedule::guess(const SweepStages& stages) const {
+  for_blocks(stages, [&](const Block&, Index part) { stages.guess(part); });
+}
+
+void SweepSchedule::move(const SweepStages& stages) const {
+  for_blocks(stages, [&](const Block& block, Index part) { stages.move(block, part); });
+}
+
+void SweepSchedule::improve(const SweepStages& stages) const {
+  for_blocks(stages, [&](const Block& block, Index) { stages.improve(block); });
+}
+
+void SweepSchedule::finish_constant(const SweepStages& stages) const {
+  for_blocks(stages, [&](const Block& block, Index part) {
+    stages.trial.works[part] = stages.rule.works(stages.in, stages.component, block, stages.trial);
+  });
+}
+
+SweepChange SweepSchedule::largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const {
+  SweepChange largest = changes[0];
+  for (Index part = 1; part < stages.blocks().size(); ++part) largest.take(changes[part]);
+  return largest;
+}
+
+void SweepSchedule::evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes) {
+  evaluate(stages, asked, with_changes, {});
+}
+
+void SweepSchedule::evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes,
+                             BlockTask first) {
+  StepTrial& trial = stages.trial;
+  const Index component = stages.component;
+  const bool by_cause = asked == LoadsKnown::by_cause;
+  const auto last = [&](const Block& block, Index part) {
+    if (by_cause) stages.finish(block, part);
+    if (with_changes) changes_[part] = stages.change(block);
+  };
+  const Loads loads = by_cause ? trial.loads_end.by_cause() : trial.loads_end.in_one();
+  const BlockTasks tasks{first, last};
+  if (by_cause) trial.energies = {};
+  if (stages.rule.is_mean()) {
+    trial.with_step(stages.in, component, [&](const StepContext& at) {
+      evaluate_mean_loads(*assembly_, component, at, loads, workers_, tasks);
+    });
+    if (by_cause) add_potentials(*assembly_, component, trial.end.view(), trial.at_end, trial.energies);
+  } else if (by_cause) {
+    evaluate_loads_and_potentials(*assembly_, component, trial.end.view(), trial.at_end, loads,
+                                  trial.energies, workers_, tasks);
+  } else {
+    evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, loads, workers_, tasks);
+  }
+}
+
+void SweepSchedule::stream(const SweepStages& stages, bool guessing, LoadsKnown asked) {
+  const auto first = [&](const Block& block, Index part) {
+    if (guessing && local_[part] == untouched) stages.guess(part);
+    stages.react(block, part);
+    stages.move(block, part);
+  };
+  evaluate(stages, asked, true, first);
+}
+
+void SweepSchedule::fuse(const SweepStages& stages, bool guessing) {
+  StepTrial& trial = stages.trial;
+  const auto first = [&](const Block& block, Index part) {
+    if (guessing && local_[part] == untouched) stages.guess(part);
+    stages.react(block, part);
+    stages.move(block, part);
+  };
+  const auto compare = [&](const Block& block, Index part) { earlier_changes_[part] = stages.change(block); };
+  const auto again = [&](const Block& block, Index part) {
+    if (!std::isfinite(earlier_changes_[part].change)) return;
+    stages.improve(block);
+    stages.react(block, part);
+    stages.move(block, part);
+  };
+  const auto last = [&](const Block& block, Index part) {
+    stages.finish(block, part);
+    changes_[part] = stages.change(block);
+  };
+  trial.energies = {};
+  evaluate_loads_twice(*assembly_, stages.component, trial.end.view(), trial.at_end, trial.loads_end.in_one(),
+                       {first, compare}, trial.loads_end.by_cause(), {again, last}, trial.energies, workers_);
+}
+
+int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, double tolerance) {
+  std::fill_n(local_.begin(), stages.blocks().size(), std::uint8_t{untouched});
+  return iteration == Iteration::fixed_point ? presolve_around_contacts(stages, tolerance) : 0;
+}
+
+/// Blocks around those that are upset; false if they are too many, or may depend on any block.
+bool SweepSchedule::surround_upset(Index blocks) {
+  constexpr Index small_part = 4;  // of the component: for more, sweeps of these blocks do not pay
+  if (!assembly_->surround(upset_)) return false;
+  std::swap(upset_.inner, upset_.touched);
+  return assembly_->surround(upset_) && small_part * upset_.touched.size() <= blocks;
+}
+
+/// One sweep of the blocks around those that are upset.
+void SweepSchedule::sweep_upset(const SweepStages& stages) {
+  StepTrial& trial = stages.trial;
+  const Range blocks = stages.blocks();
+  for (const Index index : upset_.touched) {
+    const Index part = index - blocks.begin;
+    if (local_[part] == untouched) {
+      local_[part] = guessed;
+      stages.guess(part);
+    } else if (!std::binary_search(upset_.inner.begin(), upset_.inner.end(), index)) {
+      continue;
+    }
+    stages.react(assembly_->blocks()[index], part);
+    stages.move(assembly_->blocks()[index], part);
+  }
+  evaluate_loads_within(*assembly_, stages.component, upset_, trial.end.view(), trial.at_end,
+                        trial.loads_end.in_one());
+}
+
+/// Contact upsets the loads around it and, within a step, hardly any others. So few bodies would make all of
+/// the component sweep more often. Upset is a block of which another sweep would change more than the
+/// tolerance.
+int SweepSchedule::presolve_around_contacts(const SweepStages& stages, double tolerance) {
+  constexpr Index least_blocks = 4;
+  constexpr int most_sweeps = 8;
+  const Range blocks = stages.blocks();
+  if (stages.contacts.problems().empty() || blocks.size() < least_blocks) return 0;
+  upset_.inner.clear();
+  for (Index part = 0; part < blocks.size(); ++part) {
+    if (stages.contacts.touches(part)) upset_.inner.push_back(blocks.begin + part);
+  }
+  FixedPointJudge judge(tolerance, most_sweeps);
+  while (!upset_.inner.empty() && surround_upset(blocks.size())) {
+    sweep_upset(stages);
+    SweepChange largest;
+    std::erase_if(upset_.inner, [&](Index index) {
+      const SweepChange next = stages.change(assembly_->blocks()[index]);
+      largest.take(next);
+      stages.improve(assembly_->blocks()[index]);
+      local_[index - blocks.begin] = settled;
+      return next.change <= tolerance;
+    });
+    if (judge.judge(largest.change, largest.size) != FixedPointJudge::Verdict::go_on) break;
+  }
+  // Blocks that do not settle are left to the iteration, which says why.
+  const bool settles = std::isfinite(judge.change()) && judge.contraction() < 1.0;
+  for (Index part = 0; part < blocks.size(); ++part) {
+    local_[part] = settles && local_[part] == settled ? settled : untouched;
+  }
+  return judge.sweeps();
+}
+
+}  // namespace carom

@@ -1,0 +1,98 @@
+#pragma once
+
+/// \file
+/// The order in which stages and blocks of a sweep come. With the same blocks, and sums in the same order,
+/// the bits do not depend on it:
+///
+///   staged     stage by stage, each over all blocks: where something comes between bodies and their loads
+///   streamed   block by block: bodies are moved just before their loads are evaluated, while their numbers
+///              are at hand (Assembly::blocks(), runs())
+///   fused      two streamed sweeps in one pass, the second following the first as closely as it can; sums of
+///              loads are rounded differently
+///   local      sweeps of the blocks around contacts alone, where these are few, as a better first guess
+///
+/// Threads share blocks, or runs of them.
+
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/numerics/fixed_point.h>
+#include <carom/core/workers.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/sweep_stages.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Coupling of a component.
+enum class CouplingClass : std::uint8_t {
+  iterated,       ///< loads depend on what the step leads to
+  streamable,     ///< likewise, but nothing comes between bodies and their loads
+  constant_loads  ///< loads are those at the start: no iteration
+};
+
+/// Loads of an iterate that are known after a pass.
+enum class LoadsKnown : std::uint8_t { total, by_cause };
+
+/// Runs sweeps. Keeps memory only.
+class CAROM_API SweepSchedule {
+public:
+  SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs);
+
+  /// Coupling of a component.
+  [[nodiscard]] CouplingClass coupling(Index component) const { return coupling_[component]; }
+  /// True if a component is coupled by loads that change.
+  [[nodiscard]] bool any_iterated() const;
+  /// True if a sweep that was preceded by so many may be fused with the next.
+  [[nodiscard]] bool may_fuse(const SweepStages& stages, int sweeps, int expected) const;
+
+  /// Guesses the loads of all blocks.
+  void guess(const SweepStages& stages) const;
+  /// Moves the bodies of all blocks.
+  void move(const SweepStages& stages) const;
+  /// The loads that the guess led to become the guess, of all blocks.
+  void improve(const SweepStages& stages) const;
+  /// Works of loads that are the same at both ends.
+  void finish_constant(const SweepStages& stages) const;
+  /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
+  void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);
+  /// One sweep, block by block, and its loads. \param guessing whether it begins with a guess
+  void stream(const SweepStages& stages, bool guessing, LoadsKnown asked);
+  /// Two sweeps in one pass, and the loads by cause of the second; of the first changes only. A block whose
+  /// loads are not finite is left as the first sweep made it.
+  void fuse(const SweepStages& stages, bool guessing);
+  /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
+  /// fixed-point iteration. Returns how many sweeps it made.
+  int presolve(const SweepStages& stages, Iteration iteration, double tolerance);
+
+  /// Change that another sweep would make, the largest over all blocks;
+  [[nodiscard]] SweepChange change(const SweepStages& stages) const { return largest(changes_, stages); }
+  /// of the first of two that were fused.
+  [[nodiscard]] SweepChange earlier_change(const SweepStages& stages) const {
+    return largest(earlier_changes_, stages);
+  }
+
+private:
+  /// Calls f(block, its place in the component), shared out to the threads.
+  template <class F>
+  void for_blocks(const SweepStages& stages, F&& f) const {
+    const Range blocks = stages.blocks();
+    workers_.for_each(blocks.size(), [&](Index part) { f(assembly_->blocks()[blocks.begin + part], part); });
+  }
+  void classify(const TimeStepping& options, const StepNeeds& needs);
+  void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes, BlockTask first);
+  [[nodiscard]] SweepChange largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const;
+  int presolve_around_contacts(const SweepStages& stages, double tolerance);
+  [[nodiscard]] bool surround_upset(Index blocks);
+  void sweep_upset(const SweepStages& stages);
+
+  const Assembly* assembly_;
+  Workers workers_;
+  std::vector<CouplingClass> coupling_;                 // by component
+  std::vector<SweepChange> changes_, earlier_changes_;  // by block of a component; of the sweep before
+  enum Local : std::uint8_t { untouched, guessed, settled };
+  std::vector<std::uint8_t> local_;  // by block of a component: Local, of presolve()
+  Surroundings upset_;               // blocks around contacts
+};
+
+}  // namespace carom
