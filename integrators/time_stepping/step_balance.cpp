@@ -265,7 +265,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   loads.mean = memory.mean;
   // The loads at the start are kept as those to which the next step compares its own.
   companion.history = std::move(trial.history);
-  companion.history.sweeps = memory.sweeps;
+  companion.history.sweeps.assign(memory.sweeps.begin(), memory.sweeps.end());
   if (memory.guesses) {
     companion.history.go_on(step, trial.loads_end.total.size());
     companion.history.before.swap(trial.loads_end.total);

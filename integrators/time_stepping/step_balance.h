@@ -18,6 +18,7 @@
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -78,10 +79,10 @@ private:
 
 /// Memory of how the components of a step were iterated, for the next step.
 struct StepMemory {
-  std::vector<int> sweeps;     ///< by component, as many as were needed
-  IterationMemory iterations;  ///< with which the next step begins
-  bool guesses = false;        ///< whether any component has loads that change
-  bool mean = false;           ///< loads are mean loads of the step
+  std::span<const int> sweeps;  ///< by component, as many as were needed
+  IterationMemory iterations;   ///< with which the next step begins
+  bool guesses = false;         ///< whether any component has loads that change
+  bool mean = false;            ///< loads are mean loads of the step
 };
 
 /// Makes the end of a step the state, and takes its result over.

@@ -22,13 +22,11 @@
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/run/time_stepping.h>
-#include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
-#include <carom/integrators/time_stepping/joint_stage.h>
-#include <carom/integrators/time_stepping/load_iteration.h>
+#include <carom/integrators/time_stepping/gap_projection.h>
+#include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
-#include <carom/integrators/time_stepping/step_errors.h>
-#include <carom/integrators/time_stepping/sweep_schedule.h>
+#include <carom/integrators/time_stepping/step_parts.h>
 
 namespace carom {
 
@@ -45,52 +43,22 @@ public:
   void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
 
   /// Names of contacts.
-  [[nodiscard]] const Detector& detector() const { return contacts_.detector(); }
+  [[nodiscard]] const Detector& detector() const { return parts_.contacts.detector(); }
 
 private:
-  /// One sweep, or two in one pass.
-  struct SweepsMade {
-    SweepChange change;                    // that another would make, or that it made
-    LoadsKnown known = LoadsKnown::total;  // of the loads that it led to
-    bool converged_one_early = false;      // of two the first was enough
-  };
   [[nodiscard]] StepResult& make_step(const StepInput& in);
   void prepare(const StepInput& in);
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
-  [[nodiscard]] LoadsKnown iterate(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
-  void begin(const StepIsland& island, const StepInput& in);
-  [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
-  [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
-                                        const FixedPointJudge& judge);
-  void sweep_joints(const StepInput& in, Index component, JointStage& joints, JointContacts& contacts);
-  void follow(const StepInput& in, Index component);
-  [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void project_positions(const StepIsland& island, const StepInput& in);
   void evaluate_start(const State& state, Companion& companion);
 
-  [[nodiscard]] SweepStages stages(const StepInput& in, Index component);
-  [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
-  [[nodiscard]] bool is_streamed(const StepIsland& island) const;
-  [[nodiscard]] bool has_constant_loads(const StepIsland& island) const;
-  [[nodiscard]] StepErrors errors(const StepInput& in, Index component);
-  void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);
-  [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,
-                                     const FixedPointJudge& judge);
-
-  const Assembly* assembly_;
-  TimeStepping options_;
-  const StopRequest* stop_;  // may be null
-  StepRule rule_;
-  ContactStage contacts_;
+  StepParts parts_;
   PrescribedJoints prescribed_;
-  StepTrial trial_;
-  SweepSchedule schedule_;
-  JointStages joints_;
-  LoadIteration iteration_;
+  IslandIteration iteration_;
   StepBalance balance_;
   StepMemory memory_;
   GapProjection projection_;

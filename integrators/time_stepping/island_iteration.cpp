@@ -1,0 +1,214 @@
+// Problem: the implicit equations of a step over one island of components.
+
+#include <carom/integrators/time_stepping/island_iteration.h>
+
+#include <algorithm>
+
+namespace carom {
+
+IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
+    : parts_(&parts), stop_(stop), method_(*parts.assembly) {
+  sweeps_.resize(parts.assembly->components().size());
+  method_.use(parts.options.iteration);
+}
+
+/// Sweeps until the next would change no more than the tolerance. Returns what is known of the loads then.
+LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge) {
+  using Verdict = FixedPointJudge::Verdict;
+  begin(island, in);
+  const Index front = island.components.front();
+  JointStage* const joints = parts_->joints.of(front);
+  const std::vector<int>& before = parts_->trial.history.sweeps;
+  const int expected = before.size() == sweeps_.size() ? before[front] : 1;
+  for (;;) {
+    if (stop_ != nullptr) stop_->check();
+    const SweepsMade made = is_streamed(island) ? sweep_streamed(parts_->stages(in, front), expected, judge)
+                                                : sweep_staged(island, in, expected, judge);
+    const SweepChange change = made.change;
+    const bool ahead = joints == nullptr && !method_.is_newton();
+    Verdict verdict =
+        ahead ? judge.judge_ahead(change.change, change.size) : judge.judge(change.change, change.size);
+    // Newton's first is that from t_j: small or not, it says nothing of the guess.
+    if (method_.is_newton() && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
+    if (verdict == Verdict::failed) fail_contraction(island, in, judge);
+    if (verdict == Verdict::converged || made.converged_one_early) {
+      for (const Index component : island.components) {
+        sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
+      }
+      const bool moved = joints != nullptr && converge_joints(island, in);
+      return moved ? LoadsKnown::total : made.known;
+    }
+    for (const Index component : island.components) {
+      method_.improve(parts_->stages(in, component), parts_->schedule, judge);
+    }
+  }
+}
+
+/// Contact problems, and a first guess at the loads.
+void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
+  const Index front = island.components.front();
+  JointStage* const joints = parts_->joints.of(front);
+  parts_->contacts.state_problems(in, island, method_.is_newton() || joints != nullptr, parts_->trial);
+  parts_->trial.swept = false;
+  for (const Index component : island.components) {
+    const Range z = parts_->assembly->components()[component].z;
+    std::copy(in.start.z.begin() + z.begin, in.start.z.begin() + z.end,
+              parts_->trial.end.z.begin() + z.begin);
+  }
+  JointContacts contacts = contacts_of(island);
+  if (joints != nullptr) joints->start(in, contacts, parts_->trial);
+  method_.start(front);
+  if (is_streamed(island)) {
+    const int sweeps =
+        parts_->schedule.presolve(parts_->stages(in, front), method_.current(), parts_->options.tolerance);
+    local_sweeps_ = std::max(local_sweeps_, sweeps);
+  } else {
+    for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
+  }
+  if (!method_.is_newton()) return;
+  demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
+}
+
+/// Bodies and loads block by block: the loads by cause, with potentials, cost more than their sum; they are
+/// wanted of the last iterate only, which is expected after as many sweeps as in the last step.
+IslandIteration::SweepsMade IslandIteration::sweep_streamed(const SweepStages& stages, int expected,
+                                                            FixedPointJudge& judge) {
+  using Verdict = FixedPointJudge::Verdict;
+  SweepsMade made;
+  const bool guessing = judge.sweeps() == 0;
+  const bool fused = method_.current() == Iteration::fixed_point &&
+                     parts_->schedule.may_fuse(stages, judge.sweeps(), expected);
+  made.known = fused || judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
+  if (fused) {
+    parts_->schedule.fuse(stages, guessing);
+  } else {
+    parts_->schedule.stream(stages, guessing, made.known);
+  }
+  if (const IslandProblem* const failed = parts_->contacts.first_unsolved()) {
+    parts_->errors(stages.in, stages.component).fail_contact(*failed);
+  }
+  if (fused) {
+    const SweepChange earlier = parts_->schedule.earlier_change(stages);
+    const Verdict verdict = judge.judge_ahead(earlier.change, earlier.size);
+    if (verdict == Verdict::failed) {
+      parts_->errors(stages.in, stages.component)
+          .fail_contraction(judge, method_.current(), nullptr, parts_->contacts.problems());
+    }
+    made.converged_one_early = verdict == Verdict::converged;
+  }
+  made.change = parts_->schedule.change(stages);
+  return made;
+}
+
+/// Stage by stage over all components of the island: impulses, bodies, and the loads that they lead to.
+IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& island, const StepInput& in,
+                                                          int expected, const FixedPointJudge& judge) {
+  const Index front = island.components.front();
+  const bool newton = method_.is_newton(), alone = island.components.size() == 1;
+  JointStage* const joints = parts_->joints.of(front);
+  SweepsMade made;
+  made.known = alone && judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
+  JointContacts contacts = contacts_of(island);
+  if (joints != nullptr) {
+    if (newton) {
+      demand(method_.newton().step_with_joints(in, parts_->rule, front, *joints, contacts.problem,
+                                               contacts.chain, parts_->trial),
+             front, in);
+    }
+    sweep_joints(in, front, *joints, contacts);
+  } else {
+    if (newton) {
+      demand(method_.newton().step(in, parts_->rule, front, contacts.problem, contacts.chain, parts_->trial),
+             front, in);
+    } else if (const IslandProblem* const failed = parts_->contacts.solve(in, parts_->rule, parts_->trial)) {
+      parts_->errors(in, front).fail_contact(*failed);
+    }
+    for (const Index component : island.components) parts_->schedule.move(parts_->stages(in, component));
+    parts_->trial.swept = true;
+  }
+  for (const Index component : island.components) {
+    follow(in, component);
+    parts_->schedule.evaluate(parts_->stages(in, component), made.known, !newton);
+    made.change.take(newton ? method_.newton().change(in, component, parts_->trial)
+                            : parts_->schedule.change(parts_->stages(in, component)));
+  }
+  if (joints == nullptr) return made;
+  made.change.take(joints->change(in, parts_->trial));
+  made.change.size *= joints->rows().roundoff_growth();
+  return made;
+}
+
+void IslandIteration::sweep_joints(const StepInput& in, Index component, JointStage& joints,
+                                   JointContacts& contacts) {
+  if (joints.sweep(in, parts_->rule, contacts, parts_->trial)) return;
+  parts_->errors(in, component).fail_contact(*contacts.problem);
+}
+
+/// What follows from the iterate before its loads: rotations, internal variables, the state halfway where
+/// it is looked at.
+void IslandIteration::follow(const StepInput& in, Index component) {
+  const Assembly& assembly = *parts_->assembly;
+  const bool rotations = parts_->trial.needs.load_rotations;
+  if (rotations) evaluate_positions(assembly, component, parts_->trial.end.view(), parts_->trial.at_end);
+  const Range z = assembly.components()[component].z;
+  if (!z.empty()) {
+    const ElementId failed = parts_->trial.with_step(in, component, [&](const StepContext& at) {
+      return advance_internals(assembly, component, at, parts_->trial.end.z.data());
+    });
+    if (failed.valid()) parts_->errors(in, component).fail_internal(failed);
+  }
+  if (!(parts_->rule.is_mean() || !z.empty()) || !uses_middle(assembly, component)) return;
+  parts_->trial.place_midpoint(in, component);
+  for (Index i = z.begin; i < z.end; ++i)
+    parts_->trial.midpoint.z[i] = 0.5 * (in.start.z[i] + parts_->trial.end.z[i]);
+  if (rotations)
+    evaluate_positions(assembly, component, parts_->trial.midpoint.view(), parts_->trial.at_midpoint);
+}
+
+/// A change below the tolerance may leave the constraints above their rounding. Sweeps under the same loads
+/// bring the joints there however badly couplings contract. True if there were any.
+bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
+  constexpr double improved = 0.8;
+  const Index component = island.components.front();
+  JointStage& joints = *parts_->joints.of(component);
+  JointContacts contacts = contacts_of(island);
+  double left = joints.violation(in, parts_->trial);
+  if (!joints.rows().is_near_singular() && !(left > 1.0)) return false;
+  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
+    sweep_joints(in, component, joints, contacts);
+    const double now = joints.violation(in, parts_->trial);
+    if (!(now < improved * left)) break;
+    left = now;
+  }
+  if (joints.rows().is_near_singular()) joints.settle_velocities(in, parts_->trial);
+  follow(in, component);
+  return true;
+}
+
+/// Nothing comes between the bodies of a block and their loads.
+bool IslandIteration::is_streamed(const StepIsland& island) const {
+  return island.components.size() == 1 && !method_.is_newton() && parts_->contacts.by_block() &&
+         parts_->schedule.coupling(island.components.front()) == CouplingClass::streamable;
+}
+
+/// Newton's method went on, or says why not.
+void IslandIteration::demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in) {
+  if (outcome == NewtonIteration::Outcome::singular) parts_->errors(in, component).fail_linearisation();
+  if (outcome == NewtonIteration::Outcome::unsolved) {
+    parts_->errors(in, component).fail_contact(parts_->contacts.problems().front());
+  }
+}
+
+void IslandIteration::fail_contraction(const StepIsland& island, const StepInput& in,
+                                       const FixedPointJudge& judge) {
+  const Index component = island.components.front();
+  parts_->errors(in, component)
+      .fail_contraction(judge, method_.current(), parts_->joints.of(component), parts_->contacts.problems());
+}
+
+JointContacts IslandIteration::contacts_of(const StepIsland& island) {
+  return {parts_->contacts.detector(), island.constraints, parts_->problem(), parts_->contacts.chain(),
+          method_.is_newton()};
+}
+
+}  // namespace carom

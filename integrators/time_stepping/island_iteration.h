@@ -1,0 +1,68 @@
+#pragma once
+
+/// \file
+/// The implicit equations of a step over one island: sweeps from the guess at the loads to impulses, bodies
+/// and the loads that they lead to, until the next sweep would change no more than the tolerance.
+
+#include <carom/core/export.h>
+#include <carom/core/numerics/fixed_point.h>
+#include <carom/integrators/run/stop_request.h>
+#include <carom/integrators/time_stepping/load_iteration.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_parts.h>
+
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Iterates islands. Keeps memory only.
+class CAROM_API IslandIteration {
+public:
+  /// \param parts must outlive it \param stop asked between sweeps, may be null; likewise
+  IslandIteration(StepParts& parts, const StopRequest* stop);
+
+  /// Uses another iteration.
+  void use(Iteration iteration) { method_.use(iteration); }
+  /// The one in use.
+  [[nodiscard]] Iteration current() const { return method_.current(); }
+  /// Solves the equations of an island. Returns what is known of the loads of the last iterate. Throws
+  /// SolverError, with the trial as it failed.
+  [[nodiscard]] LoadsKnown solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
+  /// The problem of an island where bodies answer together, for its joints.
+  [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
+
+  /// Sweeps that the components of this step needed.
+  [[nodiscard]] const std::vector<int>& sweeps() const { return sweeps_; }
+  /// Takes note of those of a component that was not iterated.
+  void note_sweeps(Index component, int sweeps) { sweeps_[component] = sweeps; }
+  /// The most sweeps around contacts alone since the last call.
+  [[nodiscard]] int take_local_sweeps() { return std::exchange(local_sweeps_, 0); }
+
+private:
+  /// One sweep, or two in one pass.
+  struct SweepsMade {
+    SweepChange change;                    // that another would make, or that it made
+    LoadsKnown known = LoadsKnown::total;  // of the loads that it led to
+    bool converged_one_early = false;      // of two the first was enough
+  };
+  void begin(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
+  [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
+                                        const FixedPointJudge& judge);
+  void sweep_joints(const StepInput& in, Index component, JointStage& joints, JointContacts& contacts);
+  void follow(const StepInput& in, Index component);
+  [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] bool is_streamed(const StepIsland& island) const;
+  void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);
+  [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,
+                                     const FixedPointJudge& judge);
+
+  StepParts* parts_;
+  const StopRequest* stop_;  // may be null
+  LoadIteration method_;
+  std::vector<int> sweeps_;  // by component
+  int local_sweeps_ = 0;
+};
+
+}  // namespace carom

@@ -1,0 +1,59 @@
+#pragma once
+
+/// \file
+/// The parts that the pages of a step work with: what they share is here, and nothing else is shared.
+
+#include <carom/core/assembly.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/contact_stage.h>
+#include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/step_errors.h>
+#include <carom/integrators/time_stepping/step_rule.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+#include <carom/integrators/time_stepping/sweep_schedule.h>
+
+#include <algorithm>
+
+namespace carom {
+
+/// Parts of the steps of one assembly.
+struct StepParts {
+  /// \param model must outlive it \param chosen options that have been checked
+  StepParts(const Assembly& model, const TimeStepping& chosen)
+      : assembly(&model),
+        options(chosen),
+        rule(chosen.force_rule),
+        contacts(model, chosen),
+        trial(model, step_needs(model, contacts.detector(), rule.is_mean())),
+        schedule(model, chosen, trial.needs),
+        joints(model) {}
+
+  /// Stages of a component.
+  [[nodiscard]] SweepStages stages(const StepInput& in, Index component) {
+    return {in, rule, component, contacts, trial, joints.of(component) != nullptr};
+  }
+  /// Errors of one.
+  [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
+    return {in, component, contacts.detector(), options, trial};
+  }
+  /// The problem where bodies of an island answer together; null where nothing touches.
+  [[nodiscard]] IslandProblem* problem() {
+    return contacts.problems().empty() ? nullptr : &contacts.problems().front();
+  }
+  /// True if the loads of all components of an island are those at the start.
+  [[nodiscard]] bool has_constant_loads(const StepIsland& island) const {
+    return std::all_of(island.components.begin(), island.components.end(), [this](Index component) {
+      return schedule.coupling(component) == CouplingClass::constant_loads;
+    });
+  }
+
+  const Assembly* assembly;
+  TimeStepping options;
+  StepRule rule;
+  ContactStage contacts;
+  StepTrial trial;
+  SweepSchedule schedule;
+  JointStages joints;
+};
+
+}  // namespace carom
