@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Guards of the elements of a component: numbers whose changes of sign are kinks or jumps of loads.
+/// Guards of the elements of a component: numbers whose changes of sign are switching points of loads.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>

@@ -42,11 +42,11 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       options_((check_options(options), options)),
       detector_(assembly),
       prescribed_(assembly),
-      work_(assembly, options, stop),
+      memory_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
-    components_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, work_));
+    components_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
 }
 
@@ -77,7 +77,7 @@ void EventDriver::start(const State& state, const Companion& companion) {
   within_limit(state.time, [&] {
     for (auto& component : components_) component->start(state, present);
   });
-  counted_ = work_.flows.counts();
+  counted_ = memory_.flows.counts();
   started_ = true;
 }
 
@@ -94,7 +94,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
     for (auto& component : components_) component->advance(target, balance_);
   } catch (...) {
     started_ = false;
-    work_.chain.reset_statistics();
+    memory_.chain.reset_statistics();
     throw;
   }
   trial_.time = target;
@@ -145,7 +145,7 @@ void EventDriver::demand_continuous_laws(double from, double to) {
 
 void EventDriver::fail_energy(double from, double to) {
   started_ = false;
-  work_.chain.reset_statistics();
+  memory_.chain.reset_statistics();
   SolverFailure failure;
   failure.time = from;
   failure.step = to - from;
@@ -229,14 +229,14 @@ void EventDriver::count(Companion& companion) {
     ++statistics.energy_gains;
     statistics.energy_gained += balance_.energy_gain;
   }
-  const FlowCounts now = work_.flows.counts();
+  const FlowCounts now = memory_.flows.counts();
   statistics.flow_steps += now.steps - counted_.steps;
   statistics.flow_evaluations += now.evaluations - counted_.evaluations;
   statistics.flow_restarts += now.restarts - counted_.restarts;
   counted_ = now;
-  if (work_.chain.statistics().problems > 0) {
-    companion.contact_statistics += work_.chain.statistics();
-    work_.chain.reset_statistics();
+  if (memory_.chain.statistics().problems > 0) {
+    companion.contact_statistics += memory_.chain.statistics();
+    memory_.chain.reset_statistics();
   }
 }
 

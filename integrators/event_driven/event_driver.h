@@ -40,7 +40,7 @@ public:
   void forget() { started_ = false; }
 
   /// The flows that components share.
-  [[nodiscard]] const FlowPool& flows() const { return work_.flows; }
+  [[nodiscard]] const FlowPool& flows() const { return memory_.flows; }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return detector_; }
 
@@ -59,7 +59,7 @@ private:
   Detector detector_;
   PrescribedJoints prescribed_;
   ObstaclePlaces places_, places_after_;  // at the ends of an advance
-  DriverWorkspace work_;
+  GroupMemory memory_;
   std::vector<std::unique_ptr<ClockGroup>> components_;
   Evaluation evaluation_;
   State trial_;

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-QuantityLook look_at(const StepLook& look, std::size_t guard, double sign) {
-  const GuardMotion& at = look.guards[guard];
-  return {look.time, {sign * at.value, sign * at.first, sign * at.second}, at.sixth};
+QuantityLook quantity_of(const GuardSample& sample, std::size_t guard, double sign) {
+  const GuardMotion& at = sample.guards[guard];
+  return {sample.time, {sign * at.value, sign * at.first, sign * at.second}, at.sixth};
 }
 
 }  // namespace
@@ -31,10 +31,10 @@ bool GuardSearch::passes_at_once(const Passage& passage, const GuardMotion& star
          passage.sign * start.first <= 0.0;
 }
 
-GuardSearch::Passage GuardSearch::first(const ComponentGuards& guards, const StepLook& start,
-                                        const StepLook& end, StepLooks& looks, StepLooker& looker,
+GuardSearch::Passage GuardSearch::first(const ComponentGuards& guards, const GuardSample& start,
+                                        const GuardSample& end, GuardSamples& samples, GuardSampler& sampler,
                                         double noise, double until) const {
-  // Bisections of a guard without derivatives: its looks are as many as longest_step lets them be.
+  // Bisections of a guard without derivatives: its samples are as many as longest_step lets them be.
   constexpr int deepest_of_values = 5;
   Passage passage;
   for (std::size_t i = 0; i < guards.count(); ++i) {
@@ -43,9 +43,9 @@ GuardSearch::Passage GuardSearch::first(const ComponentGuards& guards, const Ste
       rule.derivatives = guards.has_motion(i) ? 2 : 0;
       rule.raise = rule.fine = noise;
       if (!guards.has_motion(i)) rule.deepest = deepest_of_values;
-      QuantityOf guard([&](double time) { return look_at(looks.at(time, looker), i, sign); });
+      QuantityOf guard([&](double time) { return quantity_of(samples.at(time, sampler), i, sign); });
       return FallSearch(guard, rule, std::min(until, passage.time))
-          .first(look_at(start, i, sign), look_at(end, i, sign));
+          .first(quantity_of(start, i, sign), quantity_of(end, i, sign));
     };
     if (sides_[i] != 0.0) {
       const double time = fall(sides_[i]);

@@ -6,7 +6,7 @@
 
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/component_guards.h>
-#include <carom/integrators/event_driven/step_looks.h>
+#include <carom/integrators/event_driven/guard_samples.h>
 
 #include <cstddef>
 #include <limits>
@@ -34,10 +34,10 @@ public:
   /// True if the guard stands at zero at the start of a step and leaves it for the other side at once. \param
   /// rounding of guards
   [[nodiscard]] bool passes_at_once(const Passage& passage, const GuardMotion& start, double rounding) const;
-  /// The first passage in a step. \param start, end what is seen at its ends \param until of no interest
+  /// The first passage in a step. \param start, end samples at its ends \param until of no interest
   /// behind
-  [[nodiscard]] Passage first(const ComponentGuards& guards, const StepLook& start, const StepLook& end,
-                              StepLooks& looks, StepLooker& looker, double noise, double until) const;
+  [[nodiscard]] Passage first(const ComponentGuards& guards, const GuardSample& start, const GuardSample& end,
+                              GuardSamples& samples, GuardSampler& sampler, double noise, double until) const;
 
 private:
   std::vector<double> sides_;  // 1 or -1; 0: not known yet

@@ -1,4 +1,4 @@
-// Problem: modes of the contacts of a body from its accelerations.
+// Problem: modes of the contacts of a mechanism from its accelerations.
 
 #include <carom/integrators/event_driven/mode_decision.h>
 
@@ -10,16 +10,16 @@ namespace carom {
 
 namespace {
 
-// An acceleration this small against those without contact is zero.
-constexpr double no_acceleration = 1e-11;
+// An acceleration this small against those without contact is zero, and a force against those around it.
+constexpr double no_acceleration = 1e-11, no_force = 1e-11;
 
-// Contacts that break loose or lift change the problem of the others; more rounds than this do not settle.
+// Contacts that start slipping or open change the problem of the others; more rounds than this do not end it.
 constexpr int most_rounds = 20;
 
 }  // namespace
 
-Decision ModeDecision::decide(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
-                              const double* acceleration, SolverChain& chain) {
+Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                              SolverChain& chain) {
   slides_.assign(candidates.size(), {});
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
@@ -27,31 +27,31 @@ Decision ModeDecision::decide(const Assembly& assembly, SmoothMotion& motion, st
       slides_[i].sign = 1.0;
     } else if (candidate.slip != 0.0) {
       slides_[i].sign = std::copysign(1.0, candidate.slip);
-    } else if (candidate.breaks) {
-      slides_[i].sign = -std::copysign(1.0, candidate.push);
+    } else if (candidate.starts_slipping) {
+      slides_[i].sign = -std::copysign(1.0, candidate.exhausted_friction);
     }
-    slides_[i].out = candidate.releases;
+    slides_[i].open = candidate.releases;
   }
-  zero_.assign(assembly.layout()->v_size(), 0.0);
+  zero_.assign(now.acceleration.size(), 0.0);
   Decision decision = Decision::failed;
   for (int round = 0; round < most_rounds; ++round) {
-    decision = solve(motion, candidates, acceleration, chain);
+    decision = solve(motion, now, candidates, chain);
     if (decision == Decision::impossible || decision == Decision::failed) return decision;
     if (!revise(candidates)) return decision;
   }
   return decision;
 }
 
-Decision ModeDecision::solve(SmoothMotion& motion, std::span<Candidate> candidates,
-                             const double* acceleration, SolverChain& chain) {
+Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                             SolverChain& chain) {
   contacts_.clear();
   taking_part_.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
-    if (slides_[i].out) continue;
+    if (slides_[i].open) continue;
     Constraint& contact = contacts_.emplace_back(candidates[i].at);
     taking_part_.push_back(i);
-    // In accelerations: what the velocity of the obstacle is to velocities, minus the drift is to these.
+    // In accelerations minus the drift stands for the velocity of the obstacle.
     for (std::size_t row = 0; row < Constraint::max_rows; ++row) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
@@ -60,51 +60,51 @@ Decision ModeDecision::solve(SmoothMotion& motion, std::span<Candidate> candidat
                                               : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
   if (contacts_.empty()) {
-    acceleration_.assign(acceleration, acceleration + zero_.size());
+    acceleration_ = now.acceleration;
     return Decision::made;
   }
-  cluster_.build(contacts_, zero_.data());
-  motion.respond(cluster_);
+  JointReactions& joints = motion.joints();
+  joints.build(problem_, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slides_[taking_part_[c]].sign;
     if (sign != 0.0 && contacts_[c].type != ConstraintType::limit)
-      cluster_.slide(c, -sign * contacts_[c].friction);
+      problem_.slide(c, -sign * contacts_[c].friction);
   }
-  cluster_.set_free_velocity(acceleration);
-  const bool presses =
-      motion.bears_any() && std::any_of(contacts_.begin(), contacts_.end(), [&](const Constraint& contact) {
-        return motion.depends_on_joint_force(contact);
-      });
-  const bool solved =
-      presses ? settle_bounds(motion, candidates, acceleration, chain) : cluster_.solve(chain).usable();
-  const ContactReport& report = cluster_.report();
+  problem_.set_free_velocity(now.acceleration.data());
+  const bool bounds_follow = !joints.friction_bounds().empty() &&
+                             std::any_of(contacts_.begin(), contacts_.end(), [&](const Constraint& contact) {
+                               return joints.depends_on_joint_force(contact);
+                             });
+  const bool solved = bounds_follow ? converge_friction_bounds(motion, now, candidates, chain)
+                                    : problem_.solve(chain).usable();
+  const ContactReport& report = problem_.report();
   if (!solved || report.outcome == Outcome::no_solution) {
-    name_culprit(candidates);
+    name_cause(candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
   Decision decision = Decision::made;
-  if (!presses) read_modes(candidates, cluster_.impulses());
+  if (!bounds_follow) read_modes(candidates, problem_.impulses());
   if (report.outcome == Outcome::several_solutions) {
-    name_culprit(candidates);
-    keep_present(candidates);
+    name_cause(candidates);
+    take_present(candidates);
     decision = Decision::several;
   }
-  acceleration_.assign(acceleration, acceleration + zero_.size());
-  cluster_.map().add_velocities(acceleration_.data());
+  acceleration_ = now.acceleration;
+  problem_.map().add_velocities(acceleration_.data());
   return decision;
 }
 
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
-    const ContactMode found = cluster_.modes()[c];
+    const ContactMode found = problem_.modes()[c];
     // Friction in a joint never opens.
     const bool has_dry_friction = contacts_[c].has_dry_friction();
     if (has_dry_friction && slides_[i].sign == 0.0) {
       candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
       continue;
     }
-    const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(cluster_.first_row(c))];
+    const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
     if (slides_[i].sign != 0.0) {
       candidates[i].mode = !(normal > 0.0)         ? ContactMode::open
                            : slides_[i].sign > 0.0 ? ContactMode::slip_positive
@@ -115,34 +115,34 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
   }
 }
 
-/// What the first answer leaves to change: contacts that break loose rub at their sliding coefficient; those
-/// that were taken to lift or slip and do not, since another one that broke loose took them along, are put
-/// back. True if the problem is to be solved anew.
+/// Changes by the first answer: contacts that start slipping have their sliding friction; those that were
+/// taken to open or slip and do not, since another one that slips took them along, are put back. True if the
+/// problem is to be solved anew.
 bool ModeDecision::revise(std::span<Candidate> candidates) {
   bool changed = false;
   double size = 0.0, farthest = 0.0;
-  for (const double b : cluster_.problem().vector()) size = std::max(size, std::abs(b));
+  for (const double b : problem_.problem().vector()) size = std::max(size, std::abs(b));
   // Accelerations by friction that is exhausted to within its rounding only.
   double stiffest = 0.0, exhausted = 0.0;
-  for (int row = 0; row < cluster_.problem().rows(); ++row) {
-    stiffest = std::max(stiffest, cluster_.problem().w(row, row));
+  for (int row = 0; row < problem_.problem().rows(); ++row) {
+    stiffest = std::max(stiffest, problem_.problem().w(row, row));
   }
   for (const Candidate& candidate : candidates) exhausted += candidate.noise * stiffest;
   Slide* astray = nullptr;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     Slide& slide = slides_[i];
-    const double lifts = candidate.at.normal_acceleration(acceleration_.data());
+    const double opening = candidate.at.normal_acceleration(acceleration_.data());
     const double slides = candidate.at.tangential_acceleration(acceleration_.data());
-    if (slide.out) {
-      if (lifts >= -no_acceleration * std::max(size, std::abs(lifts))) continue;
-      slide.out = false;
+    if (slide.open) {
+      if (opening >= -no_acceleration * std::max(size, std::abs(opening))) continue;
+      slide.open = false;
       changed = true;
     } else if (slide.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
                                      candidate.mode == ContactMode::slip_negative)) {
       slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
       changed = true;
-    } else if (candidate.slip == 0.0 && !candidate.frictionless && !slide.back &&
+    } else if (candidate.slip == 0.0 && !candidate.frictionless && !slide.reverted &&
                candidate.mode != ContactMode::open &&
                slide.sign * slides < -std::max(no_acceleration * size, exhausted)) {
       // One at a time: it may be what takes the others along.
@@ -153,16 +153,16 @@ bool ModeDecision::revise(std::span<Candidate> candidates) {
   }
   if (changed || astray == nullptr) return changed;
   astray->sign = 0.0;
-  astray->back = true;
+  astray->reverted = true;
   return true;
 }
 
-void ModeDecision::name_culprit(std::span<Candidate> candidates) {
-  const ContactProblem& problem = cluster_.problem();
+void ModeDecision::name_cause(std::span<Candidate> candidates) {
+  const ContactProblem& problem = problem_.problem();
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
     if (contacts_[c].has_dry_friction()) continue;
-    const int row = cluster_.first_row(c);
+    const int row = problem_.first_row(c);
     const double ratio = -slides_[i].sign * contacts_[c].friction;
     candidates[i].stiffness = problem.w(row, row);
     if (contacts_[c].rows > 1) candidates[i].stiffness += ratio * problem.w(row, row + 1);
@@ -171,8 +171,8 @@ void ModeDecision::name_culprit(std::span<Candidate> candidates) {
 }
 
 /// Of several answers the one in the present modes; where there is none, the one with most contacts open.
-bool ModeDecision::keep_present(std::span<Candidate> candidates) {
-  if (solutions_.enumerate(cluster_.problem()) == Outcome::not_solved) return false;
+bool ModeDecision::take_present(std::span<Candidate> candidates) {
+  if (solutions_.enumerate(problem_.problem()) == Outcome::not_solved) return false;
   std::size_t best = solutions_.size();
   std::ptrdiff_t most = -1;
   for (std::size_t s = 0; s < solutions_.size(); ++s) {
@@ -193,8 +193,104 @@ bool ModeDecision::keep_present(std::span<Candidate> candidates) {
 
 /// Answers by one of the solutions.
 void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
-  cluster_.set_impulses(solutions_.impulse(solution));
-  read_modes(candidates, cluster_.impulses());
+  problem_.set_impulses(solutions_.impulse(solution));
+  read_modes(candidates, problem_.impulses());
+}
+
+/// The contacts that stay closed, in their modes.
+void ModeDecision::list_closed(std::span<const Candidate> candidates) {
+  active_.clear();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Candidate& candidate = candidates[taking_part_[c]];
+    if (candidate.mode == ContactMode::open) continue;
+    ActiveContact& closed = active_.emplace_back();
+    closed.pair = candidate.pair;
+    closed.place = candidate.place;
+    closed.mode = candidate.mode;
+    closed.frictionless = candidate.frictionless;
+    closed.at = contacts_[c];
+    closed.friction = contacts_[c].friction;
+  }
+}
+
+/// Modes that do not follow from the answer. Contacts without force that do not part stay closed where they
+/// can carry some: of redundant contacts solvers load any.
+void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
+  double size = 0.0;
+  for (const double b : problem_.problem().vector()) size = std::max(size, std::abs(b));
+  std::vector<std::size_t> added;  // candidates
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Constraint& contact = contacts_[c];
+    const std::size_t i = taking_part_[c];
+    if (contact.has_dry_friction() && candidates[i].slip == 0.0 && !candidates[i].starts_slipping) {
+      // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
+      // bound is zero the force does not determine the mode.
+      const double along = contact.tangential_acceleration(acceleration_.data());
+      if (std::abs(along) <= no_acceleration * size) {
+        candidates[i].mode = ContactMode::stick;
+      } else if (slides_[i].sign == 0.0) {
+        candidates[i].mode = along > 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
+      }
+    }
+    if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
+    const int normal = problem_.first_row(c);
+    if (problem_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
+    if (contact.normal_acceleration(acceleration_.data()) > no_acceleration * size) continue;
+    const double along = contact.rows > 1 ? contact.tangential_acceleration(acceleration_.data()) : 0.0;
+    double sign = slides_[i].sign;
+    if (sign == 0.0 && std::abs(along) > no_acceleration * size) sign = along;
+    candidates[i].mode = sign == 0.0  ? ContactMode::stick
+                         : sign > 0.0 ? ContactMode::slip_positive
+                                      : ContactMode::slip_negative;
+    added.push_back(i);
+  }
+  if (added.empty()) return;
+  list_closed(candidates);
+  double change = 0.0;
+  BoundIteration once;
+  const bool found =
+      motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change);
+  double largest = 0.0;
+  for (const ActiveContact& closed : active_) {
+    if (!closed.at.has_dry_friction()) largest = std::max(largest, std::abs(closed.normal));
+  }
+  auto closed = active_.begin();  // in the order of the candidates, as those added
+  for (const std::size_t i : added) {
+    while (closed->place != candidates[i].place) ++closed;
+    if (!found || !(closed->normal > no_force * largest)) candidates[i].mode = ContactMode::open;
+  }
+}
+
+/// Forces of redundant contacts are not unique, and bounds of friction in joints follow from them: the
+/// decision needs those that the flow will find, or the flow undoes it at once. Modes by the problem at given
+/// bounds, and bounds by the forces that the flow has in these modes, in turns.
+bool ModeDecision::converge_friction_bounds(SmoothMotion& motion, MotionSample& now,
+                                            std::span<Candidate> candidates, SolverChain& chain) {
+  BoundIteration iteration;
+  for (int turn = 0; turn < BoundIteration::most_repetitions; ++turn) {
+    if (!problem_.solve(chain).usable()) return false;
+    acceleration_ = now.acceleration;
+    problem_.map().add_velocities(acceleration_.data());
+    read_modes(candidates, problem_.impulses());
+    complete_modes(motion, now, candidates);
+    list_closed(candidates);
+    double change = 0.0;
+    iteration.begin();
+    if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, iteration, change))
+      return false;
+    const bool converged = iteration.settled(change);
+    const bool guesses = !converged && iteration.accelerates();
+    std::size_t bound = 0, at = 0;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (candidates[taking_part_[c]].mode == ContactMode::open) continue;
+      const ActiveContact& closed = active_[at++];
+      if (!motion.joints().depends_on_joint_force(contacts_[c])) continue;
+      contacts_[c].friction_bound = guesses ? iteration.guess(bound++) : closed.at.friction_bound;
+      problem_.update_bound(c);
+    }
+    if (converged) return true;
+  }
+  return false;
 }
 
 }  // namespace carom

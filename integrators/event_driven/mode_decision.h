@@ -1,16 +1,15 @@
 #pragma once
 
 /// \file
-/// Which contacts of a body stay closed, which of these stick? Decided on the level of accelerations
+/// Which contacts of a mechanism stay closed, which of these stick? Decided on the level of accelerations
 /// (docs/method.md, section 7): contacts that touch without speed get forces by the law of contact with e =
-/// 0, written for accelerations; one that slips already rubs against its motion. What has no answer, or
-/// several, is Painleve's: it is told which contact and which quantity is to blame.
+/// 0, written for accelerations; one that slips already has its friction against the motion. A problem
+/// without answer, or with several, is Painleve's: the contact and the quantity that cause it are named.
 
 #include <carom/contact/active_set.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
-#include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
@@ -27,17 +26,17 @@ struct Candidate {
   double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
   ContactMode present = ContactMode::open;  ///< before the decision
   ContactMode mode = ContactMode::open;     ///< decided
-  bool breaks = false;        ///< its friction is exhausted: it slips against `push`, unless that cannot be
-  bool frictionless = false;  ///< without friction
-  bool releases = false;      ///< its force has come to an end: it opens, unless that cannot be
-  double push = 0.0;          ///< the friction force that was exhausted [N],
-  double noise = 0.0;         ///< to this much
+  bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
+  bool frictionless = false;        ///< without friction
+  bool releases = false;            ///< its force has come to an end: it opens, unless that cannot be
+  double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N],
+  double noise = 0.0;               ///< to this much
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
 };
 
-/// What was decided.
+/// Result of a decision.
 enum class Decision : std::uint8_t {
   made,        ///< modes are given
   several,     ///< likewise, chosen by rule among several
@@ -45,36 +44,34 @@ enum class Decision : std::uint8_t {
   failed       ///< no solver found an answer
 };
 
-/// Decides for the contacts of one body at a time. Keeps memory only.
+/// Decides for the contacts of one mechanism at a time. Keeps memory only.
 class CAROM_API ModeDecision {
 public:
-  /// \param acceleration of all bodies without contact
-  /// \param motion of their component, evaluated without contacts
-  Decision decide(const Assembly& assembly, SmoothMotion& motion, std::span<Candidate> candidates,
-                  const double* acceleration, SolverChain& chain);
-  /// The last problem, and what is known of its answer.
-  [[nodiscard]] const IslandProblem& cluster() const { return cluster_; }
+  /// \param now sample without contacts that the motion made last; its accelerations are put back
+  Decision decide(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                  SolverChain& chain);
+  /// The last problem and its answer.
+  [[nodiscard]] const IslandProblem& problem() const { return problem_; }
 
 private:
   struct Slide {
-    double sign = 0.0;  // of the sliding velocity, 0: may stick
-    bool out = false;   // taken as open
-    bool back = false;  // was taken to break loose or slip and did not
+    double sign = 0.0;      // of the sliding velocity, 0: may stick
+    bool open = false;      // taken as open
+    bool reverted = false;  // was taken to start slipping or slip and did not
   };
-  Decision solve(SmoothMotion& motion, std::span<Candidate> candidates, const double* acceleration,
+  Decision solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                  SolverChain& chain);
   bool revise(std::span<Candidate> candidates);
-  void name_culprit(std::span<Candidate> candidates);
-  bool keep_present(std::span<Candidate> candidates);
+  void name_cause(std::span<Candidate> candidates);
+  bool take_present(std::span<Candidate> candidates);
   void take(std::span<Candidate> candidates, std::size_t solution);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
-  // Bounds of friction that follow from forces (mode_decision_bounds.cpp):
-  bool settle_bounds(SmoothMotion& motion, std::span<Candidate> candidates, const double* acceleration,
-                     SolverChain& chain);
-  void complete_modes(SmoothMotion& motion, std::span<Candidate> candidates);
+  bool converge_friction_bounds(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                                SolverChain& chain);
+  void complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
-  IslandProblem cluster_;
+  IslandProblem problem_;
   SolutionList solutions_;
   std::vector<Constraint> contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// The motion within a step as its ends alone tell it. What a flow interpolates with evaluates loads within
-/// the step, and so has the traces of an element that is entered and left there before anybody knows of it.
+/// The motion within a step by its ends alone. The interpolation of a flow evaluates loads within the step:
+/// it has traces of an element that is entered and left there.
 
 #include <carom/core/export.h>
 

@@ -35,17 +35,17 @@ public:
   explicit OneComponent(System system, const std::vector<Closed>& closed = {})
       : assembly_(std::move(system)),
         detector_(assembly_),
-        work_(assembly_),
-        motion_(assembly_, detector_, 0, EventDriven{.method = FlowMethod::bdf}, work_) {
+        memory_(assembly_),
+        motion_(assembly_, detector_, 0, options_, memory_) {
     EXPECT_EQ(assembly_.components().size(), 1u);
     for (const auto& [pair, mode] : closed) {
       ActiveContact contact;
-      contact.pair = motion_.pairs().at(pair);
+      contact.pair = motion_.model().pairs.at(pair);
       contact.mode = mode;
       motion_.active().list().push_back(contact);
     }
     y_.resize(motion_.size());
-    motion_.gather(assembly_.initial_state(), y_);
+    motion_.model().unknowns.gather(assembly_.initial_state(), y_);
   }
   /// Moves all numbers off what they were, joints open a little.
   void disturb(double size) {
@@ -96,12 +96,13 @@ public:
 
 private:
   [[nodiscard]] std::size_t coordinates() const {
-    return motion_.size() - static_cast<std::size_t>(motion_.work_count());
+    return motion_.size() - static_cast<std::size_t>(motion_.model().unknowns.work_count());
   }
 
   Assembly assembly_;
   Detector detector_;
-  MotionWorkspace work_;
+  EventDriven options_{.method = FlowMethod::bdf};
+  MotionMemory memory_;
   SmoothMotion motion_;
   std::vector<double> y_;
 };

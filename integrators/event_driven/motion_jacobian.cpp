@@ -6,7 +6,7 @@
 // so that the result is as sparse as the model.
 
 #include <carom/core/difference_derivatives.h>
-#include <carom/integrators/event_driven/smooth_motion.h>
+#include <carom/integrators/event_driven/motion_jacobian.h>
 
 #include <algorithm>
 #include <array>
@@ -52,45 +52,47 @@ BodySlot body_of(const Assembly& assembly, const Component& component, Index v) 
 
 }  // namespace
 
-void SmoothMotion::jacobian(double time, const double* y, std::vector<RateDerivative>& out) {
-  MotionWorkspace& work = *work_;
-  const Assembly& assembly = *assembly_;
-  evaluate(time, y, true);
-  const Range v = assembly.components()[component_].v;
+MotionJacobian::MotionJacobian(const ComponentModel& model, JointReactions& reactions, ActiveSet& active,
+                               MotionMemory& memory)
+    : model_(&model), reactions_(&reactions), active_(&active), memory_(&memory) {}
+
+void MotionJacobian::append(MotionSample& sample, std::vector<RateDerivative>& out) {
+  const Assembly& assembly = *model_->assembly;
+  const Range v = model_->ranges().v;
   // Masses are diagonal in the velocities (JointConstraints).
-  std::fill(work.of_position.begin() + v.begin, work.of_position.begin() + v.end, 1.0);
-  assembly.for_bodies(component_, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
-    kind.apply_mass(slots, work.of_position.data() + at, work.of_velocity.data() + at);
+  std::vector<double>&ones = memory_->of_position, &masses = memory_->of_velocity;
+  std::fill(ones.begin() + v.begin, ones.begin() + v.end, 1.0);
+  assembly.for_bodies(model_->index, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+    kind.apply_mass(slots, ones.data() + first, masses.data() + first);
   });
-  const auto number = [this](Index at) { return static_cast<Index>(unknown(at)); };
   for (Index i = v.begin; i < v.end; ++i) {
-    out.push_back({.row = number(i), .column = number(i), .of_rate = work.of_velocity[i]});
+    out.push_back({.row = unknown(i), .column = unknown(i), .of_rate = masses[i]});
   }
   derivatives_.clear();
-  append_derivatives({assembly, work.trial.view(), work.evaluation, component_}, derivatives_);
+  append_derivatives({assembly, sample.view(), sample.evaluation, model_->index}, derivatives_);
   for (const LoadDerivative& entry : derivatives_) {
-    out.push_back({number(entry.row), number(entry.column), 0.0, entry.by_velocity, entry.by_position});
+    out.push_back({unknown(entry.row), unknown(entry.column), 0.0, entry.by_velocity, entry.by_position});
   }
-  differentiate_internals(out);
-  auto multiplier = static_cast<Index>(size_);
-  differentiate_joints(out, multiplier);
-  differentiate_contacts(out, multiplier);
+  differentiate_internals(sample, out);
+  auto multiplier = static_cast<Index>(model_->unknowns.size());
+  differentiate_joints(sample, out, multiplier);
+  differentiate_contacts(sample, out, multiplier);
 }
 
 /// By central differences: elements tell no derivatives of what goes on inside.
-void SmoothMotion::differentiate_internals(std::vector<RateDerivative>& out) {
-  if (z_size_ == 0) return;
-  const Assembly& assembly = *assembly_;
+void MotionJacobian::differentiate_internals(const MotionSample& sample, std::vector<RateDerivative>& out) {
+  if (model_->unknowns.z_size() == 0) return;
+  const Assembly& assembly = *model_->assembly;
   const auto z = [&](Index at) {
-    return static_cast<Index>(q_size_ + v_size_) + (at - assembly.components()[component_].z.begin);
+    return static_cast<Index>(model_->unknowns.z_begin()) + (at - model_->ranges().z.begin);
   };
-  const auto v = [this](Index at) { return static_cast<Index>(unknown(at)); };
-  DifferenceDerivatives differences({assembly, work_->trial.view(), work_->evaluation, component_});
+  const auto v = [this](Index at) { return unknown(at); };
+  DifferenceDerivatives differences({assembly, sample.view(), sample.evaluation, model_->index});
   InternalDerivatives found;
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& force = *assembly.force_kinds()[kind];
     if (force.internal_size() == 0) continue;
-    const Range elements = assembly.elements(component_, kind);
+    const Range elements = assembly.elements(model_->index, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       const Index first = assembly.layout()->internal(assembly.element_id(kind, element)).first;
       differences.append_internal(force, element, {first, first + force.internal_size()}, found);
@@ -108,30 +110,31 @@ void SmoothMotion::differentiate_internals(std::vector<RateDerivative>& out) {
   }
 }
 
-void SmoothMotion::differentiate_joints(std::vector<RateDerivative>& out, Index& multiplier) {
-  if (joints_.empty()) return;
-  MotionWorkspace& work = *work_;
-  const std::span<const double> forces = joint_multipliers();
-  const JointView at{work.trial.view(), work.evaluation.rotation.data()};
+void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vector<RateDerivative>& out,
+                                          Index& multiplier) {
+  const JointConstraints& joints = reactions_->rows();
+  if (joints.empty()) return;
+  const std::span<const double> forces = reactions_->multipliers(sample, active_->list());
+  joint_forces_.assign(forces.begin(), forces.end());
   std::array<JointRowDerivative, std::size_t{JointKind::most_rows}> changes;
-  row_multipliers_.assign(joints_.size(), none);
+  row_multipliers_.assign(joints.size(), none);
   constexpr auto most = static_cast<std::size_t>(JointRowDerivative::most);
-  for (std::size_t joint = 0; joint < joints_.joints(); ++joint) {
-    joints_.derivatives(at, joint, changes.data());
+  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+    joints.derivatives(sample.joint_view(), joint, changes.data());
     std::array<Index, most> columns{};
     std::array<double, most> jacobian{};
     std::array<JointRowDerivative::Numbers, most> stiffness{};
     std::size_t count = 0;
-    for (Index r = joints_.first_row(joint); r < joints_.first_row(joint + 1); ++r) {
+    for (Index r = joints.first_row(joint); r < joints.first_row(joint + 1); ++r) {
       // What follows from other rows has no force; the motion does not need it.
-      if (!(joints_.factors().pivot(r) > dependent_pivot)) continue;
-      const JointRowDerivative& change = changes[r - joints_.first_row(joint)];
-      const JointRow row = joints_.row(r);
+      if (!(joints.factors().pivot(r) > dependent_pivot)) continue;
+      const JointRowDerivative& change = changes[r - joints.first_row(joint)];
+      const JointRow row = joints.row(r);
       count = 0;
       for (int b = 0; b < row.bodies; ++b) {
         const JointRow::Block& block = row.blocks[static_cast<std::size_t>(b)];
         for (int c = 0; c < block.columns; ++c, ++count) {
-          columns[count] = static_cast<Index>(unknown(block.v + static_cast<Index>(c)));
+          columns[count] = unknown(block.v + static_cast<Index>(c));
           jacobian[count] = block.jacobian[static_cast<std::size_t>(c)];
         }
       }
@@ -139,9 +142,9 @@ void SmoothMotion::differentiate_joints(std::vector<RateDerivative>& out, Index&
         double bent = change.drift_by_position[j];
         for (std::size_t i = 0; i < count; ++i) {
           const Index v =
-              assembly_->components()[component_].v.begin + (columns[i] - static_cast<Index>(q_size_));
-          bent += change.jacobian[i][j] * work.acceleration[v];
-          stiffness[i][j] += forces[r] * change.jacobian[i][j];
+              model_->ranges().v.begin + (columns[i] - static_cast<Index>(model_->unknowns.q_size()));
+          bent += change.jacobian[i][j] * sample.acceleration[v];
+          stiffness[i][j] += joint_forces_[r] * change.jacobian[i][j];
         }
         out.push_back({multiplier, columns[j], jacobian[j], -change.drift_by_velocity[j], -bent});
         out.push_back({.row = columns[j], .column = multiplier, .of_state = jacobian[j]});
@@ -158,46 +161,45 @@ void SmoothMotion::differentiate_joints(std::vector<RateDerivative>& out, Index&
 }
 
 /// By central differences: the shapes of obstacles and laws of friction know no derivatives.
-SmoothMotion::ContactChange SmoothMotion::change_of(const ActiveContact& contact) {
-  MotionWorkspace& work = *work_;
+MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, const ActiveContact& contact) {
   ContactChange change;
   change.count = columns_of(contact.at, change.columns);
   Constraint moved;
-  const auto look = [&](OfContact& load, std::array<double, 2>& rows) {
-    detector_->contact(contact.pair, work.trial.view(), work.evaluation, work.places, moved);
-    const double slip = -contact.slip_sign() * contact.friction_at(moved, work.trial.v.data());
+  const auto sample_at = [&](OfContact& load, std::array<double, 2>& rows) {
+    model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
+    const double slip = -contact.slip_sign() * contact.friction_at(moved, sample.state.v.data());
     const double tangential = contact.sticks() ? contact.tangential : slip * contact.normal;
     for (std::size_t i = 0; i < change.count; ++i) {
       load[i] = tangential * moved.row(moved.tangent_row())[i];
       if (!moved.has_dry_friction()) load[i] += contact.normal * moved.row(0)[i];
     }
-    rows = {moved.normal_acceleration(work.acceleration.data()),
-            moved.tangential_acceleration(work.acceleration.data())};
+    rows = {moved.normal_acceleration(sample.acceleration.data()),
+            moved.tangential_acceleration(sample.acceleration.data())};
   };
   const auto difference = [&](double step, const auto& move, OfContact& load, std::array<double, 2>& rows) {
     OfContact load_behind{};
     std::array<double, 2> rows_behind{};
     move(step);
-    look(load, rows);
+    sample_at(load, rows);
     move(-step);
-    look(load_behind, rows_behind);
+    sample_at(load_behind, rows_behind);
     move(0.0);
     for (std::size_t i = 0; i < change.count; ++i) load[i] = (load[i] - load_behind[i]) / (2.0 * step);
     for (std::size_t i = 0; i < 2; ++i) rows[i] = (rows[i] - rows_behind[i]) / (2.0 * step);
   };
-  const Assembly& assembly = *assembly_;
-  const Component& all = assembly.components()[component_];
+  const Assembly& assembly = *model_->assembly;
+  const Component& all = model_->ranges();
   for (std::size_t c = 0; c < change.count; ++c) {
     const Index v = change.columns[c];
     const BodySlot body = body_of(assembly, all, v);
-    double& position = work.trial.q[all.q.begin + (v - all.v.begin)];
-    double& velocity = work.trial.v[v];
+    double& position = sample.state.q[all.q.begin + (v - all.v.begin)];
+    double& velocity = sample.state.v[v];
     const double q = position, speed = velocity;
     const auto move = [&](double step) {
       position = q + step;
       if (body.rotation == none) return;
-      assembly.body_kinds()[body.kind]->rotations({body.slot, body.slot + 1}, work.trial.q.data() + body.q,
-                                                  work.evaluation.rotation.data() + body.rotation);
+      assembly.body_kinds()[body.kind]->rotations({body.slot, body.slot + 1}, sample.state.q.data() + body.q,
+                                                  sample.evaluation.rotation.data() + body.rotation);
     };
     difference(difference_step, move, change.load_by_position[c], change.row_by_position[c]);
     difference(
@@ -205,50 +207,52 @@ SmoothMotion::ContactChange SmoothMotion::change_of(const ActiveContact& contact
         change.load_by_velocity[c], change.row_by_velocity[c]);
   }
   for (std::size_t i = 0; i < change.count; ++i) {
-    change.columns[i] = static_cast<Index>(unknown(change.columns[i]));
+    change.columns[i] = unknown(change.columns[i]);
   }
   return change;
 }
 
 /// Of friction that slips in a joint and is bound by the joint's force: by central differences.
-void SmoothMotion::differentiate_pressure(const ActiveContact& contact, std::vector<RateDerivative>& out) {
-  const Range rows = pressure_.rows(contact.at);
+void MotionJacobian::differentiate_friction_bound(const MotionSample& sample, const ActiveContact& contact,
+                                                  std::vector<RateDerivative>& out) {
+  FrictionBounds& bounds = reactions_->friction_bounds();
+  const Range rows = bounds.rows(contact.at);
   if (rows.empty()) return;
-  std::vector<double>& forces = work_->multipliers;
+  std::vector<double>& forces = joint_forces_;
   double largest = 0.0;
   for (Index row = rows.begin; row < rows.end; ++row) largest = std::max(largest, std::abs(forces[row]));
   if (largest == 0.0) return;  // a cone's tip
-  const JointView at{work_->trial.view(), work_->evaluation.rotation.data()};
   std::array<Index, most_columns> columns{};
   const std::size_t count = columns_of(contact.at, columns);
-  const auto pressed = [&](double& force, double value) {
+  const auto bound_at = [&](double& force, double value) {
     force = value;
     Constraint moved = contact.at;
-    pressure_.take(forces.data(), 1.0);
-    pressure_.press(moved, at);
+    bounds.take(forces.data(), 1.0);
+    bounds.press(moved, sample.joint_view());
     return moved.friction_bound;
   };
   for (Index row = rows.begin; row < rows.end; ++row) {
     if (row_multipliers_[row] == none) continue;
     const double force = forces[row];
     const double slope =
-        difference_quotient([&](double value) { return pressed(forces[row], value); }, force, largest);
+        difference_quotient([&](double value) { return bound_at(forces[row], value); }, force, largest);
     forces[row] = force;
     for (std::size_t i = 0; i < count; ++i) {
       const double load =
           -contact.slip_sign() * contact.friction * slope * contact.at.row(contact.at.tangent_row())[i];
-      const auto moved = static_cast<Index>(unknown(columns[i]));
+      const auto moved = unknown(columns[i]);
       out.push_back({.row = moved, .column = row_multipliers_[row], .of_state = load});
     }
   }
 }
 
-void SmoothMotion::differentiate_contacts(std::vector<RateDerivative>& out, Index& multiplier) {
-  const std::vector<ActiveContact>& contacts = active_.list();
+void MotionJacobian::differentiate_contacts(MotionSample& sample, std::vector<RateDerivative>& out,
+                                            Index& multiplier) {
+  const std::vector<ActiveContact>& contacts = active_->list();
   contact_changes_.clear();
   for (const ActiveContact& contact : contacts) {
-    const ContactChange& change = contact_changes_.emplace_back(change_of(contact));
-    if (!contact.sticks()) differentiate_pressure(contact, out);
+    const ContactChange& change = contact_changes_.emplace_back(change_of(sample, contact));
+    if (!contact.sticks()) differentiate_friction_bound(sample, contact, out);
     for (std::size_t i = 0; i < change.count; ++i) {
       for (std::size_t j = 0; j < change.count; ++j) {
         out.push_back({change.columns[i], change.columns[j], 0.0, change.load_by_velocity[j][i],
@@ -256,18 +260,18 @@ void SmoothMotion::differentiate_contacts(std::vector<RateDerivative>& out, Inde
       }
     }
   }
-  for (const auto& [equation, force] : active_.pivots()) {
-    const ContactChange& held = contact_changes_[equation.contact];
+  for (const auto& [equation, force] : active_->pivots()) {
+    const ContactChange& fixed = contact_changes_[equation.contact];
     const std::size_t row = equation.tangent ? 1 : 0;
     const Constraint& at = contacts[equation.contact].at;
-    for (std::size_t j = 0; j < held.count; ++j) {
-      out.push_back({multiplier, held.columns[j], at.row(equation.tangent ? at.tangent_row() : 0)[j],
-                     -held.row_by_velocity[j][row], -held.row_by_position[j][row]});
+    for (std::size_t j = 0; j < fixed.count; ++j) {
+      out.push_back({multiplier, fixed.columns[j], at.row(equation.tangent ? at.tangent_row() : 0)[j],
+                     -fixed.row_by_velocity[j][row], -fixed.row_by_position[j][row]});
     }
-    const ContactChange& pushed = contact_changes_[force.contact];
+    const ContactChange& loaded = contact_changes_[force.contact];
     const OfContact along = direction(contacts[force.contact], force.tangent);
-    for (std::size_t i = 0; i < pushed.count; ++i) {
-      out.push_back({.row = pushed.columns[i], .column = multiplier, .of_state = along[i]});
+    for (std::size_t i = 0; i < loaded.count; ++i) {
+      out.push_back({.row = loaded.columns[i], .column = multiplier, .of_state = along[i]});
     }
     ++multiplier;
   }

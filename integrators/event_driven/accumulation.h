@@ -1,0 +1,34 @@
+#pragma once
+
+/// \file
+/// Accumulations of impacts (Zeno): infinitely many in a finite time, which the latest of them foreshadow.
+
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace carom {
+
+/// The latest impacts of one clock group.
+class CAROM_API Accumulation {
+public:
+  /// Forgets all: a new motion.
+  void clear() { impacts_.clear(); }
+  /// Remembers an impact. \param time not before that of the last one [s]
+  void remember(double time, const ConstraintKey& contact);
+  /// Time at which infinitely many impacts would have ended [s], by the times up to an impact that is not
+  /// remembered yet; NaN where the intervals do not shrink in a constant ratio.
+  [[nodiscard]] double end(double time) const;
+
+private:
+  struct Impact {
+    double time;
+    ConstraintKey contact;
+  };
+  static constexpr std::size_t remembered = 16;
+  std::vector<Impact> impacts_;  // in time
+};
+
+}  // namespace carom

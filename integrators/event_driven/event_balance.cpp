@@ -1,0 +1,132 @@
+// Problem: every impulse does its work on a line of the ledger, and is recorded.
+
+#include <carom/contact/impulse_map.h>
+#include <carom/integrators/event_driven/event_balance.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace carom {
+
+namespace {
+
+/// Line of the ledger for the work of an impact along a row of a contact.
+EnergyFlow line_of(EventKind kind, int row) {
+  if (kind == EventKind::accumulation) return EnergyFlow::accumulation;
+  if (kind == EventKind::impact_without_collision) return EnergyFlow::impact_without_collision;
+  return row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential;
+}
+
+}  // namespace
+
+void EventBalance::clear() {
+  flows = {};
+  events.clear();
+  counts = {};
+  joint_impulses.clear();
+  energy_gain = shift = 0.0;
+}
+
+void EventBalance::order_events() {
+  const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
+  if (std::is_sorted(events.begin(), events.end(), earlier)) return;
+  order_.resize(events.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+    const double first = events[a].time, second = events[b].time;
+    return first < second || (first == second && a < b);
+  });
+  ordered_.clear();
+  for (const std::size_t place : order_) ordered_.push_back(events[place]);
+  events.swap(ordered_);
+}
+
+EventRecord& EventBalance::record(EventKind kind, double time, const Constraint& contact,
+                                  const Assembly& assembly) {
+  ++counts[static_cast<std::size_t>(kind)];
+  EventRecord& event = events.emplace_back();
+  event.time = time;
+  event.kind = kind;
+  if (contact.bodies == 0) return event;
+  event.contact = contact.key;
+  event.body = assembly.layout()->id(contact.body());
+  if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
+    event.obstacle = {contact.key.b.serial, assembly.system().token()};
+  }
+  return event;
+}
+
+double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) {
+  const IslandProblem& problem = impact.problem;
+  ImpulseWork work;
+  for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
+    const Constraint& contact = problem.constraints()[c];
+    if (contact.has_dry_friction()) {
+      const auto place = static_cast<std::size_t>(problem.first_row(c));
+      const double before = problem.before()[place], after = contact.tangential_velocity(impact.velocity);
+      flows[EnergyFlow::joint_friction] -= work.add(problem.impulses()[place], before, after);
+      continue;
+    }
+    EventRecord& event = record(impact.kind, impact.time, contact, assembly);
+    for (int row = 0; row < contact.rows; ++row) {
+      const auto at = static_cast<std::size_t>(row);
+      const auto place = static_cast<std::size_t>(problem.first_row(c) + row);
+      const double before = problem.before()[place], after = contact.velocity(row, impact.velocity);
+      const double impulse = problem.impulses()[place];
+      event.velocity_before[at] = before;
+      event.velocity_after[at] = after;
+      event.impulse[at] = impulse;
+      flows[line_of(impact.kind, row)] -= work.add(impulse, before, after);
+      flows[EnergyFlow::external] += impulse * contact.surface_velocity[at];
+    }
+    event.energy_before = impact.energy_before;
+    event.energy_after = impact.energy_after;
+    event.mode = problem.modes()[c];
+    event.outcome = problem.report().outcome;
+    event.residual = problem.report().residual;
+    event.solver = problem.report().solver;
+    event.accumulation_time = impact.accumulation_time;
+  }
+  if (!work.is_gain()) return 0.0;
+  energy_gain += work.gain;
+  return work.gain;
+}
+
+void EventBalance::book_joints(const SolvedImpact& impact, const ComponentModel& model,
+                               JointReactions& joints, const MotionSample& at) {
+  if (joints.rows().empty()) return;
+  const std::span<const double> multipliers = joints.impulses(impact.problem);
+  // What is prescribed moves on: G v = -rate before and after.
+  for (std::size_t i = 0; i < multipliers.size(); ++i) {
+    flows[EnergyFlow::external] -= multipliers[i] * joints.rows().rate(i);
+  }
+  list_joint_impulses(multipliers, impact.time, model, at);
+  const IslandProblem& problem = impact.problem;
+  for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
+    const Constraint& contact = problem.constraints()[c];
+    if (!contact.has_dry_friction()) continue;
+    JointReaction reaction;
+    reaction.moment = problem.impulses()[static_cast<std::size_t>(problem.first_row(c))];
+    const JointId friction{contact.key.a.serial, model.assembly->system().token()};
+    joint_impulses.push_back({friction, reaction, impact.time});
+  }
+}
+
+void EventBalance::list_joint_impulses(std::span<const double> multipliers, double time,
+                                       const ComponentModel& model, const MotionSample& at) {
+  const Assembly& assembly = *model.assembly;
+  std::size_t row = 0;
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    const JointKind& kind = *assembly.joint_kinds()[k];
+    const Range range = assembly.joints(model.index, k);
+    for (Index joint = range.begin; joint < range.end; ++joint, row += kind.rows()) {
+      const double* const of_joint = multipliers.data() + row;
+      if (std::all_of(of_joint, of_joint + kind.rows(), [](double number) { return number == 0.0; }))
+        continue;
+      joint_impulses.push_back(
+          {assembly.joint_id(k, joint), kind.reaction(at.joint_view(), joint, of_joint), time});
+    }
+  }
+}
+
+}  // namespace carom

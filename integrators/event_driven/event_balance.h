@@ -1,0 +1,64 @@
+#pragma once
+
+/// \file
+/// Books of an advance of clock groups: the energy that left them, and the events that happened.
+
+#include <carom/contact/island_problem.h>
+#include <carom/core/constraint.h>
+#include <carom/core/energy_term.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/component_model.h>
+#include <carom/integrators/event_driven/joint_reactions.h>
+#include <carom/integrators/event_driven/motion_sample.h>
+#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/step_report.h>
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// An impact that was solved and applied.
+struct SolvedImpact {
+  EventKind kind = EventKind::impact;
+  double time = 0.0;             ///< [s]
+  const IslandProblem& problem;  ///< the problem and its answer
+  const double* velocity;        ///< of the model, after
+  double energy_before = 0.0;    ///< kinetic energy of the mechanism [J],
+  double energy_after = 0.0;     ///< and after
+  double accumulation_time = std::numeric_limits<double>::quiet_NaN();  ///< EventRecord::accumulation_time
+};
+
+/// Energy that left clock groups, and what happened to them, since it was last cleared.
+struct CAROM_API EventBalance {
+  EnergyFlows flows;
+  std::vector<EventRecord> events;
+  EventCounts counts{};
+  std::vector<JointImpulse> joint_impulses;  ///< of impacts
+  double energy_gain = 0.0;                  ///< by impacts [J]
+  double shift = 0.0;                        ///< largest displacement by projection [m]
+
+  /// Begins anew. Memory stays.
+  void clear();
+  /// Groups advance one after the other: puts their events in the order of time, then as they were booked.
+  void order_events();
+  /// Records an event, which the caller completes. \param contact without bodies: of no contact
+  EventRecord& record(EventKind kind, double time, const Constraint& contact, const Assembly& assembly);
+  /// Books the works of an impact and records it, an event for each contact. Returns the energy that it
+  /// added, beyond rounding [J].
+  double book(const SolvedImpact& impact, const Assembly& assembly);
+  /// Books what joints did in an impact. \param joints brought to `at`
+  void book_joints(const SolvedImpact& impact, const ComponentModel& model, JointReactions& joints,
+                   const MotionSample& at);
+  /// Lists impulses of joints by the multipliers of their rows, where there are any.
+  void list_joint_impulses(std::span<const double> multipliers, double time, const ComponentModel& model,
+                           const MotionSample& at);
+
+private:
+  std::vector<EventRecord> ordered_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace carom

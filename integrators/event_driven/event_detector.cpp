@@ -1,0 +1,169 @@
+// Problem: no event of a step is missed, and none is made of rounding.
+
+#include <carom/core/discontinuity.h>
+#include <carom/integrators/event_driven/event_detector.h>
+#include <carom/integrators/event_driven/event_location.h>
+#include <carom/integrators/event_driven/path_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// The first discontinuity after a time; infinity if there is none.
+double next_discontinuity(const std::vector<Discontinuity>& all, double time) {
+  const auto next = std::upper_bound(all.begin(), all.end(), time,
+                                     [](double t, const Discontinuity& at) { return t < at.time; });
+  return next == all.end() ? never : next->time;
+}
+
+/// True of a false alarm from which nothing is gained by going on anew.
+bool makes_no_progress(const SearchedStep& step, const Event& event) {
+  constexpr double no_progress = 0.01;  // of the step
+  return event.guard == Guard::restart &&
+         event.time - step.begin() <= no_progress * (step.end() - step.begin());
+}
+
+}  // namespace
+
+void EventDetector::start() {
+  guards_.forget(motion_->guards().count());
+  landing_.time = never;
+}
+
+void EventDetector::begin_phase(double time, const double* y, const EventScales& scales) {
+  scales_ = scales;
+  is_active_.assign(motion_->model().pairs.size(), 0);
+  for (const ActiveContact& contact : motion_->active().list()) is_active_[contact.place] = 1;
+  if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start)) {
+    failure_->fail_loads(memory_->within);
+  }
+  guards_.update(ends_.start.sample.guards, scales_.guard_noise);
+}
+
+Event EventDetector::step(Flow& flow, double time, std::span<const double> y, double longest) {
+  const double discontinuity = next_discontinuity(motion_->model().discontinuities, time);
+  const double until = discontinuity < never ? discontinuity - time : never;
+  SearchedStep step{*motion_, flow, ends_, scales_, guards_, is_active_, *memory_};
+  for (;;) {
+    try {
+      flow.advance(std::min(longest, until));
+    } catch (const SolverError& error) {
+      if (!finds_unbounded_force(flow)) failure_->fail_flow(error, *motion_, y.data(), memory_->within);
+      return unbounded_at(time, y, error.what());
+    }
+    if (!sample_step_end(*motion_, flow.end(), flow.state().data(), is_active_, scales_.force, *memory_,
+                         ends_.end)) {
+      failure_->fail_loads(memory_->within);
+    }
+    memory_->samples.forget();
+    memory_->path_samples.forget();
+    landing_.time = never;
+    const Event event = first(step);
+    if (makes_no_progress(step, event) && finds_unbounded_force(flow)) {
+      return unbounded_at(time, y, "steps have no length any more");
+    }
+    if (repeat_shorter(step, event, time, y)) continue;
+    const bool at_discontinuity =
+        until < never && flow.end() >= discontinuity - 2.0 * epsilon * std::abs(discontinuity);
+    if (event.guard == Guard::nothing && at_discontinuity) return {discontinuity, Guard::discontinuity, 0};
+    return event;
+  }
+}
+
+/// True if the flow was started anew, for a shorter step.
+bool EventDetector::repeat_shorter(SearchedStep& step, const Event& event, double time,
+                                   std::span<const double> y) {
+  // Forces that were infinite within the step: steps nearer to there sample their growth.
+  constexpr double nearer = 0.25, shorter = 0.5;
+  if (event.guard == Guard::painleve) {
+    step.flow.start(time, y, nearer * (event.time - time));
+    return true;
+  }
+  if (event.guard != Guard::missed_loads && !lands_off_path(step, event, landing_)) return false;
+  step.flow.start(time, y, shorter * (event.time - time));
+  return true;
+}
+
+/// The event of a flow that cannot go on before forces without bound: where it stands.
+Event EventDetector::unbounded_at(double time, std::span<const double> y, std::string reason) {
+  unbounded_->set_reason(std::move(reason));
+  landing_.time = time;
+  landing_.y.assign(y.begin(), y.end());
+  return {time, Guard::painleve, 0};
+}
+
+bool EventDetector::finds_unbounded_force(const Flow& flow) {
+  motion_->sample(flow.end(), flow.state().data(), Forces::all, memory_->within);
+  return unbounded_->find(motion_->active().list(), scales_.force);
+}
+
+Event EventDetector::first(SearchedStep& step) {
+  passed_over_.gaps.assign(ends_.end.gaps.size(), 0);
+  passed_over_.forces.assign(ends_.end.sample.margins.size(), 0);
+  for (;;) {
+    const Event predicted = predict_event(step, passed_over_);
+    if (step.has_guards() && misses_loads(step, predicted.time)) {
+      return {predicted.time, Guard::missed_loads, 0};
+    }
+    if (predicted.guard == Guard::nothing) return predicted;
+    const Event located = locate_event(step, predicted, landing_);
+    if (located.guard != Guard::restart) return first_of(step, predicted, located);
+    if (!is_false_alarm(step, predicted, located)) return located;
+    (predicted.guard == Guard::force ? passed_over_.forces : passed_over_.gaps)[predicted.which] = 1;
+  }
+}
+
+/// True if the step can be kept although a predicted event is not there.
+bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located) {
+  // A force at the very start: within such a step p = W_nn - s mu W_nt passes zero together with the load,
+  // and the flow does not know the force in between.
+  if (predicted.guard == Guard::force && !(located.time > step.begin()) && !finds_unbounded_force(step.flow))
+    return true;
+  if (predicted.guard != Guard::gap) return false;
+  // A gap that opens: in steps of low order there would be one after each restart.
+  const StepPolynomial::End &start = ends_.start.gaps[predicted.which],
+                            &end = ends_.end.gaps[predicted.which];
+  return start.first >= 0.0 && end.first >= 0.0 &&
+         end.value >= ends_.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
+}
+
+/// Gaps are predicted to rounding, other guards to a part of a step: an event that is located later than it
+/// was predicted may lie behind the closing of a gap.
+Event EventDetector::first_of(SearchedStep& step, const Event& predicted, const Event& located) {
+  constexpr double as_predicted = 1e-9;  // of the step
+  const double length = step.end() - step.begin();
+  if (predicted.guard == Guard::gap || located.time - predicted.time <= as_predicted * length) return located;
+  const Event gap = predict_gap(step, passed_over_, located);
+  if (gap.guard != Guard::gap) return located;
+  const Event closing = locate_event(step, gap, landing_);
+  return closing.guard == Guard::gap && closing.time < located.time ? closing : located;
+}
+
+void EventDetector::accept() {
+  std::swap(ends_.start, ends_.end);
+  guards_.update(ends_.start.sample.guards, scales_.guard_noise);
+}
+
+void EventDetector::land(Flow& flow, const Event& event, std::span<double> y) const {
+  if (landing_.time == event.time) {
+    std::copy(landing_.y.begin(), landing_.y.end(), y.begin());
+  } else {
+    flow.land(std::min(event.time, flow.end()), y);
+  }
+}
+
+void EventDetector::pass(const Event& event) { guards_.pass({event.time, event.which, event.sign}); }
+
+double EventDetector::force_noise(const Event& event) const {
+  return event.guard == Guard::force ? ends_.force_noise(event.which) : 0.0;
+}
+
+}  // namespace carom

@@ -1,0 +1,68 @@
+#pragma once
+
+/// \file
+/// The instant of an event: the state of a clock group there, which the stages of the event read and change.
+
+#include <carom/contact/active_set.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/event_balance.h>
+#include <carom/integrators/event_driven/event_scales.h>
+#include <carom/integrators/event_driven/motion_sample.h>
+#include <carom/integrators/event_driven/smooth_motion.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Memory of an instant, shared by clock groups: an instant at a time uses it.
+struct CAROM_API InstantMemory {
+  explicit InstantMemory(const Assembly& assembly) : now(assembly) {}
+
+  MotionSample now;
+  std::vector<Constraint> contacts;
+  std::vector<ActiveContact> before;
+  std::vector<Index> before_at;
+};
+
+/// One instant of one clock group.
+struct CAROM_API EventInstant {
+  /// \param y the state; it is changed with that of the group
+  EventInstant(SmoothMotion& group, InstantMemory& memory, double at_time, std::span<double> y_in,
+               EventBalance& books);
+
+  SmoothMotion& motion;
+  double time;                         ///< [s]
+  std::span<double> y;                 ///< state
+  MotionSample& now;                   ///< of it, without contact
+  std::vector<Constraint>& contacts;   ///< of all pairs in it
+  std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
+  std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
+  EventBalance& balance;               ///< books
+  EventScales scales{};                ///< of the phase to come
+  double touch_gap = 0.0;              ///< gaps up to here touch [m]
+  /// The rate of a driver jumps: contacts that were closed approach without having approached before.
+  bool rate_jumps = false;
+
+  /// Brings the sample, without contact, and all contacts to the state.
+  void update();
+  /// Takes the contacts of the active set for those before the event.
+  void take_contacts_before();
+  /// True if a pair touches.
+  [[nodiscard]] bool touches(std::size_t pair) const {
+    return before_at[pair] != none || contacts[pair].gap <= touch_gap;
+  }
+  /// Speed at which a pair approaches [m/s].
+  [[nodiscard]] double approach(std::size_t pair) const {
+    return -contacts[pair].normal_velocity(now.state.v.data());
+  }
+  /// Velocities of the model, in the sample.
+  [[nodiscard]] double* velocities() { return now.state.v.data(); }
+  [[nodiscard]] const double* velocities() const { return now.state.v.data(); }
+  /// Takes the velocities of the sample over into the state.
+  void take_velocities();
+};
+
+}  // namespace carom

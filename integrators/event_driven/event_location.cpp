@@ -1,0 +1,130 @@
+// Problem: the zero of a guard, each value of which costs a step.
+
+#include <carom/integrators/event_driven/event_location.h>
+#include <carom/integrators/event_driven/unbounded_forces.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// Guard of a predicted event where a step ended.
+struct Remainder {
+  double value, rate, noise;
+  bool has_rate;
+};
+
+/// The zero, between two times of the step.
+struct Bracket {
+  double low, high;
+  double f_low = 0.0, f_high = 0.0;
+  bool below = false;  // a value below zero was found
+
+  void take(double time, double value, bool as_low) {
+    (as_low ? low : high) = time;
+    (as_low ? f_low : f_high) = value;
+    below = below || !as_low;
+  }
+};
+
+Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
+  Bracket bracket{step.begin(), step.end()};
+  const GuardSample &start = step.ends.start.sample, &end = step.ends.end.sample;
+  if (predicted.guard == Guard::force) {
+    const double level = step.ends.force_level(predicted.which);
+    bracket.f_low = start.margins[predicted.which] - level;
+    bracket.f_high = end.margins[predicted.which] - level;
+    bracket.below = bracket.f_high < 0.0;
+  } else if (predicted.guard == Guard::switching_point) {
+    bracket.f_low = predicted.sign * start.guards[predicted.which].value;
+    bracket.f_high = predicted.sign * end.guards[predicted.which].value;
+    bracket.below = bracket.f_high < 0.0;
+  }
+  return bracket;
+}
+
+/// The guard in a sample, and the size below which it counts as zero.
+Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& predicted,
+                       GuardSample& memory) {
+  const double* const velocity = at.state.v.data();
+  SmoothMotion& motion = step.motion;
+  if (predicted.guard == Guard::gap) {
+    Constraint contact;
+    motion.contact(predicted.which, at, contact);
+    return {contact.gap - step.ends.gap_level(predicted.which), contact.normal_velocity(velocity),
+            step.scales.gap_noise / 16.0, true};
+  }
+  if (predicted.guard == Guard::slip) {
+    const ActiveContact& closed = motion.active().list()[predicted.which];
+    const double sign = closed.slip_sign();
+    return {sign * closed.at.tangential_velocity(velocity) - step.ends.slip_level(predicted.which),
+            sign * closed.at.tangential_acceleration(at.acceleration.data()), step.scales.speed_noise / 16.0,
+            true};
+  }
+  if (predicted.guard == Guard::switching_point) {
+    motion.read_guards(at, memory.guards);
+    const GuardMotion& guard = memory.guards[predicted.which];
+    return {predicted.sign * guard.value, predicted.sign * guard.first, step.scales.gap_noise / 4.0,
+            motion.guards().has_motion(predicted.which)};
+  }
+  motion.active().margins(step.memory.margins);
+  return {step.memory.margins[predicted.which].margin - step.ends.force_level(predicted.which), 0.0,
+          step.ends.force_noise(predicted.which), false};
+}
+
+/// The next time to try: by the rate, by the secant, or the middle.
+double next_time(const Bracket& at, double time, const Remainder& rest, bool halve) {
+  const double next = rest.has_rate ? time - rest.value / rest.rate
+                                    : at.low + (at.high - at.low) * at.f_low / (at.f_low - at.f_high);
+  if (!(next > at.low && next < at.high) || halve) return 0.5 * (at.low + at.high);
+  return next;
+}
+
+}  // namespace
+
+Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing) {
+  constexpr int most_landings = 60;
+  std::vector<double>& y = step.memory.y;
+  y.resize(step.motion.size());
+  Bracket at = bracket_of(step, predicted);
+  double time = std::clamp(predicted.time, at.low, at.high);
+  if (predicted.guard == Guard::switching_point &&
+      step.guards.passes_at_once({at.low, predicted.which, predicted.sign},
+                                 step.ends.start.sample.guards[predicted.which],
+                                 step.scales.gap_noise / 4.0)) {
+    time = at.high = at.low;
+  }
+  const double predicted_time = time;
+  for (int i = 0; i < most_landings; ++i) {
+    step.flow.land(time, y);
+    step.motion.sample(time, y.data(), Forces::all, step.memory.within);
+    const Remainder rest = remainder_of(step, step.memory.within, predicted, step.memory.located);
+    // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
+    const bool opens = predicted.guard == Guard::gap && rest.rate >= 0.0 &&
+                       step.ends.start.gaps[predicted.which].first >= 0.0;
+    if ((std::abs(rest.value) <= rest.noise && !opens) || at.low == at.high) {
+      landing.time = time;
+      landing.y.assign(y.begin(), y.end());
+      return {time, predicted.guard, predicted.which, predicted.sign};
+    }
+    if (rest.has_rate && rest.value > 0.0 && rest.rate >= 0.0) return {time, Guard::restart, 0};
+    at.take(time, rest.value, rest.value > 0.0 || opens);
+    if (at.high - at.low <= 2.0 * epsilon * std::max(1.0, std::abs(at.high))) break;
+    time = next_time(at, time, rest, opens || i % 8 == 7);
+  }
+  // From large to large of the other sign: no zero of the forces but a pole.
+  const double large = UnboundedForces::growth * step.scales.force;
+  if (predicted.guard == Guard::force && at.f_low > large && at.f_high < -large) {
+    return {at.low, Guard::painleve, predicted.which};
+  }
+  // Nothing there: go on from where it was predicted, for behind it others may have been.
+  if (!at.below) return {predicted_time, Guard::restart, 0};
+  return {at.high, predicted.guard, predicted.which, predicted.sign};
+}
+
+}  // namespace carom

@@ -1,0 +1,45 @@
+// Problem: tell motion from rounding.
+
+#include <carom/integrators/event_driven/event_scales.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+// Gaps this small against the coordinates are rounding of sums of a few terms.
+constexpr double gap_rounding = 256.0 * std::numeric_limits<double>::epsilon();
+
+// Velocities this small against those before an impact are zero: answers of contact problems are certified to
+// 1e-12. So are those well below the tolerance, which would start phases that end at once.
+constexpr double speed_rounding = 1e-12;
+
+}  // namespace
+
+EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
+                         std::span<const Constraint> contacts) {
+  const Range q = motion.model().ranges().q, v = motion.model().ranges().v;
+  const std::vector<double>& lengths = motion.memory().lengths;
+  EventScales scales;
+  double size = 1.0, velocity = 0.0;
+  for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(at.state.q[i]));
+  scales.gap_noise = gap_rounding * size;
+  for (Index i = v.begin; i < v.end; ++i) {
+    velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
+    scales.force = std::max(scales.force, std::abs(at.loads[i]) / lengths[i]);
+  }
+  for (const Constraint& contact : contacts) {
+    velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));
+    velocity = std::max(velocity, std::abs(contact.surface_velocity[1]));
+  }
+  const double tolerance = motion.model().options->absolute_tolerance;
+  scales.speed_noise = speed_rounding * velocity + 0.1 * tolerance;
+  // A step may be wrong by the tolerance.
+  scales.guard_noise = std::max(scales.gap_noise, tolerance);
+  return scales;
+}
+
+}  // namespace carom

@@ -1,0 +1,27 @@
+#pragma once
+
+/// \file
+/// Sizes below which gaps, velocities and forces of a clock group are rounding, from its state at the start
+/// of a phase.
+
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/smooth_motion.h>
+
+#include <span>
+
+namespace carom {
+
+/// Scales of one clock group.
+struct EventScales {
+  double force = 0.0;        ///< largest load [N]
+  double gap_noise = 0.0;    ///< rounding of gaps [m]
+  double speed_noise = 0.0;  ///< velocities that count as zero [m/s]
+  double guard_noise = 0.0;  ///< guards nearer to zero than this have not passed it
+};
+
+/// Scales at a state. \param contacts of all pairs there
+[[nodiscard]] CAROM_API EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
+                                                 std::span<const Constraint> contacts);
+
+}  // namespace carom

@@ -1,0 +1,74 @@
+// Problem: name the cause that keeps a clock group from going on.
+
+#include <carom/core/dynamics/coupling_rating.h>
+#include <carom/integrators/event_driven/group_failure.h>
+#include <carom/integrators/run/failure_file.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace carom {
+
+void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
+                        const IslandProblem* problem) const {
+  std::string message = "event-driven at t = " + to_text(clock_->now) + " s: " + what;
+  const Assembly& assembly = *model_->assembly;
+  if (parts.empty()) {
+    parts.push_back(assembly.system().name(assembly.layout()->id(model_->ranges().bodies.begin)));
+    message += "; component of " + parts.front();
+  } else {
+    message += ":";
+    for (const std::string& part : parts) message += " " + part + (part == parts.back() ? "" : ",");
+  }
+  SolverFailure failure;
+  failure.time = clock_->output;
+  failure.step = clock_->now - clock_->output;
+  failure.parts = std::move(parts);
+  if (problem != nullptr) {
+    failure.residual = problem->report().residual;
+    failure.problem = std::make_shared<const ContactProblem>(problem->problem());
+    message += write_failure(model_->options->failure_directory, failure, message);
+  }
+  throw SolverError(message, std::move(failure));
+}
+
+void GroupFailure::demand_finite_loads(const MotionSample& at) const {
+  const Assembly& assembly = *model_->assembly;
+  const ElementId cause = find_non_finite(assembly, model_->index, at.view(), at.evaluation);
+  if (!cause.valid()) return;
+  const System& system = assembly.system();
+  std::vector<std::string> parts{system.name(cause)};
+  const auto place = system.force_kinds().place(cause.serial);
+  std::vector<BodyId> ends;
+  system.force_kinds().entries()[place.entry].kind->ends(place.slot, ends);
+  if (ends.empty()) ends.push_back(assembly.layout()->id(model_->ranges().bodies.begin));
+  for (const BodyId body : ends) {
+    if (body != ground) parts.push_back(system.name(body));
+  }
+  fail("the loads are not finite", std::move(parts));
+}
+
+void GroupFailure::fail_loads(const MotionSample& at) const {
+  demand_finite_loads(at);
+  fail("the loads are not finite", {});
+}
+
+void GroupFailure::fail_flow(const SolverError& error, SmoothMotion& motion, const double* y,
+                             MotionSample& memory) const {
+  // The last evaluation of the flow need not be where it failed: a law of time shows itself at the end of the
+  // step that was tried, or behind it, up to some thousand roundings of time.
+  demand_finite_loads(memory);
+  const double end = error.failure().time + error.failure().step;
+  const double rounding = std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(end));
+  constexpr double farthest = 4096.0;
+  for (double ahead = 0.0; ahead <= farthest; ahead = std::max(1.0, 2.0 * ahead)) {
+    motion.sample(end + ahead * rounding, y, Forces::without_contact, memory);
+    demand_finite_loads(memory);
+  }
+  fail(error.what(), error.failure().parts);
+}
+
+}  // namespace carom

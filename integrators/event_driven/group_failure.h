@@ -1,0 +1,64 @@
+#pragma once
+
+/// \file
+/// Errors of a clock group: they name its times, the parts that keep it from going on, and the problem.
+
+#include <carom/contact/island_problem.h>
+#include <carom/core/errors.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/component_model.h>
+#include <carom/integrators/event_driven/smooth_motion.h>
+
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Times of a clock group.
+struct GroupClock {
+  double now = 0.0;     ///< up to which it is decided [s]
+  double output = 0.0;  ///< that it was last advanced to: its last good state [s]
+};
+
+/// Maker of the errors of one clock group.
+class CAROM_API GroupFailure {
+public:
+  /// Both must outlive it.
+  GroupFailure(const ComponentModel& model, const GroupClock& clock) : model_(&model), clock_(&clock) {}
+
+  /// Throws a SolverError. \param parts named, the worst first; empty: a body of the group \param problem
+  /// whose problem is attached, may be null
+  [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
+                         const IslandProblem* problem = nullptr) const;
+  /// Fails, naming the element and its bodies, if the loads of one are not finite in a sample.
+  void demand_finite_loads(const MotionSample& at) const;
+  /// Fails, naming the element if there is one.
+  [[noreturn]] void fail_loads(const MotionSample& at) const;
+  /// Fails as a flow did, naming the element whose loads are not finite at the last sample or where the flow
+  /// failed. \param y the last good state \param memory last sample, overwritten
+  [[noreturn]] void fail_flow(const SolverError& error, SmoothMotion& motion, const double* y,
+                              MotionSample& memory) const;
+
+  /// Name of a contact.
+  [[nodiscard]] std::string name(const Constraint& contact) const {
+    return model_->detector->name(contact.key);
+  }
+  /// Names of contacts. \param constraint_of gives the contact of an element of the list
+  template <class List, class F>
+  [[nodiscard]] std::vector<std::string> names(const List& list, F&& constraint_of) const {
+    std::vector<std::string> names;
+    names.reserve(list.size());
+    for (const auto& each : list) names.push_back(name(constraint_of(each)));
+    return names;
+  }
+  /// Names of contacts.
+  [[nodiscard]] std::vector<std::string> names(const std::vector<Constraint>& contacts) const {
+    return names(contacts, [](const Constraint& contact) -> const Constraint& { return contact; });
+  }
+
+private:
+  const ComponentModel* model_;
+  const GroupClock* clock_;
+};
+
+}  // namespace carom

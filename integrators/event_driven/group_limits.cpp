@@ -1,0 +1,104 @@
+// Problem: a run that gets nowhere ends, and its error names the cause.
+
+#include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/dynamics/force_directions.h>
+#include <carom/integrators/event_driven/group_limits.h>
+#include <carom/integrators/run/time_resolution.h>
+
+#include <limits>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// Names of the joints that almost follow from others where joints were last evaluated: near a singular
+/// position, which the motion passes within some 0.01 rad; empty elsewhere.
+std::vector<std::string> nearly_singular(const JointConstraints& joints, const System& system) {
+  constexpr double near_pivot = 1e-4;  // the square of an angle
+  std::vector<std::string> names;
+  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+    for (Index row = joints.first_row(joint); row < joints.first_row(joint + 1); ++row) {
+      const double pivot = joints.factors().pivot(row);
+      if (!(pivot > dependent_pivot && pivot < near_pivot)) continue;
+      names.push_back(system.name(joints.joint(row)));
+      break;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+void GroupLimits::start(double time) {
+  events_.start(time);
+  steps_.start(time);
+}
+
+double GroupLimits::longest_step() const {
+  // Free flight would allow steps of any length; gaps would then be small differences of large numbers.
+  constexpr double longest_flight = 1.0;
+  const bool foreseeable = !motion_->model().loads.depends_on_time && motion_->guards().all_have_motion();
+  return foreseeable ? longest_flight : motion_->model().options->longest_step;
+}
+
+void GroupLimits::demand_reachable(double target) const {
+  if (longest_step() >= shortest_step_at(target)) return;
+  failure_->fail("steps of at most " + to_text(longest_step()) +
+                     " s are lost in the rounding of times around " + to_text(target) + " s, the end",
+                 {});
+}
+
+void GroupLimits::count_step(double time, const double* y, MotionSample& memory) {
+  const ComponentModel& model = motion_->model();
+  const double limit = model.options->step_limit;
+  if (!steps_.exceeds(limit, time)) return;
+  const std::string what = "more than " + to_text(limit) + " steps of the integrator per second (step_limit)";
+  const System& system = model.assembly->system();
+  motion_->sample(time, y, Forces::all, memory);
+  std::vector<std::string> singular = nearly_singular(motion_->joints().rows(), system);
+  if (!singular.empty())
+    failure_->fail(what + "; near a singular position of the joints", std::move(singular));
+  const CouplingRating rating =
+      rate_couplings(*model.assembly, model.index, memory.view(), memory.evaluation, 1.0 / limit);
+  if (!rating.worst.valid()) failure_->fail(what, {});
+  failure_->fail(what + ", stiffest is", {system.name(rating.worst)});
+}
+
+void GroupLimits::count_event(const Event& event, const MotionSample& at) {
+  const ComponentModel& model = motion_->model();
+  if (!events_.exceeds(model.options->event_limit, event.time)) return;
+  std::string what = "more than " + to_text(model.options->event_limit) + " events per second (event_limit)";
+  // Where two ends have met, their line turns round by rounding, and with it the force, at one event after
+  // the other.
+  const ElementId lost = find_without_direction(*model.assembly, model.index, at.view(), at.evaluation,
+                                                std::numeric_limits<double>::infinity());
+  if (lost.valid()) what += "; " + tell_without_direction(*model.assembly, lost);
+  failure_->fail(what, parts_of(event, at));
+}
+
+/// Names of the parts of an event; empty where it is of no part, or of nothing that touches.
+std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionSample& at) const {
+  const System& system = motion_->model().assembly->system();
+  if (event.guard == Guard::switching_point) return {system.name(motion_->guards().element(event.which))};
+  const std::vector<ActiveContact>& closed = motion_->active().list();
+  Constraint contact;
+  if (event.guard == Guard::gap) {
+    motion_->contact(event.which, at, contact);
+  } else if (event.guard == Guard::slip) {
+    contact = closed[event.which].at;
+  } else if (!closed.empty()) {
+    contact = closed.front().at;
+  } else {
+    return {};
+  }
+  return {failure_->name(contact)};
+}
+
+void GroupLimits::fail_evaluations() const {
+  failure_->fail("more than " + std::to_string(motion_->model().options->evaluation_limit) +
+                     " evaluations within one step or event (evaluation_limit)",
+                 {});
+}
+
+}  // namespace carom

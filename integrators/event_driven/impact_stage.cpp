@@ -1,0 +1,190 @@
+// Problem: impacts at one instant, where they come from and where they lead to.
+
+#include <carom/contact/impact_restitution.h>
+#include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/integrators/event_driven/constraint_projection.h>
+#include <carom/integrators/event_driven/impact_stage.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+// Impacts of one instant: each takes energy out or hands it on, so that more than this do not happen but by
+// e = 1 in a corner.
+constexpr int most_impacts_at_once = 10000;
+
+}  // namespace
+
+bool ImpactStage::resolve(EventInstant& at) {
+  bool struck = false;
+  for (int round = 0; round < most_impacts_at_once; ++round) {
+    bool any = false;
+    for (const Range pairs : at.motion.model().mechanisms) {
+      const double fastest = fastest_approach(pairs, at);
+      if (!(fastest > at.scales.speed_noise)) continue;
+      resolve_mechanism(pairs, fastest, at);
+      any = struck = true;
+    }
+    if (!any) return struck;
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < at.contacts.size(); ++i) {
+    if (at.touches(i)) names.push_back(failure_->name(at.contacts[i]));
+  }
+  failure_->fail("impacts at one instant do not come to an end, more than " +
+                     std::to_string(most_impacts_at_once) +
+                     " (restitution of 1, or unequal ones, where contacts hand on the motion)",
+                 std::move(names));
+}
+
+double ImpactStage::fastest_approach(Range pairs, const EventInstant& at) const {
+  double fastest = 0.0;
+  for (Index i = pairs.begin; i < pairs.end; ++i) {
+    if (at.touches(i)) fastest = std::max(fastest, at.approach(i));
+  }
+  return fastest;
+}
+
+void ImpactStage::resolve_mechanism(Range pairs, double fastest, EventInstant& at) {
+  list_touching(pairs, at);
+  std::vector<Constraint>& touching = memory_->touching;
+  share_impact_restitution(touching, at.velocities(), 0.0);
+  const bool captured = fastest <= options_->capture_speed;
+  if (captured) add_captured(pairs, at);
+  IslandProblem& problem = memory_->problem;
+  JointReactions& joints = at.motion.joints();
+  joints.build(problem, touching, at.velocities());
+  problem.set_free_velocity(at.velocities());
+  if (!joints.solve(problem, touching, at.now, *chain_)) {
+    if (!captured) fail_unsolved(at);
+    // Slower than the capture speed all that touches closes anyway.
+    problem.forget_impulses();
+  }
+  apply(captured ? EventKind::accumulation : EventKind::impact, problem, at);
+  if (captured) close_captured(at);
+}
+
+/// Lists the contacts of an impact, with the friction of their present sliding.
+void ImpactStage::list_touching(Range pairs, const EventInstant& at) {
+  std::vector<Constraint>& touching = memory_->touching;
+  touching.clear();
+  for (Index i = pairs.begin; i < pairs.end; ++i) {
+    if (!at.touches(i)) continue;
+    // Friction in a joint that is bound by a constant has no impulse.
+    if (at.contacts[i].has_dry_friction() && !at.motion.joints().depends_on_joint_force(at.contacts[i]))
+      continue;
+    Constraint& contact = touching.emplace_back(at.contacts[i]);
+    contact.friction_bound = 0.0;
+    contact.friction = contact.law.friction_at(contact.sliding_speed(at.velocities()));
+    // Before the jump of a driver it did not approach: there is nothing to give back.
+    if (at.rate_jumps && at.before_at[i] != none) {
+      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    }
+  }
+}
+
+void ImpactStage::fail_unsolved(const EventInstant& at) const {
+  const IslandProblem& problem = memory_->problem;
+  const std::vector<Constraint>& touching = memory_->touching;
+  const ComponentModel& model = at.motion.model();
+  std::string what = "the contact problem of an impact is not solved (" +
+                     std::string(to_string(problem.report().outcome)) +
+                     driven_by(*model.assembly, model.index) + ")";
+  if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
+  failure_->fail(what, failure_->names(touching), &problem);
+}
+
+/// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
+std::string ImpactStage::fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const {
+  const auto slower = [&](const Constraint& a, const Constraint& b) {
+    return a.normal_velocity(velocity) > b.normal_velocity(velocity);
+  };
+  const Constraint& fastest = *std::max_element(contacts.begin(), contacts.end(), slower);
+  return failure_->name(fastest) + " approaches at " + to_text(-fastest.normal_velocity(velocity)) +
+         " m/s; allowed: what impulses of all that touch can stop";
+}
+
+void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInstant& at) {
+  const ComponentModel& model = at.motion.model();
+  const Index body = problem.constraints().front().body();
+  SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
+  impact.energy_before = model.kinetic_energy_of_mechanism(body, at.velocities());
+  problem.map().add_velocities(at.velocities());
+  at.take_velocities();
+  impact.energy_after = model.kinetic_energy_of_mechanism(body, at.velocities());
+  // Before the impacts of this instant are remembered.
+  if (kind == EventKind::accumulation) impact.accumulation_time = accumulation_.end(at.time);
+  const double gain = at.balance.book(impact, *model.assembly);
+  at.balance.book_joints(impact, model, at.motion.joints(), at.now);
+  for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
+    const Constraint& contact = problem.constraints()[c];
+    if (contact.has_dry_friction()) continue;
+    if (problem.impulses()[static_cast<std::size_t>(problem.first_row(c))] > 0.0)
+      accumulation_.remember(at.time, contact.key);
+  }
+  if (gain == 0.0 || !options_->refuse_energy_gain) return;
+  failure_->fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids",
+                 failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
+}
+
+/// Adds contacts that are about to close too, and takes the restitution out of all.
+void ImpactStage::add_captured(Range pairs, const EventInstant& at) {
+  const double limit = options_->capture_speed * options_->capture_speed;
+  for (Index i = pairs.begin; i < pairs.end; ++i) {
+    if (at.touches(i)) continue;
+    const Constraint& contact = at.contacts[i];
+    // Almost without loads what is slow is far off all the same.
+    if (contact.gap > options_->gap_tolerance) continue;
+    const double speed = contact.normal_velocity(at.velocities());
+    const double fall = contact.normal_acceleration(at.now.acceleration.data());
+    if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) memory_->touching.push_back(contact);
+  }
+  for (Constraint& contact : memory_->touching) {
+    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+  }
+}
+
+/// Projects the rest of the normal velocities and gaps of captured contacts away.
+void ImpactStage::close_captured(EventInstant& at) {
+  // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
+  // lifts it by, it falls again.
+  double fall = 0.0;
+  for (const Constraint& contact : memory_->touching) {
+    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
+  }
+  const double slow = std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
+  // To stop one may be to move another, in almost singular positions: then it may not be stopped.
+  if (!close_captured(true, slow, at)) close_captured(false, slow, at);
+}
+
+/// Closes captured contacts; where `stopping` those that slide slower than `slow` are stopped with them.
+/// False if some do not close.
+bool ImpactStage::close_captured(bool stopping, double slow, EventInstant& at) {
+  std::vector<ActiveContact>& list = memory_->captured.list();
+  list.clear();
+  for (const Constraint& contact : memory_->touching) {
+    if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > options_->capture_speed)
+      continue;
+    ActiveContact& closed = list.emplace_back();
+    const bool stops = stopping && contact.rows > 1 && contact.sliding_speed(at.velocities()) <= slow;
+    closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
+    closed.at = contact;
+  }
+  std::vector<ActiveContact>& active = at.motion.active().list();
+  active.swap(list);
+  const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
+  active.swap(list);
+  at.balance.flows[EnergyFlow::accumulation] += projection.lost;
+  at.balance.shift = std::max(at.balance.shift, projection.shift);
+  if (!projection.changed) return true;
+  at.update();
+  return std::all_of(list.begin(), list.end(), [&](const ActiveContact& closed) {
+    return std::abs(closed.at.normal_velocity(at.velocities())) <= at.scales.speed_noise;
+  });
+}
+
+}  // namespace carom

@@ -1,0 +1,61 @@
+#pragma once
+
+/// \file
+/// Impacts at one instant, mechanism by mechanism, until nothing that touches approaches; those slower than
+/// the capture speed close their contacts (accumulations).
+
+#include <carom/contact/active_set.h>
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/accumulation.h>
+#include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_failure.h>
+
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Memory of impacts, shared by clock groups.
+struct ImpactMemory {
+  IslandProblem problem;
+  std::vector<Constraint> touching;  ///< constraints of the problem
+  ActiveSet captured;
+};
+
+/// The impacts of one clock group.
+class CAROM_API ImpactStage {
+public:
+  /// All must outlive it.
+  ImpactStage(const EventDriven& options, const GroupFailure& failure, ImpactMemory& memory,
+              SolverChain& chain)
+      : options_(&options), failure_(&failure), memory_(&memory), chain_(&chain) {}
+
+  /// Begins with a new motion.
+  void start() { accumulation_.clear(); }
+  /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
+  /// loads and accelerations those before.
+  bool resolve(EventInstant& at);
+  /// Applies the answer of a problem of contacts of one mechanism, books and records it.
+  void apply(EventKind kind, const IslandProblem& problem, EventInstant& at);
+
+private:
+  [[nodiscard]] double fastest_approach(Range pairs, const EventInstant& at) const;
+  void resolve_mechanism(Range pairs, double fastest, EventInstant& at);
+  void list_touching(Range pairs, const EventInstant& at);
+  void add_captured(Range pairs, const EventInstant& at);
+  void close_captured(EventInstant& at);
+  bool close_captured(bool stopping, double slow, EventInstant& at);
+  [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
+  [[noreturn]] void fail_unsolved(const EventInstant& at) const;
+
+  const EventDriven* options_;
+  const GroupFailure* failure_;
+  ImpactMemory* memory_;
+  SolverChain* chain_;
+  Accumulation accumulation_;
+};
+
+}  // namespace carom

@@ -1,0 +1,112 @@
+// Problem: an impact that is not due to speed but to the lack of forces.
+
+#include <carom/integrators/event_driven/impact_without_collision.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+/// Restitution along a row of a contact.
+double restitution(const Constraint& contact, int row) {
+  return row == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
+}
+
+/// Gives all contacts the least of their coefficients of tangential restitution. False if they had one.
+bool share_restitution(std::vector<Constraint>& contacts) {
+  double least = std::numeric_limits<double>::infinity(), largest = 0.0;
+  for (const Constraint& contact : contacts) {
+    if (contact.rows < 2) continue;
+    least = std::min(least, contact.law.tangential_restitution);
+    largest = std::max(largest, contact.law.tangential_restitution);
+  }
+  if (!(least < largest)) return false;
+  for (Constraint& contact : contacts) {
+    contact.law.normal_restitution = contact.law.tangential_restitution = least;
+  }
+  return true;
+}
+
+}  // namespace
+
+void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, ImpactStage& impacts,
+                                     const GroupFailure& failure, SolverChain& chain, EventInstant& at) {
+  list_touching(candidates, at);
+  bool solved = false;
+  // With unequal restitution there may be no solution, with an equal one there is: e_n means nothing without
+  // speed.
+  do {
+    solved = solve(chain, at);
+  } while ((!solved || best_ == solutions_.size()) && share_restitution(touching_));
+  if (!solved) {
+    failure.fail("no forces keep the contact and the impact without collision is not solved",
+                 failure.names(touching_), &problem_);
+  }
+  if (best_ == solutions_.size()) {
+    failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
+                 &problem_);
+  }
+  problem_.set_impulses(solutions_.impulse(best_));
+  const std::size_t first = at.balance.events.size();
+  impacts.apply(EventKind::impact_without_collision, problem_, at);
+  for (std::size_t i = first; i < at.balance.events.size(); ++i) {
+    const Candidate& candidate = candidates[taking_part_[i - first]];
+    at.balance.events[i].stiffness = candidate.stiffness;
+    at.balance.events[i].free_acceleration = candidate.free_acceleration;
+  }
+  at.update();
+  impacts.resolve(at);
+}
+
+void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates, const EventInstant& at) {
+  touching_.clear();
+  taking_part_.clear();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    // Friction in joints bounds no contact force.
+    if (candidates[i].at.has_dry_friction()) continue;
+    taking_part_.push_back(i);
+    Constraint& contact = touching_.emplace_back(candidates[i].at);
+    // At no speed: the rest is rounding, which the certificate of P = 0 would refuse.
+    const double rounding = contact.normal_velocity(at.velocities());
+    contact.surface_velocity[0] += rounding;
+    contact.surface_velocity_after[0] += rounding;
+  }
+}
+
+bool ImpactWithoutCollision::solve(SolverChain& chain, EventInstant& at) {
+  at.motion.joints().build(problem_, touching_, at.velocities());
+  problem_.set_free_velocity(at.velocities());
+  const bool solved =
+      problem_.solve(chain).usable() && solutions_.enumerate(problem_.problem()) != Outcome::not_solved;
+  best_ = solved ? most_dissipative_solution(at.scales.speed_noise) : solutions_.size();
+  return solved;
+}
+
+/// Of the solutions listed those with impulses that change something count; the number of the one that takes
+/// most energy, size() if there is none.
+std::size_t ImpactWithoutCollision::most_dissipative_solution(double speed_noise) const {
+  std::size_t best = solutions_.size();
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < solutions_.size(); ++s) {
+    double change = 0.0, loss = 0.0;
+    for (std::size_t c = 0; c < problem_.constraints().size(); ++c) {
+      const Constraint& contact = problem_.constraints()[c];
+      for (int row = 0; row < contact.rows; ++row) {
+        const auto place = static_cast<std::size_t>(problem_.first_row(c) + row);
+        const double before = problem_.before()[place];
+        const double after = solutions_.velocity(s)[place] - restitution(contact, row) * before;
+        change = std::max(change, std::abs(after - before));
+        loss -= 0.5 * solutions_.impulse(s)[place] * (before + after);
+      }
+    }
+    if (!(change > speed_noise) || !(loss > most)) continue;
+    most = loss;
+    best = s;
+  }
+  return best;
+}
+
+}  // namespace carom

@@ -1,0 +1,43 @@
+#pragma once
+
+/// \file
+/// The impact of contacts that no forces keep (Painleve): the limit of an impact at vanishing speed.
+
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/solution_list.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_failure.h>
+#include <carom/integrators/event_driven/impact_stage.h>
+#include <carom/integrators/event_driven/mode_decision.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Such impacts; memory that clock groups share.
+class CAROM_API ImpactWithoutCollision {
+public:
+  /// Of all answers with impulses that change something takes the one that takes most energy; applies it,
+  /// books and records it by `impacts`, and resolves the impacts that follow. Fails where there is none.
+  /// \param candidates contacts of one mechanism without forces that keep them
+  void resolve(std::span<const Candidate> candidates, ImpactStage& impacts, const GroupFailure& failure,
+               SolverChain& chain, EventInstant& at);
+
+private:
+  void list_touching(std::span<const Candidate> candidates, const EventInstant& at);
+  [[nodiscard]] bool solve(SolverChain& chain, EventInstant& at);
+  [[nodiscard]] std::size_t most_dissipative_solution(double speed_noise) const;
+
+  IslandProblem problem_;
+  SolutionList solutions_;
+  std::vector<Constraint> touching_;
+  std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
+  std::size_t best_ = 0;                  // of the solutions; their number if none
+};
+
+}  // namespace carom

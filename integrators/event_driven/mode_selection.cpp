@@ -1,0 +1,227 @@
+// Problem: modes of all that touches, where events have just ended some, and forces may not exist.
+
+#include <carom/integrators/event_driven/mode_selection.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+void ModeSelection::start() {
+  forget_ends();
+  unbounded_->clear();
+}
+
+void ModeSelection::forget_ends() {
+  exhausted_.clear();
+  releasing_.clear();
+  stopped_ = {};
+}
+
+void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
+  // Events of several bodies at one instant are resolved one after the other: ends of contacts stay ends.
+  if (event.time != ended_at_) {
+    exhausted_.clear();
+    releasing_.clear();
+    ended_at_ = event.time;
+  }
+  const std::vector<ActiveContact>& closed = active.list();
+  stopped_ = event.guard == Guard::slip ? closed[event.which].pair : ContactPair{};
+  if (event.guard != Guard::force) return;
+  active.margins(memory_->margins);
+  const ForceMargin& at = memory_->margins[event.which];
+  for (std::size_t i = at.first; i < at.last; ++i) {
+    const ActiveContact& c = closed[i];
+    if (!c.sets_margin) continue;
+    if (!c.at.has_dry_friction() && c.normal <= at.margin + noise && c.normal <= noise) {
+      releasing_.push_back(c.pair);
+    } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
+      exhausted_.push_back({c.pair, c.tangential, noise});
+    }
+  }
+}
+
+void ModeSelection::select(EventInstant& at) {
+  constexpr int most_rounds = 100;  // impacts without collision change the candidates
+  at.motion.active().list().clear();
+  for (const Range pairs : at.motion.model().mechanisms) {
+    int rounds = 0;
+    while (!select_mechanism(pairs, at)) {
+      if (++rounds < most_rounds) continue;
+      failure_->fail("impacts without collision do not come to an end",
+                     {failure_->name(at.contacts[pairs.begin])});
+    }
+  }
+  record_changes(at);
+  stopped_ = {};
+}
+
+/// False if an impact without collision happened: then everything is to be decided anew.
+bool ModeSelection::select_mechanism(Range pairs, EventInstant& at) {
+  collect_candidates(pairs, at);
+  if (memory_->candidates.empty()) return true;
+  const Decision decision = decide_candidates(pairs, at);
+  if (decision == Decision::impossible || decision == Decision::failed) failure_->demand_finite_loads(at.now);
+  if (decision == Decision::impossible) {
+    memory_->impact.resolve(memory_->candidates, *impacts_, *failure_, *chain_, at);
+    stopped_ = {};
+    return false;
+  }
+  if (decision == Decision::failed) {
+    failure_->fail("the contact problem of the accelerations is not solved", names_of_candidates(),
+                   &memory_->decision.problem());
+  }
+  if (decision == Decision::several) record_choice(at);
+  close_candidates(at.motion.active());
+  return true;
+}
+
+void ModeSelection::collect_candidates(Range pairs, const EventInstant& at) {
+  std::vector<Candidate>& candidates = memory_->candidates;
+  candidates.clear();
+  const double speed_noise = at.scales.speed_noise;
+  const double* const velocity = at.velocities();
+  for (Index i = pairs.begin; i < pairs.end; ++i) {
+    const Constraint& contact = at.contacts[i];
+    if (!at.touches(i) || contact.normal_velocity(velocity) > speed_noise) continue;
+    Candidate& candidate = candidates.emplace_back();
+    candidate.pair = at.motion.model().pairs[i];
+    candidate.place = i;
+    candidate.at = contact;
+    if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
+    const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
+    candidate.slip = std::abs(slip) > speed_noise && candidate.pair != stopped_ ? slip : 0.0;
+    candidate.frictionless = contact.law.sticking_friction() == 0.0;
+    const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
+    if (at.before_at[i] != none) candidate.present = at.before[at.before_at[i]].mode;
+    const auto exhausted = std::find_if(exhausted_.begin(), exhausted_.end(), same);
+    if (exhausted != exhausted_.end()) {
+      candidate.starts_slipping = true;
+      candidate.exhausted_friction = exhausted->force;
+      candidate.noise = exhausted->noise;
+    }
+    candidate.releases = std::find(releasing_.begin(), releasing_.end(), candidate.pair) != releasing_.end();
+  }
+}
+
+bool ModeSelection::has_unbounded_force() const {
+  const std::vector<Candidate>& candidates = memory_->candidates;
+  return std::any_of(candidates.begin(), candidates.end(),
+                     [&](const Candidate& candidate) { return unbounded_->contains(candidate.pair); });
+}
+
+Decision ModeSelection::decide(EventInstant& at) {
+  return memory_->decision.decide(at.motion, at.now, memory_->candidates, *chain_);
+}
+
+/// Modes of the candidates collected. States before and behind p = 0 cannot be told from each other where
+/// time, or the contact problem, has no numbers in between. Then friction is taken for as much larger as it
+/// takes to be behind. Where that decides nothing, and forces are neither found nor excluded, there are none
+/// to keep what slides: closed contacts in line stand there within rounding of a singular position, on one
+/// side of which there are none and on the other ones without bound.
+Decision ModeSelection::decide_candidates(Range pairs, EventInstant& at) {
+  const bool unbounded = has_unbounded_force();
+  if (!unbounded) {
+    const Decision decision = decide(at);
+    if (decision != Decision::failed) return decision;
+  }
+  if (decide_by_excess(pairs, at) == Decision::impossible) return Decision::impossible;
+  collect_candidates(pairs, at);
+  const std::vector<Candidate>& candidates = memory_->candidates;
+  if (unbounded) {
+    failure_->fail(unbounded_->reason() + "; forces of contact grow without bound (Painleve)",
+                   names_of_candidates());
+  }
+  const bool slides = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
+    return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
+  });
+  // Of more contacts not all modes are enumerated.
+  const bool enumerated = candidates.size() <= static_cast<std::size_t>(enumeration_groups);
+  const Decision decision = decide(at);
+  return decision == Decision::failed && slides && enumerated ? Decision::impossible : decision;
+}
+
+/// `impossible` if friction that is larger by little leaves no forces; `failed` otherwise.
+Decision ModeSelection::decide_by_excess(Range pairs, EventInstant& at) {
+  constexpr double least_excess = 1e-12, growth = 4.0;
+  for (double excess = least_excess; excess * UnboundedForces::growth <= 1.0; excess *= growth) {
+    collect_candidates(pairs, at);
+    for (Candidate& candidate : memory_->candidates) {
+      if (candidate.slip == 0.0 || candidate.at.has_dry_friction()) continue;
+      Surface& law = candidate.at.law;
+      law.friction = (1.0 + excess) * law.sliding_friction(std::abs(candidate.slip));
+      law.static_friction = candidate.at.friction = law.friction;
+    }
+    if (decide(at) != Decision::impossible) continue;
+    unbounded_->clear();
+    return Decision::impossible;
+  }
+  return Decision::failed;
+}
+
+std::vector<std::string> ModeSelection::names_of_candidates() const {
+  return failure_->names(memory_->candidates,
+                         [](const Candidate& candidate) -> const Constraint& { return candidate.at; });
+}
+
+void ModeSelection::close_candidates(ActiveSet& active) const {
+  for (const Candidate& candidate : memory_->candidates) {
+    if (candidate.mode == ContactMode::open) continue;
+    ActiveContact& closed = active.list().emplace_back();
+    closed.pair = candidate.pair;
+    closed.place = candidate.place;
+    closed.mode = candidate.mode;
+    closed.frictionless = candidate.frictionless;
+    closed.at = candidate.at;
+  }
+}
+
+/// Records the choice among several accelerations.
+void ModeSelection::record_choice(EventInstant& at) const {
+  const ContactReport& report = memory_->decision.problem().report();
+  for (const Candidate& candidate : memory_->candidates) {
+    if (!(candidate.stiffness <= 0.0)) continue;
+    EventRecord& event = at.balance.record(EventKind::several_accelerations, at.time, candidate.at,
+                                           *at.motion.model().assembly);
+    event.stiffness = candidate.stiffness;
+    event.free_acceleration = candidate.free_acceleration;
+    event.mode = candidate.mode;
+    event.outcome = report.outcome;
+    event.residual = report.residual;
+    event.solver = report.solver;
+  }
+}
+
+/// Records which contacts changed their mode.
+void ModeSelection::record_changes(EventInstant& at) const {
+  const double* const velocity = at.velocities();
+  const ComponentModel& model = at.motion.model();
+  const std::vector<ActiveContact>& active = at.motion.active().list();
+  const auto change = [&](EventKind kind, const Constraint& contact, ContactMode mode) {
+    EventRecord& event = at.balance.record(kind, at.time, contact, *model.assembly);
+    for (int row = 0; row < contact.rows; ++row) {
+      event.velocity_before[static_cast<std::size_t>(row)] =
+          event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
+    }
+    event.energy_before = event.energy_after = model.kinetic_energy_of_mechanism(contact.body(), velocity);
+    event.mode = mode;
+  };
+  std::vector<char>& is_active = memory_->is_active;
+  is_active.assign(model.pairs.size(), 0);
+  for (const ActiveContact& contact : active) is_active[contact.place] = 1;
+  for (const ActiveContact& contact : at.before) {
+    if (is_active[contact.place] == 0) change(EventKind::lift_off, contact.at, ContactMode::open);
+  }
+  for (const ActiveContact& contact : active) {
+    const Index before = at.before_at[contact.place];
+    if (before == none) {
+      if (contact.at.has_dry_friction()) continue;  // it was there all the time
+      change(EventKind::closing, contact.at, contact.mode);
+    } else if (at.before[before].mode != contact.mode && !contact.frictionless) {
+      change(contact.sticks() ? EventKind::stick : EventKind::slip, contact.at, contact.mode);
+    }
+  }
+}
+
+}  // namespace carom

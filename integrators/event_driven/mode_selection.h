@@ -1,0 +1,79 @@
+#pragma once
+
+/// \file
+/// Modes of all contacts of a clock group after its impacts: which candidates there are, which of them an
+/// event has just ended, and what follows where no forces keep them (Painleve). ModeDecision solves.
+
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/event.h>
+#include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_failure.h>
+#include <carom/integrators/event_driven/impact_stage.h>
+#include <carom/integrators/event_driven/impact_without_collision.h>
+#include <carom/integrators/event_driven/mode_decision.h>
+#include <carom/integrators/event_driven/unbounded_forces.h>
+
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Memory of the selection, shared by clock groups.
+struct ModeMemory {
+  ModeDecision decision;
+  ImpactWithoutCollision impact;
+  std::vector<Candidate> candidates;  ///< of one mechanism
+  std::vector<ForceMargin> margins;
+  std::vector<char> is_active;  ///< by pair, after the selection
+};
+
+/// The selection of modes of one clock group.
+class CAROM_API ModeSelection {
+public:
+  /// All must outlive it.
+  ModeSelection(const GroupFailure& failure, ImpactStage& impacts, UnboundedForces& unbounded,
+                ModeMemory& memory, SolverChain& chain)
+      : failure_(&failure), impacts_(&impacts), unbounded_(&unbounded), memory_(&memory), chain_(&chain) {}
+
+  /// Begins with a new motion.
+  void start();
+  /// Notes which contacts an event ends. \param contacts closed ones, with their forces and margins at the
+  /// event \param noise of the force that came to its end [N]
+  void note(const Event& event, ActiveSet& active, double noise);
+  /// Forgets which contacts the event ended: impacts changed the motion.
+  void forget_ends();
+  /// Selects the modes of all that touches into the active set of the motion, and records the changes.
+  void select(EventInstant& at);
+
+private:
+  // A sticking contact whose friction is exhausted, and the friction then.
+  struct ExhaustedFriction {
+    ContactPair pair;
+    double force;
+    double noise;  // of it
+  };
+
+  void collect_candidates(Range pairs, const EventInstant& at);
+  [[nodiscard]] bool select_mechanism(Range pairs, EventInstant& at);
+  [[nodiscard]] Decision decide(EventInstant& at);
+  [[nodiscard]] Decision decide_by_excess(Range pairs, EventInstant& at);
+  [[nodiscard]] Decision decide_candidates(Range pairs, EventInstant& at);
+  [[nodiscard]] bool has_unbounded_force() const;
+  [[nodiscard]] std::vector<std::string> names_of_candidates() const;
+  void close_candidates(ActiveSet& active) const;
+  void record_choice(EventInstant& at) const;
+  void record_changes(EventInstant& at) const;
+
+  const GroupFailure* failure_;
+  ImpactStage* impacts_;
+  UnboundedForces* unbounded_;
+  ModeMemory* memory_;
+  SolverChain* chain_;
+  std::vector<ExhaustedFriction> exhausted_;
+  std::vector<ContactPair> releasing_;  // forces that came to their end
+  double ended_at_ = 0.0;               // time of both [s]
+  ContactPair stopped_;                 // has just stopped slipping
+};
+
+}  // namespace carom

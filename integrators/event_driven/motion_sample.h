@@ -1,0 +1,42 @@
+#pragma once
+
+/// \file
+/// One state (t, y) of a component, evaluated; stages of an event and the search for events read it.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+#include <carom/core/state.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace carom {
+
+/// Forces that accelerations follow from; reactions of joints are among them always.
+enum class Forces : std::uint8_t { without_contact, all };
+
+/// One state of a component, with positions, loads and accelerations there. Arrays are over the whole model;
+/// those numbers hold that are of the component. SmoothMotion::sample() fills it. The rows of joints and the
+/// forces of closed contacts of a motion belong to the sample that it made last.
+struct CAROM_API MotionSample {
+  /// Memory for any component of a model.
+  explicit MotionSample(const Assembly& assembly);
+
+  State state;                                ///< time and unknowns
+  Evaluation evaluation;                      ///< positions and loads
+  ObstaclePlaces places;                      ///< at the time of the state
+  std::vector<double> dissipative, external;  ///< loads by cause, where elements book them [N, N m]
+  std::vector<double> loads;                  ///< of all causes, without reactions [N, N m]
+  std::vector<double> acceleration;           ///< with the reactions asked for
+  bool has_forces = true;                     ///< false where no forces keep the closed contacts
+
+  /// The state.
+  [[nodiscard]] StateView view() const { return state.view(); }
+  /// Configuration that joints are evaluated at.
+  [[nodiscard]] JointView joint_view() const { return {state.view(), evaluation.rotation.data()}; }
+};
+
+}  // namespace carom

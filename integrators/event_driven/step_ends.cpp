@@ -1,0 +1,100 @@
+// Problem: read off a state all that may end a smooth phase, with its rounding.
+
+#include <carom/integrators/event_driven/step_ends.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// Forces this small against those around them are zero: answers of contact problems are certified to 1e-12.
+constexpr double force_rounding = 1e-11;
+
+// Where closed contacts follow from each other, forces just decided may lie this many times their rounding
+// below zero.
+constexpr double roundoff_growth = 16.0;
+
+/// Samples the gaps of open pairs. False if one is not finite.
+bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
+                 StepEnd& out) {
+  out.gaps.resize(motion.model().pairs.size());
+  out.gap_curvature_bound.resize(motion.model().pairs.size());
+  const StateView state = at.view();
+  bool finite = true;
+  Constraint contact;
+  for (std::size_t i = 0; i < out.gaps.size(); ++i) {
+    if (is_active[i] != 0) continue;
+    motion.contact(i, at, contact);
+    const Constraint::Block& body = contact.blocks[0];
+    const double spin = body.columns > 2 ? state.v[body.v + 2] : 0.0;
+    // A point on an arm r that turns at w: its place has the sixth derivative w^6 r, its drift is w^2 r.
+    out.gap_curvature_bound[i] = spin * spin * spin * spin * std::hypot(contact.drift[0], contact.drift[1]);
+    out.gaps[i] = {contact.gap, contact.normal_velocity(state.v),
+                   contact.normal_acceleration(at.acceleration.data())};
+    finite = finite && std::isfinite(out.gaps[i].second);
+  }
+  return finite;
+}
+
+}  // namespace
+
+double StepEnds::gap_level(std::size_t pair) const { return std::min(0.0, start.gaps[pair].value); }
+
+double StepEnds::slip_level(std::size_t contact) const {
+  return std::min(0.0, start.sample.slips[contact].value);
+}
+
+double StepEnds::force_level(std::size_t mechanism) const {
+  return std::clamp(start.sample.margins[mechanism], -roundoff_growth * start.noises[mechanism], 0.0);
+}
+
+double StepEnds::force_noise(std::size_t mechanism) const {
+  return std::max(start.noises[mechanism], end.noises[mechanism]);
+}
+
+void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector<ForceMargin>& margins,
+                       GuardSample& out) {
+  const std::vector<ActiveContact>& closed = motion.active().list();
+  out.slips.resize(closed.size());
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    const double sign = closed[i].slip_sign();
+    out.slips[i] = {sign * closed[i].at.tangential_velocity(at.state.v.data()),
+                    sign * closed[i].at.tangential_acceleration(at.acceleration.data()), 0.0};
+  }
+  motion.active().margins(margins);
+  out.margins.resize(margins.size());
+  for (std::size_t i = 0; i < out.margins.size(); ++i) out.margins[i] = margins[i].margin;
+  if (motion.guards().count() != 0) motion.read_guards(at, out.guards);
+}
+
+bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::span<const char> is_active,
+                     double force_scale, DetectionMemory& memory, StepEnd& out) {
+  MotionSample& at = memory.within;
+  motion.sample(time, y, Forces::all, at);
+  bool finite = sample_gaps(motion, is_active, at, out) && at.has_forces;
+  out.sample.time = time;
+  if (motion.guards().count() != 0) {
+    const Range v = motion.model().ranges().v;
+    out.path.time = time;
+    out.path.y.assign(y, y + motion.size());
+    out.path.acceleration.assign(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end);
+  }
+  read_guard_sample(motion, at, memory.margins, out.sample);
+  for (const StepPolynomial::End& slip : out.sample.slips) finite = finite && std::isfinite(slip.first);
+  out.noises.clear();
+  // Where there are no loads all forces are rounding: of the mass times the tolerance of accelerations.
+  const double no_force = 0.1 * motion.absolute_tolerances().back();
+  for (const ForceMargin& margin : memory.margins) {
+    double size = 0.0;
+    for (std::size_t i = margin.first; i < margin.last; ++i) {
+      const ActiveContact& closed = motion.active().list()[i];
+      size += std::abs(closed.normal) + std::abs(closed.tangential);
+    }
+    out.noises.push_back(force_rounding * std::max(size, force_scale) + no_force);
+  }
+  return finite;
+}
+
+}  // namespace carom

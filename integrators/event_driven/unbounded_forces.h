@@ -1,0 +1,40 @@
+#pragma once
+
+/// \file
+/// Contacts whose forces grow without bound where a flow comes to (Painleve).
+
+#include <carom/contact/active_set.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Such contacts of one clock group, from where they are found to where the event is resolved.
+class CAROM_API UnboundedForces {
+public:
+  /// Forces that have outgrown all others by this are infinite nearby: W_nn - s mu W_nt has fallen to the
+  /// inverse part of what it was.
+  static constexpr double growth = 1e3;
+
+  /// Forgets all.
+  void clear() { pairs_.clear(); }
+  /// Finds them among closed contacts, with their forces. True if there are any. \param scale of forces [N]
+  bool find(std::span<const ActiveContact> contacts, double scale);
+  /// True if that of a pair is one.
+  [[nodiscard]] bool contains(const ContactPair& pair) const;
+
+  /// Reason why the flow ended there, for messages.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// Sets it.
+  void set_reason(std::string reason) { reason_ = std::move(reason); }
+
+private:
+  std::vector<ContactPair> pairs_;
+  std::string reason_;
+};
+
+}  // namespace carom
