@@ -1,4 +1,4 @@
-// Problem: components at their own pace, one state for everybody else.
+// Problem: clock groups at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/event_driver.h>
@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace carom {
@@ -41,20 +40,20 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
     : assembly_(&assembly),
       options_((check_options(options), options)),
       detector_(assembly),
-      prescribed_(assembly),
+      laws_(assembly, detector_),
       memory_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
-    components_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
+    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
 }
 
-/// Looks at a state, where no step or event is at hand that could tell of too many evaluations.
+/// Evaluates a state outside of any step or event, whose group would fail for too many evaluations.
 template <class F>
-auto EventDriver::within_limit(double time, F&& look) const {
+auto EventDriver::within_limit(double time, F&& evaluate) const {
   try {
-    return look();
+    return evaluate();
   } catch (const EvaluationLimit::Reached&) {
     SolverFailure failure;
     failure.time = time;
@@ -67,7 +66,7 @@ auto EventDriver::within_limit(double time, F&& look) const {
 
 void EventDriver::demand_start(const State& state) {
   within_limit(state.time, [&] {
-    for (auto& component : components_) component->demand_start(state);
+    for (auto& group : groups_) group->demand_start(state);
   });
 }
 
@@ -75,7 +74,7 @@ void EventDriver::start(const State& state, const Companion& companion) {
   ContactModes present = companion.modes;
   std::sort(present.begin(), present.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   within_limit(state.time, [&] {
-    for (auto& component : components_) component->start(state, present);
+    for (auto& group : groups_) group->start(state, present);
   });
   counted_ = memory_.flows.counts();
   started_ = true;
@@ -83,40 +82,16 @@ void EventDriver::start(const State& state, const Companion& companion) {
 
 void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
                           std::vector<EventRecord>& events) {
-  demand_continuous_laws(state.time, target);
+  laws_.demand(state.time, target);
   if (!started_) start(state, companion);
-  balance_.flows = {};
-  balance_.events.clear();
-  balance_.joint_impulses.clear();
-  balance_.counts = {};
-  balance_.energy_gain = balance_.shift = 0.0;
-  try {
-    for (auto& component : components_) component->advance(target, balance_);
-  } catch (...) {
-    started_ = false;
-    memory_.chain.reset_statistics();
-    throw;
-  }
+  advance_groups(state.time, target);
   trial_.time = target;
   modes_.clear();
-  for (auto& component : components_) component->write(trial_, modes_);
+  for (auto& group : groups_) group->write(trial_, modes_);
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
-  order_events();
-  std::vector<ContactRecord> contacts = std::move(report.contacts);
-  contacts.clear();
-  std::vector<JointImpulse> joints = std::move(report.joint_impulses);
-  std::vector<ModelFinding> findings = std::move(report.findings);
-  report = {};
-  report.findings = std::move(findings);
-  report.contacts = std::move(contacts);
-  report.joint_impulses = std::move(joints);
-  report.joint_impulses.assign(balance_.joint_impulses.begin(), balance_.joint_impulses.end());
-  report.time = target;
-  report.step = target - state.time;
-  report.energy_gain = balance_.energy_gain;
-  report.projected = balance_.shift;
-  report_contacts(balance_, report);
+  balance_.order_events();
+  write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
   companion.modes.swap(modes_);
   count(companion);
@@ -127,20 +102,39 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   if (options_.record_events) events.insert(events.end(), balance_.events.begin(), balance_.events.end());
 }
 
-void EventDriver::demand_continuous_laws(double from, double to) {
+/// The earliest group goes first, as far as it can meet no other one.
+void EventDriver::advance_groups(double from, double to) {
+  balance_.clear();
+  queue_.fill(static_cast<Index>(groups_.size()), from);
   try {
-    if (!prescribed_.empty()) prescribed_.demand_continuous(from, to);
-    if (!detector_.has_moving_obstacles()) return;
-    if (places_after_.time() == from) std::swap(places_, places_after_);
-    detector_.place(from, places_);
-    detector_.place(to, places_after_);
-    detector_.demand_continuous(places_, places_after_);
-  } catch (const SolverError& error) {
-    SolverFailure failure = error.failure();
-    failure.time = from;
-    failure.step = to - from;
-    throw SolverError("event-driven at t = " + to_text(from) + " s: " + error.what(), std::move(failure));
+    while (!queue_.empty()) {
+      const Index group = queue_.take();
+      groups_[group]->advance(std::min(to, groups_[group]->horizon()), balance_);
+      if (groups_[group]->time() < to) queue_.put(group, groups_[group]->time());
+    }
+  } catch (...) {
+    started_ = false;
+    memory_.chain.reset_statistics();
+    throw;
   }
+}
+
+/// Writes the report of an advance; findings stay, and memory.
+void EventDriver::write_report(double from, double to, StepReport& out) const {
+  std::vector<ContactRecord> contacts = std::move(out.contacts);
+  contacts.clear();
+  std::vector<JointImpulse> joints = std::move(out.joint_impulses);
+  std::vector<ModelFinding> findings = std::move(out.findings);
+  out = {};
+  out.findings = std::move(findings);
+  out.contacts = std::move(contacts);
+  out.joint_impulses = std::move(joints);
+  out.joint_impulses.assign(balance_.joint_impulses.begin(), balance_.joint_impulses.end());
+  out.time = to;
+  out.step = to - from;
+  out.energy_gain = balance_.energy_gain;
+  out.projected = balance_.shift;
+  report_contacts(out);
 }
 
 void EventDriver::fail_energy(double from, double to) {
@@ -170,27 +164,12 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   };
   while (!within(component)) ++component;
   return within_limit(state.time, [&] {
-    return components_[component]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+    return groups_[component]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
 }
 
-/// Components were gone through one after the other; their events are told in time, then by component.
-void EventDriver::order_events() {
-  const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
-  if (std::is_sorted(balance_.events.begin(), balance_.events.end(), earlier)) return;
-  order_.resize(balance_.events.size());
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-    const double first = balance_.events[a].time, second = balance_.events[b].time;
-    return first < second || (first == second && a < b);
-  });
-  ordered_.clear();
-  for (const std::size_t place : order_) ordered_.push_back(balance_.events[place]);
-  balance_.events.swap(ordered_);
-}
-
-void EventDriver::report_contacts(const EventBalance& balance, StepReport& report) const {
-  for (const EventRecord& event : balance.events) {
+void EventDriver::report_contacts(StepReport& report) const {
+  for (const EventRecord& event : balance_.events) {
     const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
                            event.kind == EventKind::impact_without_collision;
     if (!impulsive) continue;
@@ -198,8 +177,8 @@ void EventDriver::report_contacts(const EventBalance& balance, StepReport& repor
     entry.key = event.contact;
     entry.body = event.body;
     entry.obstacle = event.obstacle;
-    const bool stop = event.contact.a.owner == FeatureKey::Owner::joint;
-    entry.directions = stop ? 1 : assembly_->layout()->dimension();
+    const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
+    entry.directions = limit ? 1 : assembly_->layout()->dimension();
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;

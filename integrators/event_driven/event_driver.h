@@ -1,14 +1,17 @@
 #pragma once
 
 /// \file
-/// The machine of the event-driven mode: all components of a model, each at its own pace, met at times asked
-/// for.
+/// The machine of the event-driven mode: all clock groups of a model, each at its own pace, met at times
+/// asked for.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/clock_group.h>
+#include <carom/integrators/event_driven/event_balance.h>
+#include <carom/integrators/event_driven/group_memory.h>
+#include <carom/integrators/event_driven/group_queue.h>
+#include <carom/integrators/event_driven/law_continuity.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/step_report.h>
@@ -18,8 +21,8 @@
 
 namespace carom {
 
-/// Advances states of one assembly. Components are ahead of the state by what their last step covers; that is
-/// memory only: from any state the same motion follows within the tolerance.
+/// Advances states of one assembly. Clock groups are ahead of the state by what their last step covers; that
+/// is memory only: from any state the same motion follows within the tolerance.
 class CAROM_API EventDriver {
 public:
   /// Throws ModelError for impossible options, a contact without a law, contact in space.
@@ -39,7 +42,7 @@ public:
   /// The state was changed from outside: start anew from it.
   void forget() { started_ = false; }
 
-  /// The flows that components share.
+  /// The flows that clock groups share.
   [[nodiscard]] const FlowPool& flows() const { return memory_.flows; }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return detector_; }
@@ -47,27 +50,25 @@ public:
 private:
   void start(const State& state, const Companion& companion);
   template <class F>
-  auto within_limit(double time, F&& look) const;
+  auto within_limit(double time, F&& evaluate) const;
   void count(Companion& companion);
-  void demand_continuous_laws(double from, double to);
+  void advance_groups(double from, double to);
+  void write_report(double from, double to, StepReport& out) const;
   [[noreturn]] void fail_energy(double from, double to);
-  void order_events();
-  void report_contacts(const EventBalance& balance, StepReport& report) const;
+  void report_contacts(StepReport& report) const;
 
   const Assembly* assembly_;
   EventDriven options_;
   Detector detector_;
-  PrescribedJoints prescribed_;
-  ObstaclePlaces places_, places_after_;  // at the ends of an advance
+  LawContinuity laws_;
   GroupMemory memory_;
-  std::vector<std::unique_ptr<ClockGroup>> components_;
+  std::vector<std::unique_ptr<ClockGroup>> groups_;
+  GroupQueue queue_;
   Evaluation evaluation_;
   State trial_;
   ContactModes modes_;
   EventBalance balance_;
-  std::vector<EventRecord> ordered_;
-  std::vector<std::size_t> order_;
-  FlowCounts counted_;  // of the flows, told so far
+  FlowCounts counted_;  // of the flows, in the statistics so far
   bool started_ = false;
 };
 

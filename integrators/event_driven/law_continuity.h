@@ -1,0 +1,29 @@
+#pragma once
+
+/// \file
+/// Continuity of what is prescribed, joints and obstacles, over an advance.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/core/export.h>
+
+namespace carom {
+
+/// Laws of time of one model. Keeps what they said last.
+class CAROM_API LawContinuity {
+public:
+  /// Both must outlive it.
+  LawContinuity(const Assembly& assembly, const Detector& detector)
+      : detector_(&detector), prescribed_(assembly) {}
+
+  /// Demands that nothing prescribed jumps between two times [s]. Throws SolverError naming the part.
+  void demand(double from, double to);
+
+private:
+  const Detector* detector_;
+  PrescribedJoints prescribed_;
+  ObstaclePlaces before_, after_;  // at the ends of an advance
+};
+
+}  // namespace carom
