@@ -114,13 +114,13 @@ void ClockGroup::arrive(const Event& event, EventInstant& at) {
 void ClockGroup::record_event(const Event& event, EventBalance& balance) {
   const ComponentModel& model = motion_.model();
   if (event.guard == Guard::switching_point) {
-    balance.record(EventKind::kink, event.time, {}, *model.assembly).element =
+    balance.record(EventKind::switching_point, event.time, {}, *model.assembly).element =
         motion_.guards().element(event.which);
     detector_.pass(event);
   }
   if (event.guard != Guard::discontinuity) return;
   for (const Discontinuity& at : discontinuities_at(model.discontinuities, event.time)) {
-    EventRecord& record = balance.record(EventKind::law_break, event.time, {}, *model.assembly);
+    EventRecord& record = balance.record(EventKind::discontinuity, event.time, {}, *model.assembly);
     record.element = at.element;
     record.joint = at.joint;
     record.obstacle = at.obstacle;

@@ -18,8 +18,8 @@ std::string_view to_string(EventKind kind) {
                                                                  "slip",
                                                                  "impact without collision",
                                                                  "several accelerations",
-                                                                 "kink",
-                                                                 "law break",
+                                                                 "switching point",
+                                                                 "discontinuity",
                                                                  "mode switch"};
   return enum_name(names, kind);
 }

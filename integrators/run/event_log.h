@@ -31,8 +31,8 @@ enum class EventKind : std::uint8_t {
   slip,          ///< a sticking contact slips, or a slipping one reverses
   impact_without_collision,  ///< no contact forces exist (Painleve): an impact at zero normal speed
   several_accelerations,     ///< several accelerations are possible (Painleve): one was chosen by rule
-  kink,                      ///< switching point: loads of an element change their form
-  law_break,                 ///< discontinuity of a law of time: it jumps or has a kink, as its part says
+  switching_point,           ///< loads of an element change their form
+  discontinuity,             ///< of a law of time: it jumps or has a kink, as its part says
   mode_switch                ///< a contact was opened when the simulation changed to the event-driven mode
 };
 /// Number of kinds.
@@ -49,7 +49,7 @@ struct EventRecord {
   ConstraintKey contact{};                  ///< of a contact
   BodyId body{};                            ///< its body
   ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
-  ElementId element{};                      ///< of a kink, or whose law of time jumps
+  ElementId element{};                      ///< of a switching point, or whose law of time jumps
   JointId joint{};                          ///< driver whose law of time jumps
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]

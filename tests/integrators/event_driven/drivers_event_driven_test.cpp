@@ -100,7 +100,7 @@ TEST(DriversEventDriven, BreaksAreMetExactly) {
     EXPECT_LE(check.gap, gap_limit);
     // What differences leave of the rates.
     EXPECT_LE(check.speed, speed_limit);
-    const auto breaks = events_of(simulation, EventKind::law_break);
+    const auto breaks = events_of(simulation, EventKind::discontinuity);
     EXPECT_EQ(breaks.size(), 2U);
     if (breaks.size() == 2) {
       EXPECT_EQ(breaks[0].time, t1);

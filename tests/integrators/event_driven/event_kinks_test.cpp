@@ -33,7 +33,7 @@ TEST(EventKinks, MassOnACableGoesTautAndSlackOnTime) {
       (2.0 * std::numbers::pi - 2.0 * (std::numbers::pi / 2.0 - std::atan(sag * omega / speed))) / omega;
   std::vector<double> kinks;
   for (const EventRecord& event : simulation.events()) {
-    if (event.kind != EventKind::kink) continue;
+    if (event.kind != EventKind::switching_point) continue;
     EXPECT_EQ(event.element, cable);
     kinks.push_back(event.time);
   }
@@ -59,7 +59,7 @@ TEST(EventKinks, LawsBreakWhereToldAndStepsEndThere) {
   EXPECT_NEAR(simulation.state().position(body)[0], 0.16 + 0.24, 1e-12);
   std::vector<double> times;
   for (const EventRecord& event : simulation.events()) {
-    EXPECT_EQ(event.kind, EventKind::law_break);
+    EXPECT_EQ(event.kind, EventKind::discontinuity);
     times.push_back(event.time);
   }
   EXPECT_EQ(times, (std::vector<double>{0.3, 0.7}));

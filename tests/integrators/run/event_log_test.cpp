@@ -101,11 +101,11 @@ TEST(EventLog, NamesThePartOfEveryEvent) {
     ++named[std::string(to_string(event.kind)) + " of " + name];
   }
   const std::map<std::string, int> expected{
-      {"kink of cable 'rope' between ground and particle 'ball'", 2},
-      {"law break of applied force 'wind' on particle 'ball'", 1},
-      {"law break of driver 'crank'", 1},
-      {"law break of motor #2 between ground and rigid body 'bar'", 1},
-      {"law break of half-plane 'table'", 1},
+      {"switching point of cable 'rope' between ground and particle 'ball'", 2},
+      {"discontinuity of applied force 'wind' on particle 'ball'", 1},
+      {"discontinuity of driver 'crank'", 1},
+      {"discontinuity of motor #2 between ground and rigid body 'bar'", 1},
+      {"discontinuity of half-plane 'table'", 1},
   };
   EXPECT_EQ(named, expected);
 }
