@@ -1,0 +1,58 @@
+// Events of groups that advance one after the other are put in the order of time.
+
+#include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/integrators/event_driven/event_balance.h>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+TEST(EventBalance, EventsInTimeThenAsBooked) {
+  System system;
+  system.add(Particle{.mass = 1.0});
+  const Assembly assembly(system);
+  EventBalance balance;
+  const auto book = [&](double time, double mark) {
+    balance.record(EventKind::slip, time, {}, assembly).residual = mark;
+  };
+  book(0.2, 0.0);
+  book(0.5, 1.0);
+  book(0.1, 2.0);
+  book(0.2, 3.0);
+  book(0.1, 4.0);
+  balance.order_events();
+  std::vector<double> marks;
+  for (const EventRecord& event : balance.events) marks.push_back(event.residual);
+  EXPECT_EQ(marks, (std::vector<double>{2.0, 4.0, 0.0, 3.0, 1.0}));
+  EXPECT_EQ(balance.counts[static_cast<std::size_t>(EventKind::slip)], 5);
+  balance.clear();
+  EXPECT_TRUE(balance.events.empty());
+  EXPECT_EQ(balance.counts[static_cast<std::size_t>(EventKind::slip)], 0);
+}
+
+TEST(EventBalance, RecordsTheBodyAndTheObstacleOfAContact) {
+  System system;
+  const BodyId ball = system.add(Particle{.mass = 1.0});
+  const ObstacleId floor =
+      system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}}, Surface{.friction = 0.0});
+  const Assembly assembly(system);
+  const Detector detector(assembly);
+  const State state = assembly.initial_state();
+  std::vector<Constraint> contacts;
+  detector.find(0, state.view(), make_evaluation(assembly), 1.0, contacts);
+  ASSERT_EQ(contacts.size(), 1U);
+  EventBalance balance;
+  const EventRecord& event = balance.record(EventKind::closing, 0.3, contacts[0], assembly);
+  EXPECT_EQ(event.time, 0.3);
+  EXPECT_EQ(event.body, ball);
+  EXPECT_EQ(event.obstacle, floor);
+  EXPECT_EQ(event.contact, contacts[0].key);
+}
+
+}  // namespace

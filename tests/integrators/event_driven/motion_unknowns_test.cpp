@@ -1,0 +1,49 @@
+// Unknowns of components between the state of a model and the numbers of a flow.
+
+#include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/integrators/event_driven/motion_unknowns.h>
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+TEST(MotionUnknowns, ComponentsTakeTheirPartOfTheState) {
+  System system;
+  const BodyId a = system.add(Particle{.mass = 1.0}), b = system.add(Particle{.mass = 1.0});
+  system.add(MaxwellElement{.from = a, .to = b, .stiffness = 1.0, .damping = 1.0, .free_length = 0.0});
+  system.add(RigidBody{.mass = disc(1.0, 1.0)});
+  const Assembly assembly(system);
+  ASSERT_EQ(assembly.components().size(), 2U);
+  State state = assembly.initial_state();
+  std::iota(state.q.begin(), state.q.end(), 100.0);
+  std::iota(state.v.begin(), state.v.end(), 200.0);
+  std::iota(state.z.begin(), state.z.end(), 300.0);
+  State copy = assembly.initial_state();
+  for (const Component& component : assembly.components()) {
+    const MotionUnknowns unknowns(component, work_lines - 1);
+    ASSERT_EQ(unknowns.size(), component.q.size() + component.v.size() + component.z.size() + 3U);
+    EXPECT_EQ(unknowns.work_place(WorkLine::external), unknowns.size() - 1);
+    std::vector<double> y(unknowns.size(), -1.0);
+    unknowns.gather(state, y);
+    for (Index v = component.v.begin; v < component.v.end; ++v) {
+      EXPECT_EQ(y[unknowns.of_velocity(v)], state.v[v]);
+    }
+    for (std::size_t z = 0; z < unknowns.z_size(); ++z) {
+      EXPECT_EQ(y[unknowns.z_begin() + z], state.z[component.z.begin + z]);
+    }
+    EXPECT_EQ(y[unknowns.work_place(WorkLine::dashpot)], 0.0);
+    unknowns.scatter(y, copy);
+  }
+  EXPECT_EQ(copy.q, state.q);
+  EXPECT_EQ(copy.v, state.v);
+  EXPECT_EQ(copy.z, state.z);
+}
+
+}  // namespace
