@@ -30,41 +30,34 @@ ClockGroup::ClockGroup(const Assembly& assembly, const Detector& detector, const
   }
 }
 
-void ClockGroup::advance(double target, EventBalance& balance) {
+/// The event as one page. The last step may end behind the target, events at the target are resolved.
+void ClockGroup::advance(double target, EventBalance& balance) try {
   memory_->motion.limit.restart();
-  try {
-    flow_to(target, balance);
-  } catch (const EvaluationLimit::Reached&) {
-    limits_.fail_evaluations();
-  }
-  clock_.output = target;
-  flow_.leave(phase_.kind == Phase::at_rest, motion_.model().assembly->components().size() == 1);
-}
-
-void ClockGroup::flow_to(double target, EventBalance& balance) {
   bool is_reachable = false;
   for (;;) {
-    if (phase_.kind == Phase::at_event) resolve_event(balance);
+    if (phase_.kind == Phase::at_event) resolve_event(balance);  // impacts, modes, projection; flow or rest
     if (phase_.kind == Phase::at_rest) clock_.now = target;
-    if (clock_.now == target) return output_at_present(balance);
+    if (clock_.now == target) break;
     memory_->motion.limit.restart();
-    Flow& flow = flow_.borrow();
+    const Flow& flow = flow_.borrow();
     if (phase_.kind == Phase::flowing) {
       if (!is_reachable) limits_.demand_reachable(target);
       is_reachable = true;
       limits_.count_step(clock_.now, y_.data(), memory_->instant.now);
       phase_ = {Phase::ahead, detector_.step(flow_.change(), clock_.now, y_, limits_.longest_step())};
     }
-    const Event& event = phase_.event;
-    if (target < (event.guard == Guard::nothing ? flow.end() : event.time)) {
-      return output_within_step(target, balance);
-    }
-    if (event.guard == Guard::nothing) {
-      accept_step(balance);
+    const bool has_event = phase_.event.guard != Guard::nothing;
+    if (target < (has_event ? phase_.event.time : flow.end())) break;
+    if (has_event) {
+      land(phase_.event);
     } else {
-      land(event);
+      accept_step(balance);
     }
   }
+  output(target, balance);  // changes nothing of the run
+  flow_.leave(phase_.kind == Phase::at_rest, motion_.model().assembly->components().size() == 1);
+} catch (const EvaluationLimit::Reached&) {
+  limits_.fail_evaluations();
 }
 
 void ClockGroup::resolve_event(EventBalance& balance) {
@@ -192,20 +185,21 @@ void ClockGroup::accept_step(EventBalance& balance) {
   if (projection_.apply(now, y_, balance)) flow.correct(y_);
 }
 
-void ClockGroup::output_at_present(EventBalance& balance) {
-  std::copy(y_.begin(), y_.end(), output_.y().begin());
-  output_.book(0.0, balance);
-}
-
-void ClockGroup::output_within_step(double target, EventBalance& balance) {
-  flow_.borrow().land(target, output_.y());
+/// Writes the output state: the present one, or one within the last step, projected onto the joints.
+void ClockGroup::output(double target, EventBalance& balance) {
   double projected = 0.0;
-  if (!motion_.joints().rows().empty()) {
-    MotionSample& then = memory_->instant.now;
-    motion_.sample(target, output_.y().data(), Forces::all, then);
-    projected = projection_.apply_to_output(then, output_.y(), balance);
+  if (clock_.now == target) {
+    std::copy(y_.begin(), y_.end(), output_.y().begin());
+  } else {
+    flow_.borrow().land(target, output_.y());
+    if (!motion_.joints().rows().empty()) {
+      MotionSample& then = memory_->instant.now;
+      motion_.sample(target, output_.y().data(), Forces::all, then);
+      projected = projection_.apply_to_output(then, output_.y(), balance);
+    }
   }
   output_.book(projected, balance);
+  clock_.output = target;
 }
 
 void ClockGroup::demand_start(const State& state) {

@@ -63,7 +63,6 @@ public:
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
 
 private:
-  void flow_to(double target, EventBalance& balance);
   void resolve_event(EventBalance& balance);
   void arrive(const Event& event, EventInstant& at);
   void record_event(const Event& event, EventBalance& balance);
@@ -71,8 +70,7 @@ private:
   [[nodiscard]] bool is_at_rest(MotionSample& now);
   void land(const Event& event);
   void accept_step(EventBalance& balance);
-  void output_at_present(EventBalance& balance);
-  void output_within_step(double target, EventBalance& balance);
+  void output(double target, EventBalance& balance);
   void close_known_contacts(const ContactModes& present);
 
   GroupMemory* memory_;

@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/constraint_projection.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace carom {
@@ -41,6 +42,7 @@ bool leaves_joints(const JointConstraints& joints, Range q, const MotionSample& 
 
 ConstraintProjection project_onto_constraints(SmoothMotion& motion, const MotionSample& at,
                                               std::span<double> y) {
+  assert(motion.joints().is_at(at));
   ConstraintProjection result;
   ActiveSet& active = motion.active();
   JointConstraints& joints = motion.joints().rows();
@@ -82,7 +84,8 @@ ConstraintProjection project_onto_constraints(SmoothMotion& motion, const Motion
 }
 
 std::vector<std::string> causes_of_projection(SmoothMotion& motion, const MotionSample& at) {
-  // Of the largest impulse: less is what others cause.
+  assert(motion.joints().is_at(at));
+  // Of the largest impulse: smaller ones are caused by others.
   constexpr double considerable = 0.1;
   MotionMemory& memory = motion.memory();
   const ComponentModel& model = motion.model();

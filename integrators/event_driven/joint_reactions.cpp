@@ -5,6 +5,7 @@
 #include <carom/integrators/event_driven/joint_reactions.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace carom {
@@ -16,8 +17,16 @@ JointReactions::JointReactions(const Assembly& assembly, Index component, Motion
   bounds_ = FrictionBounds(assembly, component, joints_);
 }
 
+void JointReactions::react(MotionSample& at) {
+  sample_ = &at;
+  if (joints_.empty()) return;
+  joints_.update_and_factor(at.joint_view());
+  joints_.project(JointLevel::acceleration, at.acceleration.data());
+}
+
 std::span<const double> JointReactions::multipliers(const MotionSample& at,
                                                     std::span<const ActiveContact> contacts) {
+  assert(is_at(at));
   std::vector<double>& answer = memory_->of_velocity;
   const Range v = assembly_->components()[component_].v;
   std::copy(at.loads.begin() + v.begin, at.loads.begin() + v.end, answer.begin() + v.begin);
@@ -72,6 +81,7 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
                                             std::vector<ActiveContact>& contacts,
                                             std::vector<ForceMargin>& margins, BoundIteration& iteration,
                                             double& change) {
+  assert(is_at(at));
   const Range v = assembly_->components()[component_].v;
   std::vector<double>& free = memory_->free;
   std::copy(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end, free.begin() + v.begin);
@@ -101,6 +111,7 @@ void JointReactions::build(IslandProblem& problem, std::span<const Constraint> c
 
 bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contacts, const MotionSample& at,
                            SolverChain& chain) {
+  assert(is_at(at));
   // Little is captured, so that nothing is allocated.
   const auto multipliers = [this, &problem] { return impulses(problem).data(); };
   return memory_->friction_bound.solve({.cluster = problem,
@@ -125,6 +136,7 @@ std::span<const double> JointReactions::impulses(const IslandProblem& problem) {
 
 std::span<const double> JointReactions::follow_jump(const MotionSample& at, std::span<double> velocities,
                                                     double noise, double& work) {
+  assert(is_at(at));
   if (!joints_.depends_on_time()) return {};
   const Range v = assembly_->components()[component_].v;
   std::vector<double>&change = memory_->of_velocity, &impulse = memory_->impulse;

@@ -20,8 +20,8 @@
 
 namespace carom {
 
-/// The joints of one component. Every sample given must be the one that the rows were brought to last
-/// (SmoothMotion::sample()). Multipliers handed out are valid until the next call.
+/// The joints of one component. A sample given must be that of the last react(): the rows belong to it.
+/// Multipliers handed out are valid until the next call.
 class CAROM_API JointReactions {
 public:
   /// \param assembly, memory must outlive it
@@ -40,6 +40,8 @@ public:
     return bounds_.depends_on_joint_force(contact);
   }
 
+  /// Brings the rows to a sample, and its accelerations, by the loads alone, onto them.
+  void react(MotionSample& at);
   /// Multipliers at a sample, contacts acting as they do.
   [[nodiscard]] std::span<const double> multipliers(const MotionSample& at,
                                                     std::span<const ActiveContact> contacts);
@@ -52,6 +54,8 @@ public:
   bool update_friction_bounds(ActiveSet& active, MotionSample& at, std::vector<ActiveContact>& contacts,
                               std::vector<ForceMargin>& margins, BoundIteration& iteration, double& change);
 
+  /// True if the rows belong to a sample.
+  [[nodiscard]] bool is_at(const MotionSample& at) const { return sample_ == &at; }
   /// Makes a problem of contacts, bodies answering with their joints. \param velocity_before of the model
   void build(IslandProblem& problem, std::span<const Constraint> contacts, const double* velocity_before);
   /// Solves the problem of an impact. Bounds of friction in joints that follow from impulses are found by
@@ -76,6 +80,7 @@ private:
   MotionMemory* memory_;
   JointConstraints joints_;
   FrictionBounds bounds_;
+  const MotionSample* sample_ = nullptr;  // that the rows were brought to last
 };
 
 }  // namespace carom

@@ -47,10 +47,7 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   assembly.for_bodies(model_.index, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
     kind.apply_inverse_mass(slots, out.loads.data() + at, out.acceleration.data() + at);
   });
-  if (!joints_.rows().empty()) {
-    joints_.rows().update_and_factor(out.joint_view());
-    joints_.rows().project(JointLevel::acceleration, out.acceleration.data());
-  }
+  joints_.react(out);
   out.has_forces = true;
   if (forces == Forces::without_contact || active_.list().empty()) return;
   active_.update_and_factor(*model_.detector, state, out.evaluation, out.places);
