@@ -41,25 +41,33 @@ inline constexpr std::size_t event_kind_count = 11;
 /// Name of a kind: "impact", "lift-off", ...
 [[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);
 
+/// Parts that an event is of.
+struct EventParts {
+  ConstraintKey contact{};  ///< of a contact
+  BodyId body{};            ///< its body
+  ObstacleId obstacle{};    ///< what it touches; or whose law of time jumps
+  ElementId element{};      ///< of a switching point, or whose law of time jumps
+  JointId joint{};          ///< driver whose law of time jumps
+};
+
+/// Answer of the contact solvers that an event follows from.
+struct EventSolution {
+  ContactMode mode = ContactMode::open;   ///< of the contact, after
+  Outcome outcome = Outcome::not_solved;  ///< number of solutions of the problem that decided, if known
+  double residual = 0.0;                  ///< certificate of its answer
+  std::string_view solver{};              ///< solver whose answer was used
+};
+
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
 /// driver or obstacle. Simulation::name() names the part. Directions: normal first, then tangential.
-struct EventRecord {
+struct EventRecord : EventParts, EventSolution {
   double time = 0.0;                        ///< [s]
   EventKind kind = EventKind::impact;       ///< what happened
-  ConstraintKey contact{};                  ///< of a contact
-  BodyId body{};                            ///< its body
-  ObstacleId obstacle{};                    ///< what it touches; or whose law of time jumps
-  ElementId element{};                      ///< of a switching point, or whose law of time jumps
-  JointId joint{};                          ///< driver whose law of time jumps
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
   double energy_before = 0.0;               ///< kinetic energy of the body [J]
   double energy_after = 0.0;                ///< likewise after
-  ContactMode mode = ContactMode::open;     ///< of the contact, after
-  Outcome outcome = Outcome::not_solved;    ///< number of solutions of the problem that decided, if known
-  double residual = 0.0;                    ///< certificate of its answer
-  std::string_view solver{};                ///< solver whose answer was used
   /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration per unit of normal force while slipping
   /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].
   double stiffness = 0.0, free_acceleration = 0.0;

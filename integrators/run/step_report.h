@@ -55,10 +55,8 @@ struct ControlReport {
   double next_step = 0.0;      ///< length that will be tried next [s]; 0 without step control
 };
 
-/// The last accepted step.
-struct StepReport {
-  double time = 0.0;  ///< at its end [s]
-  double step = 0.0;  ///< its length [s]
+/// Iteration of a step over its loads.
+struct IterationReport {
   /// Which solved the step; where components differ the one farthest from the fixed-point iteration, in the
   /// order of the enumeration.
   Iteration iteration = Iteration::fixed_point;
@@ -68,6 +66,12 @@ struct StepReport {
   double contraction = 0.0;    ///< ratio of successive changes, the largest over components (0: none seen)
   ElementId worst_coupling{};  ///< force element that limits the contraction most; invalid if none
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
+};
+
+/// The last accepted step.
+struct StepReport : IterationReport {
+  double time = 0.0;  ///< at its end [s]
+  double step = 0.0;  ///< its length [s]
   /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
@@ -82,8 +86,8 @@ struct StepReport {
   std::vector<ModelFinding> findings;
 };
 
-/// Counts and extremes since the start.
-struct Statistics {
+/// Steps since the start, and how they were solved.
+struct StepStatistics {
   std::int64_t steps = 0;            ///< accepted steps
   std::int64_t sweeps = 0;           ///< sum over steps of StepReport::sweeps
   int most_sweeps = 0;               ///< the most in one step
@@ -91,22 +95,30 @@ struct Statistics {
   /// Steps by StepReport::iteration: fixed-point, Anderson, linearly implicit.
   std::array<std::int64_t, iteration_count> steps_by_iteration{};
   std::int64_t fallbacks = 0;             ///< sum over steps of StepReport::fallbacks
-  std::int64_t impacts = 0;               ///< contacts that closed faster than the capture speed
-  std::int64_t contact_steps = 0;         ///< contacts that took part in steps
-  std::int64_t several_solutions = 0;     ///< of contact problems with more than one end velocity
-  std::int64_t forces_not_unique = 0;     ///< contact problems with more than one set of impulses
   std::int64_t rejected_steps = 0;        ///< lengths that step control rejected
   std::int64_t steps_across_impacts = 0;  ///< steps whose error could not be estimated because of contact
-  std::int64_t energy_gains = 0;          ///< steps in which impacts added energy
-  double energy_gained = 0.0;             ///< sum of those gains [J]
-  std::int64_t lasting_gains = 0;         ///< steps in which lasting contact added energy
-  double lasting_gained = 0.0;            ///< sum of those gains [J]
-  double deepest_gap = 0.0;               ///< the most negative gap found [m]
-  double worst_residual = 0.0;            ///< the largest certificate of a contact problem
-  EventCounts events{};                   ///< of the event-driven mode, by kind
-  std::int64_t flow_steps = 0;            ///< of its integrators, over all components
-  std::int64_t flow_evaluations = 0;      ///< of rates, likewise
-  std::int64_t flow_restarts = 0;         ///< likewise
+};
+
+/// Contacts since the start.
+struct ContactCounts {
+  std::int64_t impacts = 0;            ///< contacts that closed faster than the capture speed
+  std::int64_t contact_steps = 0;      ///< contacts that took part in steps
+  std::int64_t several_solutions = 0;  ///< of contact problems with more than one end velocity
+  std::int64_t forces_not_unique = 0;  ///< contact problems with more than one set of impulses
+  std::int64_t energy_gains = 0;       ///< steps in which impacts added energy
+  double energy_gained = 0.0;          ///< sum of those gains [J]
+  std::int64_t lasting_gains = 0;      ///< steps in which lasting contact added energy
+  double lasting_gained = 0.0;         ///< sum of those gains [J]
+  double deepest_gap = 0.0;            ///< the most negative gap found [m]
+  double worst_residual = 0.0;         ///< the largest certificate of a contact problem
+};
+
+/// Counts and extremes since the start.
+struct Statistics : StepStatistics, ContactCounts {
+  EventCounts events{};               ///< of the event-driven mode, by kind
+  std::int64_t flow_steps = 0;        ///< of its integrators, over all components
+  std::int64_t flow_evaluations = 0;  ///< of rates, likewise
+  std::int64_t flow_restarts = 0;     ///< likewise
 };
 
 }  // namespace carom
