@@ -31,6 +31,7 @@ set(carom_public_headers
     core/dynamics/joint_closure.h
     core/dynamics/total_momentum.h
     core/element_derivatives.h
+    core/element_loads.h
     core/element_view.h
     core/end.h
     core/energy_ledger.h
@@ -87,6 +88,7 @@ set(carom_public_headers
     joints/follower_load.h
     joints/gravity.h
     joints/joint.h
+    joints/joint_ends.h
     joints/joint_friction.h
     joints/length_guard.h
     joints/line_of_action.h

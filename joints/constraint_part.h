@@ -16,7 +16,6 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/layout.h>
 #include <carom/core/space.h>
-#include <carom/core/system.h>
 
 #include <cstdint>
 #include <span>
@@ -127,26 +126,7 @@ private:
   Column<Place> carrier_place_;  // nowhere unless it has a part in a row
 };
 
-/// Position and angle of a body as described.
-struct CAROM_API DescribedPlace {
-  Vec<2> position = Vec<2>::Zero();  ///< of its centre of mass [m]
-  double angle = 0.0;                ///< [rad]
-
-  /// A point of the body, in the fixed frame [m].
-  [[nodiscard]] Vec<2> point(const Vec<2>& local) const;
-};
-/// Position and angle of a body of a system, or of the ground, as described.
-[[nodiscard]] CAROM_API DescribedPlace described_place(const System& system, BodyId body);
-
-/// Demands two valid ends on different bodies.
-CAROM_API void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& to);
 /// Demands that many constraint parts, all between the same ends.
 CAROM_API void check_constraint_parts(const PartCheck& check, std::span<const ConstraintPart> constraints,
                                       Index count);
-/// Demands an axis that is finite and not zero; returns it with unit length.
-[[nodiscard]] CAROM_API Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis,
-                                            std::string_view quantity);
-/// Demands a body that has an angle: a rigid body, or the ground.
-CAROM_API void check_turning_end(const PartCheck& check, BodyId body, std::string_view quantity);
-
 }  // namespace carom::planar

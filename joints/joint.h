@@ -3,17 +3,17 @@
 /// \file
 /// Kinds of planar joints that are sums of constraint parts. A joint is described by
 ///
-///     std::vector<ConstraintPart> constraints(const PartCheck& check) const;    // checks, then lists its
-///     parts,
-///                                                                     // always the same two ends
-///     ConstraintPart coordinate(const PartCheck& check) const;               // optional: its gap is the
-///     coordinate
+///     std::vector<ConstraintPart> constraints(const PartCheck& check) const;  // checks (joint_ends.h), then
+///                                                                             // lists its parts, always the
+///                                                                             // same two ends
+///     ConstraintPart coordinate(const PartCheck& check) const;  // optional: its gap is the coordinate
 ///
 /// and by the number of rows, `static constexpr Index row_count`.
 
 #include <carom/core/joint_kind.h>
 #include <carom/core/part.h>
 #include <carom/joints/constraint_part.h>
+#include <carom/joints/joint_ends.h>
 
 #include <memory>
 #include <span>
