@@ -16,8 +16,6 @@
 
 namespace carom {
 
-class RankRevealingQr;
-
 /// Most groups (contacts, stops, limits) that are enumerated.
 inline constexpr int enumeration_groups = 3;
 
@@ -80,15 +78,7 @@ public:
   }
 
 private:
-  // One mode of one group, or a boundary of one: unknowns, equations, and what is given.
-  struct Face {
-    double offset = 0.0;  // given impulse of the first row
-    int unknowns = 0;     // 0: none, 1: normal with P_t = slope P_n, 2: both
-    double slope = 0.0;
-    int equations = 0;  // 0: none, 1: xi of the first row, 2: of both rows
-    bool pure = true;   // a mode, not a boundary
-  };
-  bool build_faces(const ContactProblem& problem);
+  struct Workspace;
   void visit(const ContactProblem& problem, std::span<const std::size_t> choice, bool rays);
   void visit_all(const ContactProblem& problem, bool pure_only, bool rays);
   void consider(const ContactProblem& problem);
@@ -98,11 +88,9 @@ private:
   void set_scales(const ContactProblem& problem);
   Outcome conclude();
 
-  std::vector<std::vector<Face>> faces_;
+  std::unique_ptr<Workspace> work_;
   std::vector<double> impulses_, velocities_, rho_;
   std::vector<std::size_t> order_;
-  std::vector<double> system_, rhs_, unknown_, trial_, xi_, direction_;
-  std::unique_ptr<RankRevealingQr> qr_;
   std::size_t rows_ = 0, count_ = 0, end_velocities_ = 0;
   double scale_ = 0.0, least_residual_ = std::numeric_limits<double>::infinity();
   bool applicable_ = false, singular_ = false, unbounded_ = false, velocity_varies_ = false;
