@@ -18,7 +18,7 @@ namespace carom {
 
 /// One feature of something that can touch.
 struct FeatureKey {
-  /// What the feature belongs to.
+  /// Owner of the feature.
   enum class Owner : std::uint8_t { body, shape, obstacle, joint };
 
   Owner owner = Owner::body;  ///< what it belongs to

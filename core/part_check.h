@@ -29,8 +29,8 @@ inline constexpr double largest_magnitude = 1e150;
   return value >= -largest_magnitude && value <= largest_magnitude;
 }
 
-/// What a message says is allowed in the place of a number that was refused: `allowed`, unless the number is
-/// finite and too large.
+/// Numbers allowed in the place of one that was refused, as a message says it: `allowed`, unless the number
+/// is finite and too large.
 [[nodiscard]] CAROM_API std::string allowed_instead(double value, std::string_view allowed);
 
 /// Text for an identity that is refused: the name of the part, and that it was removed, if it was.

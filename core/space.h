@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What truly differs between the plane and space: rotation, spin, lever, tangents. Everything else in the
-/// library is written once.
+/// Differences between the plane and space: rotation, spin, lever, tangents. Everything else in the library
+/// is written once.
 ///
 /// Coordinates of a body begin with the position of its centre of mass (D numbers), its velocities with the
 /// velocity of the centre of mass; a body with an orientation appends orientation and spin.

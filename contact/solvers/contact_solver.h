@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a contact solver is, and what it may answer.
+/// Interface of contact solvers, and their answers.
 
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/constraint.h>
@@ -13,7 +13,7 @@
 
 namespace carom {
 
-/// What is known of the solutions of a contact problem. Solutions are counted in (P, gamma^+): several P
+/// Knowledge of the solutions of a contact problem. Solutions are counted in (P, gamma^+): several P
 /// with one gamma^+ are `forces_not_unique`, not `several_solutions`.
 enum class Outcome : std::uint8_t {
   solved,             ///< a solution; nothing says that there are others

@@ -13,7 +13,7 @@
 
 namespace carom {
 
-/// What a file says beside the problem. Nothing of it changes an answer.
+/// Notes of a file beside the problem; they change no answer.
 struct ProblemNotes {
   std::string comment{};                ///< where it comes from
   std::optional<double> time{};         ///< when it arose [s]

@@ -28,7 +28,7 @@ inline constexpr double accepted_residual = 1e-12;
 /// The iterative last resort stops there; 1e-10 of the impulse scale is still far below any step's error.
 inline constexpr double tolerated_residual = 1e-10;
 
-/// What is known of one solved (or unsolved) contact problem.
+/// Report on one contact problem, solved or not.
 struct ContactReport {
   Outcome outcome = Outcome::not_solved;
   bool degenerate = false;  ///< the answer stands at a boundary between modes
