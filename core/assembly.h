@@ -3,6 +3,10 @@
 /// \file
 /// A system made ready to run: bodies and elements ordered so that every component is a range of every array.
 
+#include <carom/core/arranged_elements.h>
+#include <carom/core/arranged_joints.h>
+#include <carom/core/block_table.h>
+#include <carom/core/component.h>
 #include <carom/core/export.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/layout.h>
@@ -15,34 +19,6 @@
 #include <vector>
 
 namespace carom {
-
-/// A connected component: bodies connected by force elements or joints. Ground, obstacles and fields do not
-/// connect bodies.
-struct Component {
-  Range bodies;  ///< in the order of assembly
-  Range q;       ///< coordinates
-  Range v;       ///< velocities
-  Range z;       ///< internal variables of elements
-  Range blocks;  ///< parts of it, see Assembly::blocks()
-  Range runs;    ///< see Assembly::runs()
-};
-
-/// Consecutive bodies of a component. Large components are divided into blocks, whose number depends on the
-/// size of the component only; several threads may share a loop over them.
-struct Block {
-  Range bodies;                     ///< in the order of assembly
-  Range v;                          ///< velocities
-  Index run = 0;                    ///< its run, see Assembly::runs()
-  Index last_loading_block = 0;     ///< last block of its run whose elements act on it or on blocks before it
-  bool loaded_across_runs = false;  ///< bridges act on it
-};
-
-/// Some blocks of a component with those around them. All in ascending order.
-struct Surroundings {
-  std::vector<Index> inner;    ///< the blocks themselves
-  std::vector<Index> loading;  ///< whose elements, Assembly::elements_up_to(), may act on them
-  std::vector<Index> touched;  ///< on which those elements may act
-};
 
 /// A system made ready to run. Constant after construction.
 class CAROM_API Assembly {
@@ -68,55 +44,38 @@ public:
   [[nodiscard]] Range body_slots(Index component, Index kind) const {
     return body_slots_[component * body_kinds_.size() + kind];
   }
-  /// Blocks of all components.
-  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
-  /// Approximate number of bodies of a block: the cache of a core can hold the data of several blocks.
-  static constexpr Index block_size = 512;
-  /// Runs of all components: consecutive blocks, which one thread computes in their order, so that
-  /// computations for a block can wait for its neighbours and still find its data in the cache.
-  [[nodiscard]] const std::vector<Range>& runs() const { return runs_; }
-  /// Most runs of one component.
-  static constexpr Index most_runs = 8;
-  /// Finds the neighbours of the inner blocks, which are of one component. False if bridges act on one of
-  /// them: its loads may then depend on any block.
-  [[nodiscard]] bool surround(Surroundings& blocks) const;
+  /// Blocks of all components, and the elements that act on them.
+  [[nodiscard]] const BlockTable& blocks() const { return blocks_; }
 
   /// Kinds of force elements, arranged.
-  [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const { return force_kinds_; }
+  [[nodiscard]] const std::vector<std::unique_ptr<ForceKind>>& force_kinds() const {
+    return elements_.kinds();
+  }
   /// Elements of a kind that act in a component.
   [[nodiscard]] Range elements(Index component, Index kind) const {
-    return element_slots_[component * force_kinds_.size() + kind];
-  }
-  /// Those of them that act on this block, and otherwise only on blocks of its run before it.
-  [[nodiscard]] Range elements_up_to(Index block, Index kind) const {
-    return block_elements_[block * force_kinds_.size() + kind];
-  }
-  /// Those of them that act on several runs.
-  [[nodiscard]] Range bridges(Index component, Index kind) const {
-    return bridges_[component * force_kinds_.size() + kind];
+    return elements_.elements(component, kind);
   }
   /// Identity of an arranged element.
   [[nodiscard]] ElementId element_id(Index kind, Index slot) const {
-    const std::vector<Index>& order = element_order_[kind];
-    const auto& described = system_.force_kinds().entries()[kind].serials;
-    return {described[order.empty() ? slot : order[slot]], system_.token()};
+    return {system_.force_kinds().entries()[kind].serials[elements_.described_slot(kind, slot)],
+            system_.token()};
   }
 
   /// Kinds of joints, arranged.
-  [[nodiscard]] const std::vector<std::unique_ptr<JointKind>>& joint_kinds() const { return joints_->kinds; }
+  [[nodiscard]] const std::vector<std::unique_ptr<JointKind>>& joint_kinds() const { return joints_.kinds(); }
   /// Joints of a kind in a component.
-  [[nodiscard]] Range joints(Index component, Index kind) const {
-    return joint_slots_[component * joints_->kinds.size() + kind];
-  }
+  [[nodiscard]] Range joints(Index component, Index kind) const { return joints_.joints(component, kind); }
   /// True if a component has joints.
   [[nodiscard]] bool has_joints(Index component) const;
   /// Identity of an arranged joint.
-  [[nodiscard]] JointId joint_id(Index kind, Index slot) const;
+  [[nodiscard]] JointId joint_id(Index kind, Index slot) const {
+    return {joints_.serial(kind, slot), system_.token()};
+  }
   /// Mechanism of a body (the bodies connected to it by joints), named by its first body; the body itself
   /// without joints.
-  [[nodiscard]] Index mechanism(Index body) const { return groups_.empty() ? body : groups_[body]; }
+  [[nodiscard]] Index mechanism(Index body) const { return joints_.mechanism(body); }
   /// True if the body has a joint.
-  [[nodiscard]] bool is_jointed(Index body) const { return !groups_.empty() && bound_[body] != 0; }
+  [[nodiscard]] bool is_jointed(Index body) const { return joints_.is_jointed(body); }
 
   /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of a component, kind by kind.
   template <class F>
@@ -146,31 +105,17 @@ public:
   [[nodiscard]] State initial_state() const;
 
 private:
-  // Returns the component of each body, by serial number.
-  std::vector<Index> order_bodies();
-  void order_elements(const std::vector<Index>& component_of_body);
-  void order_joints(const std::vector<Index>& component_of_body);
-  void place_internals();
-  void cut_components();
-  [[nodiscard]] Index part_of(Index component, const std::vector<BodyId>& ends);
-  void close_blocks();
+  // Returns the layout, still to be completed, and the component of each body, by serial number.
+  std::shared_ptr<Layout> order_bodies(std::vector<Index>& component_of_body);
 
   System system_;
   std::shared_ptr<const Layout> layout_;
-  std::shared_ptr<Layout> unfinished_layout_;  // the same, while it is being made
   std::vector<Component> components_;
-  std::vector<Block> blocks_;
-  std::vector<Range> runs_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
-  std::vector<Range> body_slots_;
-  std::vector<std::unique_ptr<ForceKind>> force_kinds_;
-  std::vector<Range> element_slots_, block_elements_, bridges_;
-  std::shared_ptr<JointTable> joints_;
-  std::vector<Range> joint_slots_;
-  std::vector<std::vector<Index>> joint_serials_;  // by kind
-  std::vector<Index> groups_;                      // by body; empty without joints
-  std::vector<char> bound_;                        // likewise
-  std::vector<std::vector<Index>> element_order_;  // by kind: described slots, empty if the order is the same
+  std::vector<Range> body_slots_;  // by component, kind
+  BlockTable blocks_;
+  ArrangedJoints joints_;
+  ArrangedElements elements_;
 };
 
 /// Fills the position group of `out` for one component.

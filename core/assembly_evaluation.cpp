@@ -54,7 +54,7 @@ struct Pass {
   void load(Index index) const {
     const Block& block = assembly.blocks()[index];
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      const Range elements = assembly.elements_up_to(index, kind);
+      const Range elements = assembly.blocks().elements_up_to(index, kind);
       if (!elements.empty()) {
         f(*assembly.force_kinds()[kind], elements, block.bodies, block.run - all.runs.begin);
       }
@@ -63,7 +63,7 @@ struct Pass {
   void bridge() const {
     const auto component = static_cast<Index>(&all - assembly.components().data());
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      const Range elements = assembly.bridges(component, kind);
+      const Range elements = assembly.blocks().bridges(component, kind);
       if (!elements.empty()) f(*assembly.force_kinds()[kind], elements, all.bodies, all.runs.size());
     }
   }
@@ -86,9 +86,9 @@ Pass(const Assembly&, const Component&, const Loads&, const BlockTasks&, const F
 /// Run by run, bridges last.
 template <class F>
 void go(const Pass<F>& pass, const Workers& workers) {
-  const std::vector<Block>& blocks = pass.assembly.blocks();
+  const BlockTable& blocks = pass.assembly.blocks();
   workers.for_each(pass.all.runs.size(), [&](Index i) {
-    const Range run = pass.assembly.runs()[pass.all.runs.begin + i];
+    const Range run = pass.assembly.blocks().runs()[pass.all.runs.begin + i];
     Index to_close = run.begin;
     for (Index index = run.begin; index < run.end; ++index) {
       pass.open(index);
@@ -107,11 +107,11 @@ void go(const Pass<F>& pass, const Workers& workers) {
 /// bridges before all else, so that it can close every block within its run.
 template <class First, class Second>
 void go_twice(const Pass<First>& first, const Pass<Second>& second, const Workers& workers) {
-  const std::vector<Block>& blocks = first.assembly.blocks();
+  const BlockTable& blocks = first.assembly.blocks();
   first.for_bridged(workers, [&](Index index) { first.open(index); });
   first.bridge();
   workers.for_each(first.all.runs.size(), [&](Index i) {
-    const Range run = first.assembly.runs()[first.all.runs.begin + i];
+    const Range run = first.assembly.blocks().runs()[first.all.runs.begin + i];
     Index to_follow = run.begin, to_close = run.begin;
     for (Index index = run.begin; index < run.end; ++index) {
       if (!blocks[index].loaded_across_runs) first.open(index);
@@ -155,7 +155,7 @@ void evaluate_loads_within(const Assembly& assembly, Index component, const Surr
 namespace {
 
 /// Potentials by run, each of which one thread goes through, and, last, of the bridges.
-using Parts = std::array<StoredEnergies, Assembly::most_runs + 1>;
+using Parts = std::array<StoredEnergies, BlockTable::most_runs + 1>;
 
 void add_parts(const Parts& parts, Index runs, StoredEnergies& stored) {
   for (Index part = 0; part <= runs; ++part) {

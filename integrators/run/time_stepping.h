@@ -91,7 +91,8 @@ struct TimeStepping {
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
 
-  /// Number of threads that share the work on large components (at least twice Assembly::block_size bodies),
+  /// Number of threads that share the work on large components (at least twice BlockTable::block_size
+  /// bodies),
   /// >= 1. The result is the same bit for bit for any number. More than one need a library built with oneTBB,
   /// and laws that may be called from several threads at once.
   int threads = 1;

@@ -167,8 +167,8 @@ TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
   const std::size_t size = net.state.v.size();
   std::vector<double> all(size);
   evaluate_loads(net.assembly, 0, net.state.view(), evaluation, {all.data(), all.data(), all.data()});
-  const std::vector<Block>& blocks = net.assembly.blocks();
-  const Range second_run = net.assembly.runs()[1];
+  const BlockTable& blocks = net.assembly.blocks();
+  const Range second_run = net.assembly.blocks().runs()[1];
   Index loaded_across_runs = 0;
   for (Index block = 0; block < blocks.size(); ++block)
     loaded_across_runs += blocks[block].loaded_across_runs ? 1U : 0U;
@@ -180,7 +180,7 @@ TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
            {0}, {0, 1}, {0, 3}, {2, second_run.begin + 3}, {second_run.begin + 3, second_run.begin + 5}}) {
     Surroundings around;
     around.inner = inner;
-    ASSERT_TRUE(net.assembly.surround(around));
+    ASSERT_TRUE(net.assembly.blocks().surround(around));
     EXPECT_EQ(around.inner, inner);
     for (const auto& found : {around.loading, around.touched}) {
       EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
@@ -207,8 +207,8 @@ TEST(AssemblyEvaluation, WithinSomeBlocksLoadsAreThoseOfAll) {
   for (Index block = 0; block < blocks.size(); ++block) {
     Surroundings around;
     around.inner = {block};
-    EXPECT_EQ(net.assembly.surround(around), !blocks[block].loaded_across_runs) << block;
-    EXPECT_FALSE(windy.assembly.surround(around)) << "what blows everywhere at once bridges all";
+    EXPECT_EQ(net.assembly.blocks().surround(around), !blocks[block].loaded_across_runs) << block;
+    EXPECT_FALSE(windy.assembly.blocks().surround(around)) << "what blows everywhere at once bridges all";
   }
 }
 

@@ -48,7 +48,7 @@ TEST(Threads, BlocksTogetherAreTheComponent) {
   const Assembly assembly(large_net());
   ASSERT_EQ(assembly.components().size(), 1U);
   const Component& component = assembly.components()[0];
-  ASSERT_EQ(component.blocks.size(), component.bodies.size() / Assembly::block_size);
+  ASSERT_EQ(component.blocks.size(), component.bodies.size() / BlockTable::block_size);
   ASSERT_GE(component.blocks.size(), 3U);
   Index body = component.bodies.begin, v = component.v.begin;
   for (Index block = component.blocks.begin; block < component.blocks.end; ++block) {
@@ -61,9 +61,9 @@ TEST(Threads, BlocksTogetherAreTheComponent) {
   EXPECT_EQ(v, component.v.end);
   Index block = component.blocks.begin;
   for (Index run = component.runs.begin; run < component.runs.end; ++run) {
-    EXPECT_EQ(assembly.runs()[run].begin, block);
-    EXPECT_FALSE(assembly.runs()[run].empty());
-    block = assembly.runs()[run].end;
+    EXPECT_EQ(assembly.blocks().runs()[run].begin, block);
+    EXPECT_FALSE(assembly.blocks().runs()[run].empty());
+    block = assembly.blocks().runs()[run].end;
   }
   EXPECT_EQ(block, component.blocks.end);
 }
@@ -72,14 +72,14 @@ TEST(Threads, TwoBlocksAreEnoughForTwo) {
   for (const Index blocks : {1U, 2U, 3U, 80U}) {
     System system;
     BodyId last;
-    for (Index i = 0; i < blocks * Assembly::block_size; ++i) {
+    for (Index i = 0; i < blocks * BlockTable::block_size; ++i) {
       const BodyId next = system.add(Particle{.mass = 1.0, .position = {static_cast<double>(i), 0.0}});
       if (i > 0) system.add(SpringDamper{.from = last, .to = next, .stiffness = 1.0});
       last = next;
     }
     const Assembly assembly(std::move(system));
     ASSERT_EQ(assembly.blocks().size(), blocks);
-    EXPECT_EQ(assembly.runs().size(), blocks == 1 ? 1 : blocks < 24 ? 2 : Assembly::most_runs);
+    EXPECT_EQ(assembly.blocks().runs().size(), blocks == 1 ? 1 : blocks < 24 ? 2 : BlockTable::most_runs);
   }
 }
 
@@ -87,10 +87,10 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
   const Assembly assembly(large_net());
   const auto run_of = [&](Index block) {
     Index run = 0;
-    while (block >= assembly.runs()[run].end) ++run;
+    while (block >= assembly.blocks().runs()[run].end) ++run;
     return run;
   };
-  ASSERT_GE(assembly.runs().size(), 3U);
+  ASSERT_GE(assembly.blocks().runs().size(), 3U);
   std::vector<Index> last_loading_block(assembly.blocks().size());
   std::iota(last_loading_block.begin(), last_loading_block.end(), Index{0});
   std::set<Index> loaded_across_runs;
@@ -114,7 +114,7 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
     };
     bool across = false;
     for (Index block = 0; block < assembly.blocks().size(); ++block) {
-      const Range elements = assembly.elements_up_to(block, kind);
+      const Range elements = assembly.blocks().elements_up_to(block, kind);
       for (Index element = elements.begin; element < elements.end; ++element) {
         const std::set<Index> blocks = blocks_of(element);
         EXPECT_EQ(*blocks.rbegin(), block);
@@ -126,7 +126,7 @@ TEST(Threads, ElementsActUpToTheirBlockOfARun) {
       }
     }
     EXPECT_TRUE(across);
-    const Range bridges = assembly.bridges(0, kind);
+    const Range bridges = assembly.blocks().bridges(0, kind);
     EXPECT_FALSE(bridges.empty());
     for (Index element = bridges.begin; element < bridges.end; ++element) {
       const std::set<Index> blocks = blocks_of(element);

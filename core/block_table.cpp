@@ -1,18 +1,19 @@
 // Problem: cut large components into blocks and runs, by the size of the component alone, and tell whose
 // elements act on which.
 
-#include <carom/core/assembly.h>
+#include <carom/core/block_table.h>
 
 #include <algorithm>
 #include <cstdint>
 
 namespace carom {
 
-void Assembly::cut_components() {
+BlockTable::BlockTable(std::vector<Component>& components, const BodySlots& bodies, Index kinds)
+    : kinds_(kinds) {
   // Blocks at the ends of a run wait for the bridges, so runs are long; but two threads are to have a run
   // each from two blocks on.
   constexpr Index short_run = 8;
-  for (Component& component : components_) {
+  for (Component& component : components) {
     const Index size = component.bodies.size();
     const Index count = std::max<Index>(size / block_size, 1);
     const Index runs = std::clamp<Index>(count / short_run, std::min<Index>(count, 2), most_runs);
@@ -20,13 +21,13 @@ void Assembly::cut_components() {
       return whole.begin + static_cast<Index>(std::uint64_t{whole.size()} * i / parts);
     };
     const auto velocity = [&](Index body) {
-      return body < component.bodies.end ? layout_->bodies()[body].v : component.v.end;
+      return body < component.bodies.end ? bodies[body].v : component.v.end;
     };
     component.blocks.begin = static_cast<Index>(blocks_.size());
     for (Index i = 0; i < count; ++i) {
-      const Range bodies{share(component.bodies, i, count), share(component.bodies, i + 1, count)};
+      const Range own{share(component.bodies, i, count), share(component.bodies, i + 1, count)};
       blocks_.push_back(
-          {bodies, {velocity(bodies.begin), velocity(bodies.end)}, 0, component.blocks.begin + i, false});
+          {own, {velocity(own.begin), velocity(own.end)}, 0, component.blocks.begin + i, false});
     }
     component.blocks.end = static_cast<Index>(blocks_.size());
     component.runs.begin = static_cast<Index>(runs_.size());
@@ -39,22 +40,22 @@ void Assembly::cut_components() {
     }
     component.runs.end = static_cast<Index>(runs_.size());
   }
+  elements_.assign(blocks_.size() * kinds, {});
+  bridges_.assign(components.size() * kinds, {});
 }
 
-/// The last block of those in which the ends of an element lie, counted from the first of the component; the
-/// number of blocks if they lie in several runs. Notes in the blocks that the element acts on them.
-Index Assembly::part_of(Index component, const std::vector<BodyId>& ends) {
-  const Range blocks = components_[component].blocks;
-  if (blocks.size() == 1 || ends.empty()) return 0;
-  const auto block_of = [&](BodyId end) {
+Index BlockTable::part_of(const Component& component, std::span<const Index> bodies) {
+  const Range blocks = component.blocks;
+  if (blocks.size() == 1 || bodies.empty()) return 0;
+  const auto block_of = [&](Index body) {
     const auto found =
-        std::upper_bound(blocks_.begin() + blocks.begin, blocks_.begin() + blocks.end, layout_->index(end),
+        std::upper_bound(blocks_.begin() + blocks.begin, blocks_.begin() + blocks.end, body,
                          [](Index wanted, const Block& block) { return wanted < block.bodies.end; });
     return static_cast<Index>(found - blocks_.begin());
   };
   Index first = none, last = 0;
-  for (const BodyId end : ends) {
-    const Index block = block_of(end);
+  for (const Index body : bodies) {
+    const Index block = block_of(body);
     first = std::min(first, block);
     last = std::max(last, block);
   }
@@ -62,12 +63,30 @@ Index Assembly::part_of(Index component, const std::vector<BodyId>& ends) {
     blocks_[first].last_loading_block = std::max(blocks_[first].last_loading_block, last);
     return last - blocks.begin;
   }
-  for (const BodyId end : ends) blocks_[block_of(end)].loaded_across_runs = true;
+  for (const Index body : bodies) blocks_[block_of(body)].loaded_across_runs = true;
   return blocks.size();
 }
 
-/// What closes a block closes those before it.
-void Assembly::close_blocks() {
+void BlockTable::place_element(const std::vector<Component>& components, Index component, Index kind,
+                               Index part, Index element) {
+  const Range blocks = components[component].blocks;
+  Range& range = part < blocks.size() ? elements_[(blocks.begin + part) * kinds_ + kind]
+                                      : bridges_[component * kinds_ + kind];
+  if (range.empty()) range.begin = range.end = element;
+  ++range.end;
+}
+
+void BlockTable::place_field(Index kind, Range elements, bool in_parts) {
+  for (std::size_t place = kind; place < bridges_.size(); place += kinds_) {
+    bridges_[place] = in_parts ? Range{} : elements;
+  }
+  for (Index block = 0; block < blocks_.size(); ++block) {
+    elements_[block * kinds_ + kind] = in_parts ? elements : Range{};
+    blocks_[block].loaded_across_runs = blocks_[block].loaded_across_runs || !in_parts;
+  }
+}
+
+void BlockTable::close() {
   for (const Range run : runs_) {
     Index last_loading_block = run.begin;
     for (Index block = run.begin; block < run.end; ++block) {
@@ -77,7 +96,7 @@ void Assembly::close_blocks() {
   }
 }
 
-bool Assembly::surround(Surroundings& blocks) const {
+bool BlockTable::surround(Surroundings& blocks) const {
   blocks.loading.clear();
   blocks.touched.clear();
   // Ranges that begin and end no earlier than those before them.
