@@ -10,8 +10,8 @@ FrictionBounds::FrictionBounds(const Assembly& assembly, Index component, const 
   if (table == nullptr) return;
   rows_ = joints.size();
   std::vector<std::size_t> rows(table->places.size(), 0);  // first ones, by serial number
-  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
-    const std::size_t row = joints.first_row(joint);
+  for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
+    const std::size_t row = joints.pattern().first_row(joint);
     rows[joints.joint(row).serial] = row;
   }
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {

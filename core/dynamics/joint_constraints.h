@@ -10,6 +10,7 @@
 /// The matrix is sparse; its pattern is analysed once.
 
 #include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_pattern.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/numerics/sparse_factors.h>
@@ -20,13 +21,29 @@
 
 namespace carom {
 
-/// What numbers of the bodies are, and with that the constant c that goes with them.
+/// Meaning of numbers of the bodies, and with that the constant c that goes with them.
 enum class JointLevel : std::uint8_t {
   displacement,  ///< c the gaps
   velocity,      ///< c the rates of rows that depend on time
   acceleration,  ///< c the drifts
   change         ///< c zero: changes of velocities or accelerations
 };
+
+/// G x + c of a row.
+[[nodiscard]] inline double residual(JointLevel level, const JointRow& row, const double* x) {
+  const double sum = row.times(x);
+  switch (level) {
+    case JointLevel::displacement:
+      return sum + row.gap;
+    case JointLevel::velocity:
+      return sum + row.rate;
+    case JointLevel::acceleration:
+      return sum + row.drift;
+    case JointLevel::change:
+      break;
+  }
+  return sum;
+}
 
 /// Constraints of one component. Owns workspaces and multipliers. Copies share what does not change.
 class CAROM_API JointConstraints {
@@ -55,8 +72,6 @@ public:
 
   /// A row at the configuration where it was brought last.
   [[nodiscard]] JointRow row(std::size_t row) const;
-  /// Writes the derivatives of the rows of a joint.
-  void derivatives(const JointView& at, std::size_t joint, JointRowDerivative* out) const;
   /// Gap of a row.
   [[nodiscard]] double gap(std::size_t row) const { return gap_[row]; }
   /// Rate of a row.
@@ -80,76 +95,17 @@ public:
   /// Velocities of the component.
   [[nodiscard]] Range velocities() const { return v_; }
 
-  /// G x + c of a row.
-  [[nodiscard]] static double residual(JointLevel level, const JointRow& row, const double* x) {
-    const double sum = row.times(x);
-    switch (level) {
-      case JointLevel::displacement:
-        return sum + row.gap;
-      case JointLevel::velocity:
-        return sum + row.rate;
-      case JointLevel::acceleration:
-        return sum + row.drift;
-      case JointLevel::change:
-        break;
-    }
-    return sum;
-  }
-
-  /// Joints with rows.
-  [[nodiscard]] std::size_t joints() const { return empty() ? 0 : pattern_->joints.size() - 1; }
-  /// First of the rows of a joint; their number behind the last joint.
-  [[nodiscard]] Index first_row(std::size_t joint) const { return pattern_->joints[joint].row; }
+  /// Joints with rows, and places of these.
+  [[nodiscard]] const JointPattern& pattern() const { return *pattern_; }
   /// The joint of a row.
-  [[nodiscard]] JointId joint(std::size_t row) const;
+  [[nodiscard]] JointId joint(std::size_t row) const { return pattern_->id(pattern_->joint_of(row)); }
   /// The factors of G M^-1 G^T.
   [[nodiscard]] const SparseFactors& factors() const { return factors_; }
   [[nodiscard]] SparseFactors& factors() { return factors_; }
 
 private:
-  // Velocities of a body.
-  struct Block {
-    Index v, columns;
-  };
-  // Where what belongs to a joint begins.
-  struct Joint {
-    Index row;     // of its rows
-    Index number;  // of its numbers of G
-    Index block;   // of its blocks
-  };
-  // Joints of a kind.
-  struct OfKind {
-    Index kind;
-    Range joints;
-    Index first;  // the first one's place in Pattern::joints
-  };
-  // A product of two blocks that belongs to a block of the matrix: numbers of the two in G, of the result in
-  // the matrix; the velocities they share.
-  struct Product {
-    Index number, other, value, v;
-    std::uint8_t rows, other_rows, stride, other_stride, columns;
-    bool first;  // of those that belong to the block
-  };
-  // What does not change.
-  struct Pattern {
-    std::vector<OfKind> kinds;
-    std::vector<Joint> joints;  // and an end
-    std::vector<Block> blocks;
-    std::vector<Product> products;
-
-    void add(const JointKind& kind, Index joint);
-    void multiply(SparseFactors& factors);
-    [[nodiscard]] Index stride(std::size_t joint) const;
-  };
-  void evaluate(const JointView& at, JointNumbers out) const;
-  [[nodiscard]] std::size_t joint_of(std::size_t row) const;
-  [[nodiscard]] const OfKind& kind_of(std::size_t joint) const;
-  template <class F>
-  void for_blocks(F&& f) const;
-
-  const Assembly* assembly_ = nullptr;
   Range v_;
-  std::shared_ptr<const Pattern> pattern_;
+  std::shared_ptr<const JointPattern> pattern_ = JointPattern::empty();
   std::vector<double> jacobian_;            // row by row
   std::vector<double> gap_, rate_, drift_;  // by row; rate_ is empty if nothing depends on time
   std::vector<double> inverse_mass_;        // over v_: masses are diagonal

@@ -97,13 +97,13 @@ std::vector<std::string> causes_of_projection(SmoothMotion& motion, const Motion
   double largest = 0.0;
   for (const double impulse : memory.multipliers) largest = std::max(largest, std::abs(impulse));
   std::vector<std::string> names;
-  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
+  for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
     bool takes_part = false;
-    for (Index row = joints.first_row(joint); row < joints.first_row(joint + 1); ++row) {
+    for (Index row = joints.pattern().first_row(joint); row < joints.pattern().first_row(joint + 1); ++row) {
       takes_part =
           takes_part || (largest > 0.0 && std::abs(memory.multipliers[row]) >= considerable * largest);
     }
-    if (takes_part) names.push_back(model.assembly->system().name(joints.joint(joints.first_row(joint))));
+    if (takes_part) names.push_back(model.assembly->system().name(joints.joint(joints.pattern().first_row(joint))));
   }
   if (!names.empty()) return names;
   for (const ActiveContact& contact : motion.active().list()) {

@@ -17,8 +17,8 @@ namespace {
 std::vector<std::string> nearly_singular(const JointConstraints& joints, const System& system) {
   constexpr double near_pivot = 1e-4;  // the square of an angle
   std::vector<std::string> names;
-  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
-    for (Index row = joints.first_row(joint); row < joints.first_row(joint + 1); ++row) {
+  for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
+    for (Index row = joints.pattern().first_row(joint); row < joints.pattern().first_row(joint + 1); ++row) {
       const double pivot = joints.factors().pivot(row);
       if (!(pivot > dependent_pivot && pivot < near_pivot)) continue;
       names.push_back(system.name(joints.joint(row)));

@@ -119,16 +119,16 @@ void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vecto
   std::array<JointRowDerivative, std::size_t{JointKind::most_rows}> changes;
   row_multipliers_.assign(joints.size(), none);
   constexpr auto most = static_cast<std::size_t>(JointRowDerivative::most);
-  for (std::size_t joint = 0; joint < joints.joints(); ++joint) {
-    joints.derivatives(sample.joint_view(), joint, changes.data());
+  for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
+    joints.pattern().derivatives(sample.joint_view(), joint, changes.data());
     std::array<Index, most> columns{};
     std::array<double, most> jacobian{};
     std::array<JointRowDerivative::Numbers, most> stiffness{};
     std::size_t count = 0;
-    for (Index r = joints.first_row(joint); r < joints.first_row(joint + 1); ++r) {
+    for (Index r = joints.pattern().first_row(joint); r < joints.pattern().first_row(joint + 1); ++r) {
       // What follows from other rows has no force; the motion does not need it.
       if (!(joints.factors().pivot(r) > dependent_pivot)) continue;
-      const JointRowDerivative& change = changes[r - joints.first_row(joint)];
+      const JointRowDerivative& change = changes[r - joints.pattern().first_row(joint)];
       const JointRow row = joints.row(r);
       count = 0;
       for (int b = 0; b < row.bodies; ++b) {

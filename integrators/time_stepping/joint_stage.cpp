@@ -286,7 +286,7 @@ double JointStage::violation(const StepInput& in, StepTrial& trial) {
                           trial.end.v[block.v + static_cast<Index>(c)]);
       }
     }
-    const double left = std::abs(JointConstraints::residual(JointLevel::velocity, row, trial.end.v.data()));
+    const double left = std::abs(residual(JointLevel::velocity, row, trial.end.v.data()));
     if (extent > 0.0) largest = std::max(largest, std::abs(row.gap) / (rounding * extent));
     if (speed > 0.0) largest = std::max(largest, left / (rounding * speed));
   }

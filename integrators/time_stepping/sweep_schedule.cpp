@@ -138,9 +138,9 @@ int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, doub
 /// Blocks around those that are upset; false if they are too many, or may depend on any block.
 bool SweepSchedule::surround_upset(Index blocks) {
   constexpr Index small_part = 4;  // of the component: for more, sweeps of these blocks do not pay
-  if (!assembly_->surround(upset_)) return false;
+  if (!assembly_->blocks().surround(upset_)) return false;
   std::swap(upset_.inner, upset_.touched);
-  return assembly_->surround(upset_) && small_part * upset_.touched.size() <= blocks;
+  return assembly_->blocks().surround(upset_) && small_part * upset_.touched.size() <= blocks;
 }
 
 /// One sweep of the blocks around those that are upset.

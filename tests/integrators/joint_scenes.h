@@ -145,8 +145,7 @@ struct JointCheck {
       for (std::size_t i = 0; i < joints_[component].size(); ++i) {
         const JointRow row = joints_[component].row(i);
         gap = std::max(gap, std::abs(row.gap));
-        speed = std::max(
-            speed, std::abs(JointConstraints::residual(JointLevel::velocity, row, now.state().v.data())));
+        speed = std::max(speed, std::abs(residual(JointLevel::velocity, row, now.state().v.data())));
       }
     }
   }

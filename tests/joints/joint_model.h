@@ -69,8 +69,8 @@ public:
       joints.update_and_factor(view());
       std::vector<double> multipliers(joints.size());
       joints.project(carom::JointLevel::acceleration, a.data(), multipliers.data());
-      for (std::size_t i = 0; i < joints.joints(); ++i) {
-        const carom::Index row = joints.first_row(i);
+      for (std::size_t i = 0; i < joints.pattern().size(); ++i) {
+        const carom::Index row = joints.pattern().first_row(i);
         const carom::JointId id = joints.joint(row);
         reactions_.emplace_back(id, kind(id).reaction(view(), slot(id), multipliers.data() + row));
       }

@@ -78,7 +78,7 @@ std::vector<double> random_numbers(std::size_t size, Random& random) {
 double largest_residual(const JointConstraints& joints, JointLevel level, const std::vector<double>& x) {
   double largest = 0.0;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    largest = std::max(largest, std::abs(JointConstraints::residual(level, joints.row(i), x.data())));
+    largest = std::max(largest, std::abs(residual(level, joints.row(i), x.data())));
   }
   return largest;
 }
@@ -171,8 +171,7 @@ TEST(JointConstraints, HoldChangesByTheLeastInTheSenseOfTheMasses) {
       joints.project(level, x.data());
       Eigen::VectorXd right(static_cast<Eigen::Index>(joints.size()));
       for (std::size_t r = 0; r < joints.size(); ++r) {
-        right[static_cast<Eigen::Index>(r)] =
-            -JointConstraints::residual(level, joints.row(r), before.data());
+        right[static_cast<Eigen::Index>(r)] = -residual(level, joints.row(r), before.data());
       }
       // With numbers weighed by the roots of the masses it is the least solution of G x = right.
       const Eigen::VectorXd root = Eigen::Map<const Eigen::VectorXd>(inverse.data(), size).cwiseSqrt();
@@ -383,7 +382,7 @@ TEST(JointConstraints, AllRowsAtOnceAreTheRowsOneByOne) {
       for (const JointLevel level : levels) {
         joints.residuals(level, x.data(), found.data());
         for (std::size_t r = 0; r < found.size(); ++r) {
-          EXPECT_NEAR(found[r], JointConstraints::residual(level, joints.row(r), x.data()), 1e-13);
+          EXPECT_NEAR(found[r], residual(level, joints.row(r), x.data()), 1e-13);
         }
       }
       joints.add_transposed(multipliers.data(), load.data());
