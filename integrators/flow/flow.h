@@ -29,7 +29,7 @@ struct RateDerivative {
   double of_integral = 0.0;  ///< factor of the unknown that it is the rate of (FlowProblem::integrals())
 };
 
-/// What is integrated: the numbers y of a component (coordinates, velocities, internal variables, works).
+/// Problem to integrate: the numbers y of a component (coordinates, velocities, internal variables, works).
 class CAROM_API FlowProblem {
 public:
   virtual ~FlowProblem() = default;

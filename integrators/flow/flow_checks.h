@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What every flow demands of its caller, and how it fails.
+/// Demands of every flow on its caller, and its failures.
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>

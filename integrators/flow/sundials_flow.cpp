@@ -38,7 +38,7 @@ void SundialsFlow::bind(FlowProblem& problem) {
 }
 
 bool SundialsFlow::leave(FlowStep& out) const {
-  if (!started_ || !(starts_anew() || can_tell_history())) return false;
+  if (!started_ || !(starts_anew() || history_size() > 0)) return false;
   const std::size_t n = link_.size();
   out.begin = begin_;
   out.end = end_;
@@ -47,7 +47,7 @@ bool SundialsFlow::leave(FlowStep& out) const {
   out.numbers.resize(2 * n + history_size());
   std::copy_n(begin_state_.data(), n, out.numbers.data());
   std::copy_n(end_state_.data(), n, out.numbers.data() + n);
-  if (!out.restart) tell_history(out.numbers.data() + 2 * n);
+  if (!out.restart) record_history(out.numbers.data() + 2 * n);
   return true;
 }
 
@@ -62,7 +62,7 @@ void SundialsFlow::resume(const FlowStep& step) {
   started_ = true;
   stepped_ = false;
   forget();
-  if (!step.restart) take_history(step.numbers.data() + 2 * n);
+  if (!step.restart) restore_history(step.numbers.data() + 2 * n);
 }
 
 void SundialsFlow::advance(double longest) {
@@ -78,9 +78,9 @@ void SundialsFlow::advance(double longest) {
   started_ = false;  // unless the step succeeds
   double reached = begin_;
   const int flag = step(longest, reached);
-  if (flag < 0 || link_.thrown()) {
+  if (flag < 0 || link_.errors().thrown()) {
     std::copy(begin_state_.begin(), begin_state_.end(), end_state_.begin());
-    link_.fail(flag, begin_, wanted);
+    link_.errors().fail(flag, begin_, wanted);
   }
   // Who asks for a step to some time shall be there.
   const double last = begin_ + longest;
@@ -91,8 +91,8 @@ void SundialsFlow::advance(double longest) {
   const double length = reached - begin_;
   if (!(length > 0.0) || (length <= rounding && length < 0.5 * longest)) {
     std::copy(begin_state_.begin(), begin_state_.end(), end_state_.begin());
-    const double hole = link_.not_finite_at() - begin_;
-    if (hole >= 0.0 && hole <= 1e3 * rounding) link_.fail_not_finite(begin_, length);
+    const double hole = link_.errors().not_finite_at() - begin_;
+    if (hole >= 0.0 && hole <= 1e3 * rounding) link_.errors().fail_not_finite(begin_, length);
     fail_flow_too_short(begin_, length);
   }
   end_ = reached;

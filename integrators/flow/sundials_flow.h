@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What the flows behind make_flow() have in common: the last step, its ends, and the errors.
+/// Flows of SUNDIALS: the last step, its ends, and the errors, which all its methods have in common.
 
 #include <carom/integrators/flow/flow.h>
 #include <carom/integrators/flow/sundials_link.h>
@@ -40,12 +40,11 @@ protected:
   virtual void forget() = 0;
   /// True if the next step will start anew.
   [[nodiscard]] virtual bool starts_anew() const = 0;
-  /// What a step that does not start anew needs to know of those before: whether it is numbers that can be
-  /// told, how many, telling them, and taking over those of another flow (after forget()).
-  [[nodiscard]] virtual bool can_tell_history() const { return false; }
+  /// History that a step which does not start anew needs: how many numbers, 0 where none can be recorded;
+  /// recording them; and going on from those of another flow (after forget()).
   [[nodiscard]] virtual std::size_t history_size() const { return 0; }
-  virtual void tell_history(double* /*out*/) const {}
-  virtual void take_history(const double* /*from*/) {}
+  virtual void record_history(double* /*out*/) const {}
+  virtual void restore_history(const double* /*from*/) {}
   /// Called by correct() after a step, while end_state_ still holds what will be replaced.
   virtual void shift(std::span<const double> y) = 0;
   /// sample() and land() strictly inside the last step; after resume() the latter alone.

@@ -4,15 +4,11 @@
 #include <carom/integrators/flow/sundials_link.h>
 #include <carom/integrators/flow/sundials_newton.h>
 
-#include <carom/core/part_check.h>
 #include <carom/integrators/flow/sundials_loops.h>
-
-#include <arkode/arkode.h>
-#include <cvode/cvode.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -75,28 +71,6 @@ SUNComm no_communicator() { return SUN_COMM_NULL; }
 void* no_communicator() { return nullptr; }
 #endif
 
-static_assert(CV_TOO_MUCH_ACC == ARK_TOO_MUCH_ACC && CV_ERR_FAILURE == ARK_ERR_FAILURE &&
-              CV_CONV_FAILURE == ARK_CONV_FAILURE && CV_LSETUP_FAIL == ARK_LSETUP_FAIL &&
-              CV_LSOLVE_FAIL == ARK_LSOLVE_FAIL && CV_TOO_CLOSE == ARK_TOO_CLOSE);
-
-std::string reason(int flag) {
-  switch (flag) {
-    case CV_TOO_MUCH_ACC:
-      return "the tolerances ask for more digits than numbers have";
-    case CV_ERR_FAILURE:
-      return "the error is above the tolerances however short the step";
-    case CV_CONV_FAILURE:
-      return "the corrector iteration does not converge however short the step";
-    case CV_LSETUP_FAIL:
-    case CV_LSOLVE_FAIL:
-      return "the linear equations of a step cannot be solved";
-    case CV_TOO_CLOSE:
-      return "the length allowed for the step is too small to choose a step";
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 SundialsLink::SundialsLink(FlowProblem& problem, double relative_tolerance)
@@ -105,13 +79,13 @@ SundialsLink::SundialsLink(FlowProblem& problem, double relative_tolerance)
       integrals_(problem.integrals()),
       relative_tolerance_(relative_tolerance) {
   check_flow_problem(problem, relative_tolerance);
-  demand(SUNContext_Create(no_communicator(), &context_) == 0, "SUNContext_Create");
+  errors_.demand(SUNContext_Create(no_communicator(), &context_) == 0, "SUNContext_Create");
 #if SUNDIALS_VERSION_MAJOR >= 7
   SUNContext_ClearErrHandlers(context_);
   SUNContext_PushErrHandler(
       context_,
       [](int, const char*, const char*, const char* message, SUNErrCode code, void* link, SUNContext) {
-        static_cast<SundialsLink*>(link)->keep_message(code, message);
+        static_cast<SundialsLink*>(link)->errors_.keep_message(code, message);
       },
       this);
 #endif
@@ -123,12 +97,12 @@ void SundialsLink::bind(FlowProblem& problem) {
   check_flow_bind(problem, size_, integrals_);
   check_flow_problem(problem, relative_tolerance_);
   problem_ = &problem;
-  not_finite_at_ = -std::numeric_limits<double>::infinity();
+  errors_ = {};
 }
 
 SundialsVector SundialsLink::vector(double* numbers) const {
   SundialsVector made(N_VMake_Serial(static_cast<sunindextype>(size_), numbers, context_));
-  demand(made != nullptr, "N_VMake_Serial");
+  errors_.demand(made != nullptr, "N_VMake_Serial");
   use_own_loops(made.get());  // what SUNDIALS clones from it has them too
   return made;
 }
@@ -146,22 +120,14 @@ bool SundialsLink::evaluate(double time, const double* y, double* rates) {
   ++evaluations_;
   problem_->rates(time, y, rates);
   if (loops::all_finite(size_, rates)) return true;
-  not_finite_ = true;
-  not_finite_at_ = time;
+  errors_.keep_not_finite(time);
   return false;
-}
-
-void SundialsLink::clear() {
-  answer_ = nullptr;
-  not_finite_ = false;
-  exception_ = nullptr;
-  message_[0] = '\0';
 }
 
 // Exceptions must not cross a library written in C: negative ends the step, positive asks for a shorter one.
 int SundialsLink::rates(sunrealtype time, N_Vector y, N_Vector rates, void* link) noexcept {
   auto& self = *static_cast<SundialsLink*>(link);
-  if (self.thrown()) return -1;  // CVODE tries shorter steps even so
+  if (self.errors_.thrown()) return -1;  // CVODE tries shorter steps even so
   const double* const known = std::exchange(self.answer_, nullptr);
   if (known != nullptr && time == self.answer_at_) {
     std::copy_n(known, self.size_, NV_DATA_S(rates));
@@ -170,7 +136,7 @@ int SundialsLink::rates(sunrealtype time, N_Vector y, N_Vector rates, void* link
   try {
     return self.evaluate(time, NV_DATA_S(y), NV_DATA_S(rates)) ? 0 : 1;
   } catch (...) {
-    self.exception_ = std::current_exception();
+    self.errors_.keep(std::current_exception());
     return -1;
   }
 }
@@ -191,14 +157,14 @@ int SundialsLink::linear_system(sunrealtype time, N_Vector y, N_Vector rates, SU
                                 sunbooleantype keep, sunbooleantype* renewed, sunrealtype gamma, void* link,
                                 N_Vector, N_Vector, N_Vector) noexcept {
   auto& self = *static_cast<SundialsLink*>(link);
-  if (self.thrown()) return -1;
+  if (self.errors_.thrown()) return -1;
   try {
     NewtonMatrix& system = newton_matrix(matrix);
     *renewed = keep ? 0 : 1;
     if (!keep && !self.linearise(time, NV_DATA_S(y), NV_DATA_S(rates), system)) return 1;
     return system.factor(gamma) ? 0 : 1;  // 1: perhaps with another gamma
   } catch (...) {
-    self.exception_ = std::current_exception();
+    self.errors_.keep(std::current_exception());
     return -1;
   }
 }
@@ -212,8 +178,7 @@ bool SundialsLink::linearise(double time, double* y, const double* rates, Newton
     return false;
   }
   if (matrix.take()) return true;
-  not_finite_ = true;
-  not_finite_at_ = time;
+  errors_.keep_not_finite(time);
   return false;
 }
 
@@ -240,30 +205,8 @@ bool SundialsLink::difference_rates(double time, double* y, const double* rates,
 
 #if SUNDIALS_VERSION_MAJOR < 7
 void SundialsLink::take_message(int code, const char*, const char*, char* message, void* link) noexcept {
-  static_cast<SundialsLink*>(link)->keep_message(code, message);
+  static_cast<SundialsLink*>(link)->errors_.keep_message(code, message);
 }
 #endif
-
-void SundialsLink::keep_message(int code, const char* message) noexcept {
-  if (code == CV_WARNING || message == nullptr) return;
-  std::strncpy(message_.data(), message, message_.size() - 1);
-}
-
-void SundialsLink::fail(int flag, double time, double step) const {
-  if (exception_) std::rethrow_exception(exception_);
-  if (not_finite_) fail_not_finite(time, step);
-  std::string why = reason(flag);
-  if (why.empty()) why = "SUNDIALS gives up (" + std::to_string(flag) + "): " + message_.data();
-  fail_flow(why, time, step);
-}
-
-void SundialsLink::fail_not_finite(double time, double step) const {
-  fail_flow_not_finite(not_finite_at_, time, step);
-}
-
-void SundialsLink::demand(bool success, const char* what) const {
-  if (success) return;
-  fail_flow(std::string(what) + " fails: " + message_.data(), 0.0, 0.0);
-}
 
 }  // namespace carom

@@ -1,12 +1,12 @@
 #pragma once
 
 /// \file
-/// What SUNDIALS is given of a FlowProblem: a context, vectors with loops of our own, functions in C that
-/// call the problem. Differences between the versions 6.4 and 7 live here and in sundials_link.cpp.
+/// FlowProblem as SUNDIALS sees it: a context, vectors with loops of our own, functions in C that call the
+/// problem. Differences between the versions 6.4 and 7 live here and in sundials_link.cpp.
 
-#include <carom/core/errors.h>
 #include <carom/integrators/flow/flow.h>
 #include <carom/integrators/flow/newton_matrix.h>
+#include <carom/integrators/flow/sundials_errors.h>
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
@@ -14,11 +14,8 @@
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_types.h>
 
-#include <array>
-#include <exception>
-#include <limits>
+#include <cstdint>
 #include <memory>
-#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -76,22 +73,13 @@ public:
     answer_ = rates;
   }
 
-  /// Forgets what went wrong before.
-  void clear();
-  /// True if rates or their derivatives were not finite since clear().
-  [[nodiscard]] bool not_finite() const { return not_finite_; }
-  /// The time at which they last were not, also before clear(); minus infinity if they always were.
-  [[nodiscard]] double not_finite_at() const { return not_finite_at_; }
-  /// True if the problem threw since clear().
-  [[nodiscard]] bool thrown() const { return exception_ != nullptr; }
-
-  /// Throws what the problem threw, or else the SolverError that says why a step from `time` failed.
-  /// \param flag what SUNDIALS returned; CVODE and ARKODE mean the same by it
-  [[noreturn]] void fail(int flag, double time, double step) const;
-  /// Throws the SolverError that rates are not finite where they last were not.
-  [[noreturn]] void fail_not_finite(double time, double step) const;
-  /// For calls that fail for want of memory or by a mistake of ours only.
-  void demand(bool success, const char* what) const;
+  /// Forgets failures and known answers.
+  void clear() {
+    answer_ = nullptr;
+    errors_.clear();
+  }
+  /// Failures of the evaluations and of SUNDIALS.
+  [[nodiscard]] const SundialsErrors& errors() const { return errors_; }
 
   /// Callbacks of CVODE and ARKODE; `link` is a SundialsLink.
   static int rates(sunrealtype time, N_Vector y, N_Vector rates, void* link) noexcept;
@@ -109,7 +97,6 @@ public:
 private:
   bool linearise(double time, double* y, const double* rates, NewtonMatrix& matrix);
   bool difference_rates(double time, double* y, const double* rates, std::vector<RateDerivative>& out);
-  void keep_message(int code, const char* message) noexcept;
 
   FlowProblem* problem_;
   std::size_t size_, integrals_;
@@ -120,10 +107,7 @@ private:
   std::vector<double> moved_rates_;
   double answer_at_ = 0.0;
   const double* answer_ = nullptr;
-  bool not_finite_ = false;
-  double not_finite_at_ = -std::numeric_limits<double>::infinity();
-  std::exception_ptr exception_{};
-  std::array<char, 256> message_{};
+  SundialsErrors errors_;
 };
 
 }  // namespace carom

@@ -39,7 +39,7 @@ private:
   void interpolate(double time, double* y) override;
   void integrate_to(double time, double* y) override { interpolate(time, y); }
 
-  void demand(int flag) const { link_.demand(flag >= 0, "a call of CVODE"); }
+  void demand(int flag) const { link_.errors().demand(flag >= 0, "a call of CVODE"); }
 
   void* memory_;
   SUNNonlinearSolver fixed_point_ = nullptr;
@@ -53,7 +53,7 @@ private:
 MultistepFlow::MultistepFlow(FlowMethod method, FlowProblem& problem, double relative_tolerance)
     : SundialsFlow(problem, relative_tolerance),
       memory_(CVodeCreate(method == FlowMethod::adams ? CV_ADAMS : CV_BDF, link_.context())) {
-  link_.demand(memory_ != nullptr, "CVodeCreate");
+  link_.errors().demand(memory_ != nullptr, "CVodeCreate");
 #if SUNDIALS_VERSION_MAJOR < 7
   demand(CVodeSetErrHandlerFn(memory_, SundialsLink::take_message, &link_));
 #endif
@@ -64,14 +64,14 @@ MultistepFlow::MultistepFlow(FlowMethod method, FlowProblem& problem, double rel
   demand(CVodeSetMaxHnilWarns(memory_, -1));
   if (method == FlowMethod::adams) {
     fixed_point_ = SUNNonlinSol_FixedPoint(begin_vector_.get(), 0, link_.context());
-    link_.demand(fixed_point_ != nullptr, "SUNNonlinSol_FixedPoint");
+    link_.errors().demand(fixed_point_ != nullptr, "SUNNonlinSol_FixedPoint");
     demand(CVodeSetNonlinearSolver(memory_, fixed_point_));
   } else {
     link_.tighten(bdf_part);
     newton_ = std::make_unique<NewtonMatrix>(link_.size(), problem.integrals());
     matrix_ = make_newton_matrix(*newton_, link_.context());
     linear_solver_ = make_newton_solver(*newton_, link_.context());
-    link_.demand(matrix_ != nullptr && linear_solver_ != nullptr, "making a linear solver");
+    link_.errors().demand(matrix_ != nullptr && linear_solver_ != nullptr, "making a linear solver");
     demand(CVodeSetLinearSolver(memory_, linear_solver_, matrix_));
     demand(CVodeSetLinSysFn(memory_, SundialsLink::linear_system));
   }
@@ -121,7 +121,7 @@ void MultistepFlow::interpolate(double time, double* y) {
   N_VSetArrayPointer(y, out_vector_.get());
   link_.clear();
   const int flag = CVodeGetDky(memory_, time, 0, out_vector_.get());
-  if (flag < 0) link_.fail(flag, begin_, end_ - begin_);
+  if (flag < 0) link_.errors().fail(flag, begin_, end_ - begin_);
 }
 
 }  // namespace

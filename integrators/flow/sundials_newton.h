@@ -13,7 +13,7 @@ namespace carom {
 
 /// The matrix as SUNDIALS sees it. Null if it cannot be made. Free with SUNMatDestroy(), before `matrix`.
 [[nodiscard]] SUNMatrix make_newton_matrix(NewtonMatrix& matrix, SUNContext context);
-/// What it stands for.
+/// Newton matrix behind it.
 [[nodiscard]] NewtonMatrix& newton_matrix(SUNMatrix matrix);
 /// A solver by the factors of that matrix, which whoever fills it makes. Null if it cannot be made. Free with
 /// SUNLinSolFree().

@@ -46,7 +46,7 @@ public:
   }
 
 #if SUNDIALS_VERSION_MAJOR >= 7
-  /// What ARKODE calls; null if it cannot be made. To be destroyed.
+  /// Controller for ARKODE; null if it cannot be made. To be destroyed.
   [[nodiscard]] SUNAdaptController make(SUNContext context) {
     SUNAdaptController made = SUNAdaptController_NewEmpty(context);
     if (made == nullptr) return nullptr;
@@ -60,7 +60,7 @@ public:
     return made;
   }
 #else
-  /// What ARKODE calls; `control` is a LengthControl.
+  /// Callback of ARKODE; `control` is a LengthControl.
   static int adapt(N_Vector, double, double length, double, double, double error, double, double, int, int,
                    double* next, void* control) {
     *next = static_cast<LengthControl*>(control)->next(length, error);
@@ -139,7 +139,7 @@ public:
   void slope(double time, N_Vector rates) const { demand(CAROM_ERK(GetDky)(memory_, time, 1, rates)); }
 
 private:
-  void demand(int flag) const { link_->demand(flag >= 0, "a call of ERKStep"); }
+  void demand(int flag) const { link_->errors().demand(flag >= 0, "a call of ERKStep"); }
 
   void* memory_;
   SundialsLink* link_;
@@ -174,10 +174,9 @@ private:
   }
   void shift(std::span<const double>) override { forget(); }
   [[nodiscard]] bool starts_anew() const override { return restart_ && !resumed_; }
-  [[nodiscard]] bool can_tell_history() const override { return true; }
   [[nodiscard]] std::size_t history_size() const override { return link_.size() + 1; }
-  void tell_history(double* out) const override;
-  void take_history(const double* from) override;
+  void record_history(double* out) const override;
+  void restore_history(const double* from) override;
   void interpolate(double time, double* y) override;
   void integrate_to(double time, double* y) override;
 
@@ -217,7 +216,7 @@ double RungeKuttaFlow::guess_first_step(double longest) {
   return std::min({100.0 * small, guess, longest});
 }
 
-void RungeKuttaFlow::tell_history(double* out) const {
+void RungeKuttaFlow::record_history(double* out) const {
   const std::size_t n = link_.size();
   if (resumed_) {
     std::copy_n(known_slope_.data(), n, out);
@@ -229,7 +228,7 @@ void RungeKuttaFlow::tell_history(double* out) const {
   out[n] = stepper_.error();
 }
 
-void RungeKuttaFlow::take_history(const double* from) {
+void RungeKuttaFlow::restore_history(const double* from) {
   std::copy_n(from, link_.size(), known_slope_.data());
   known_error_ = from[link_.size()];
   resumed_ = true;
@@ -257,8 +256,8 @@ int RungeKuttaFlow::step(double longest, double& reached) {
   int flag = stepper_.step(horizon(longest), end_vector_.get(), reached);
   // ERKStep does not try a shorter step where a stage meets rates that are not finite. Each of ours ends
   // before the place where the last one did.
-  while (flag < 0 && link_.not_finite() && !link_.thrown()) {
-    const double shorter = 0.25 * (link_.not_finite_at() - begin_);
+  while (flag < 0 && link_.errors().not_finite() && !link_.errors().thrown()) {
+    const double shorter = 0.25 * (link_.errors().not_finite_at() - begin_);
     if (!(begin_ + 0.25 * shorter > begin_)) break;  // so begin() is the edge
     link_.clear();
     stepper_.start(begin_, begin_vector_.get(), guessed);
@@ -297,7 +296,7 @@ void RungeKuttaFlow::make_polynomial() {
   const auto evaluate = [&](double s, std::vector<double>& rates) {
     evaluate_polynomial(s, place_.data());
     link_.clear();
-    if (!link_.evaluate(begin_ + s * h, place_.data(), rates.data())) link_.fail(0, begin_, h);
+    if (!link_.evaluate(begin_ + s * h, place_.data(), rates.data())) link_.errors().fail(0, begin_, h);
   };
   const auto cubic_slope = [&](std::size_t i, double s) {
     return slope_[i] + s * (2.0 * bend_[i] + s * 3.0 * change_[i]);
@@ -337,7 +336,7 @@ void RungeKuttaFlow::integrate_to(double time, double* y) {
   lander_.start(begin_, begin_vector_.get(), false);
   double reached = begin_;
   const int flag = lander_.step(time, out_vector_.get(), reached);
-  if (flag < 0) link_.fail(flag, begin_, time - begin_);
+  if (flag < 0) link_.errors().fail(flag, begin_, time - begin_);
 }
 
 }  // namespace
