@@ -64,7 +64,7 @@ public:
       size_ = model_->size();
       // Forces of springs that balance are large where their sum is not.
       force_ = std::max(largest(model_->loads()),
-                        largest(VectorXd(model_->rows().transpose() * model_->multipliers())));
+                        largest(VectorXd(model_->constraints().rows().transpose() * model_->multipliers())));
       scale_ = std::max(force_, largest(by_position_) * size_);
       const MatrixXd free = model_->directions();
       const VectorXd x = newton_step(free);
@@ -87,7 +87,7 @@ private:
   /// How far from equilibrium: forces against their size, gaps against theirs.
   [[nodiscard]] double off() const {
     const double forces = scale_ > 0.0 ? model_->left().norm() / scale_ : 0.0;
-    return std::hypot(forces, model_->gaps().norm() / size_);
+    return std::hypot(forces, model_->constraints().gaps().norm() / size_);
   }
 
   /// With the directions N that constraints leave, x = x_c + N y:
@@ -97,7 +97,7 @@ private:
   [[nodiscard]] VectorXd newton_step(const MatrixXd& free) {
     free_motion_.resize(0);
     VectorXd x = VectorXd::Zero(model_->lengths().size());
-    if (model_->rows().rows() > 0) x = model_->close(VectorXd(-model_->gaps()));
+    if (model_->constraints().rows().rows() > 0) x = model_->close(VectorXd(-model_->constraints().gaps()));
     if (free.cols() == 0) return x;
     const MatrixXd stiffness = free.transpose() * by_position_ * free;
     const Eigen::JacobiSVD<MatrixXd> svd(stiffness, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -175,10 +175,10 @@ private:
   [[noreturn]] void give_up() const {
     const VectorXd left = model_->left();
     Eigen::Index worst = 0;
-    if (model_->gaps().size() > 0 &&
-        largest(model_->gaps()) / size_ > (scale_ > 0.0 ? largest(left) / scale_ : 0.0)) {
-      const double gap = model_->gaps().cwiseAbs().maxCoeff(&worst);
-      const std::string who = model_->row_name(worst);
+    if (model_->constraints().gaps().size() > 0 &&
+        largest(model_->constraints().gaps()) / size_ > (scale_ > 0.0 ? largest(left) / scale_ : 0.0)) {
+      const double gap = model_->constraints().gaps().cwiseAbs().maxCoeff(&worst);
+      const std::string who = model_->constraints().row_name(worst);
       throw failure(*model_,
                     "equilibrium: none found, " + who + " cannot be closed, it is off by " + to_text(gap) +
                         "; allowed: a start near an equilibrium",
@@ -222,10 +222,10 @@ Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
 
   result.state = model.state();
   result.residual = largest(model.left());
-  for (Eigen::Index row = 0; row < model.gaps().size(); ++row) {
+  for (Eigen::Index row = 0; row < model.constraints().gaps().size(); ++row) {
     result.gap = std::max(result.gap, std::abs(model.gap(row)));
   }
-  for (const RestingModel::Joint& joint : model.joints()) {
+  for (const RestingConstraints::Joint& joint : model.constraints().joints()) {
     JointForce force;
     force.joint = joint.id;
     for (Index i = 0; i < assembly.joint_kinds()[joint.kind]->rows(); ++i) {
@@ -234,10 +234,10 @@ Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
     force.reaction = model.reaction(joint);
     result.joints.push_back(std::move(force));
   }
-  for (const RestingModel::Support& support : model.supports()) {
+  for (const RestingConstraints::Support& support : model.constraints().supports()) {
     ContactForce force;
     force.key = support.at.key;
-    force.name = model.name(support);
+    force.name = model.constraints().name(support);
     const auto row = static_cast<Eigen::Index>(support.row);
     force.normal = std::max(model.multiplier(row), 0.0);
     for (int i = 1; i < support.rows; ++i) {

@@ -4,6 +4,7 @@
 #include <carom/analysis/resting_model.h>
 #include <carom/core/assembly.h>
 #include <carom/core/errors.h>
+#include <carom/core/numerics/sparse_factors.h>
 #include <carom/core/part_check.h>
 
 #include <Eigen/Cholesky>
@@ -49,9 +50,9 @@ void check_rest(const RestingModel& model, double scale, double tolerance) {
     throw ModelError("modes: " + model.body_name(worst) + " is out of balance by " +
                      to_text(std::abs(left[worst])) + " N; allowed: a state of equilibrium");
   }
-  for (Eigen::Index row = 0; row < model.gaps().size(); ++row) {
+  for (Eigen::Index row = 0; row < model.constraints().gaps().size(); ++row) {
     if (std::abs(model.gap(row)) <= tolerance * model.size()) continue;
-    throw ModelError("modes: " + model.row_name(row) + " is off by " + to_text(model.gap(row)) +
+    throw ModelError("modes: " + model.constraints().row_name(row) + " is off by " + to_text(model.gap(row)) +
                      "; allowed: a state that obeys joints and contacts");
   }
 }
@@ -116,7 +117,7 @@ Linearisation linearise(const Assembly& assembly, const State& state, const Mode
   MatrixXd by_position, by_velocity;
   model.differentiate(by_position, by_velocity);
   const double force =
-      std::max(largest(model.loads()), largest(model.rows().transpose() * model.multipliers()));
+      std::max(largest(model.loads()), largest(model.constraints().rows().transpose() * model.multipliers()));
   check_rest(model, std::max(force, largest(by_position) * model.size()), options.tolerance);
   model.check_supports(options.tolerance * force);
 
@@ -124,9 +125,9 @@ Linearisation linearise(const Assembly& assembly, const State& state, const Mode
   const Eigen::LLT<MatrixXd> mass(model.mass());
   const Eigen::Index size = model.lengths().size();
   MatrixXd free = MatrixXd::Identity(size, size);
-  if (model.rows().rows() > 0) {
+  if (model.constraints().rows().rows() > 0) {
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    MatrixXd columns = mass.matrixL().solve(MatrixXd(model.rows().transpose()));
+    MatrixXd columns = mass.matrixL().solve(MatrixXd(model.constraints().rows().transpose()));
     for (Eigen::Index i = 0; i < columns.cols(); ++i) {
       if (columns.col(i).norm() > 0.0) columns.col(i).normalize();
     }

@@ -56,6 +56,14 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
   const Eigen::Index size = lengths_.size();
   by_position.setZero(size, size);
   by_velocity.setZero(size, size);
+  add_load_derivatives(by_position, by_velocity);
+  add_constraint_derivatives(by_position);
+  const VectorXd inverse = lengths_.cwiseInverse();
+  by_position = inverse.asDiagonal() * by_position * inverse.asDiagonal();
+  by_velocity = inverse.asDiagonal() * by_velocity * inverse.asDiagonal();
+}
+
+void RestingModel::add_load_derivatives(MatrixXd& by_position, MatrixXd& by_velocity) const {
   std::vector<LoadDerivative> entries;
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     const EvaluationContext here{*assembly_, state_.view(), evaluation_, component};
@@ -77,17 +85,18 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
     by_position(at(entry.row), at(entry.column)) += entry.by_position;
     by_velocity(at(entry.row), at(entry.column)) += entry.by_velocity;
   }
+}
 
-  // G^T l: the rows of one body at a time, moved along one of its coordinates.
+/// G^T l: the rows of one body at a time, moved along one of its coordinates.
+void RestingModel::add_constraint_derivatives(MatrixXd& by_position) const {
   State moved = state_;
   Evaluation evaluation = evaluation_;
   const JointView view{moved.view(), evaluation.rotation.data()};
-  std::vector<JointRow> rows = joint_rows_;
-  Constraint contact;
+  const VectorXd multipliers = l_.cwiseQuotient(constraints_.norms());
   VectorXd column;
   const Layout& layout = *assembly_->layout();
   for (Index body = 0; body < layout.bodies().size(); ++body) {
-    if (joints_of_body_[body].empty() && supports_of_body_[body].empty()) continue;
+    if (!constraints_.acts_on(body)) continue;
     const BodySlot slot = layout.bodies()[body];
     const BodyKind& kind = *assembly_->body_kinds()[slot.kind];
     const Range own{slot.slot, slot.slot + 1};
@@ -104,22 +113,8 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
             // Turned by an angle, moved by a part of the body's own length.
             delta[i] = step;
             stand();
-            forces.setZero(size);
-            for (const std::size_t j : joints_of_body_[body]) {
-              const Joint& joint = joints_[j];
-              const JointKind& joint_kind = *assembly_->joint_kinds()[joint.kind];
-              joint_kind.evaluate(view, joint.slot, rows.data() + joint.row);
-              for (Index row = joint.row; row < joint.row + joint_kind.rows(); ++row) {
-                rows[row].add_transposed(multiplier(at(row)), forces.data());
-              }
-            }
-            for (const std::size_t j : supports_of_body_[body]) {
-              const Support& support = supports_[j];
-              detector_.contact(support.pair, view.state, evaluation, places_, contact);
-              for (int row = 0; row < support.rows; ++row) {
-                contact.add_transposed(row, multiplier(at(support.row) + row), forces.data());
-              }
-            }
+            forces.setZero(lengths_.size());
+            constraints_.add_forces(body, view, evaluation, multipliers, forces.data());
           },
           column);
       delta[i] = 0.0;
@@ -127,9 +122,6 @@ void RestingModel::differentiate(MatrixXd& by_position, MatrixXd& by_velocity) c
     }
     stand();
   }
-  const VectorXd inverse = lengths_.cwiseInverse();
-  by_position = inverse.asDiagonal() * by_position * inverse.asDiagonal();
-  by_velocity = inverse.asDiagonal() * by_velocity * inverse.asDiagonal();
 }
 
 MatrixXd RestingModel::mass() const {
