@@ -162,6 +162,49 @@ Factors factors(double stiffness, double damping, double free_length, const Vec<
   return {stiffness * stretch * inverse, damping * d.dot(rate) * (inverse * inverse), stretch};
 }
 
+/// Pulls of two springs at once, as far as that goes: root and divisions, which cost most, serve both.
+/// Returns the first spring left.
+template <bool Together, bool WithPotential>
+Index pull_by_twos(const PlanarSprings& springs, Index i, Index last, const double* q, const double* v,
+                   const Loads& loads, PairSum& potential) {
+  const auto at = [](const double* property, Index stride, Index slot) {
+    return load_pair(property + slot * stride);
+  };
+  const auto add = [](double* load, Pair force) { store_pair(load, load_pair(load) + force); };
+  for (; i + 1 < last; i += 2) {
+    const Index from_a = springs.from[i], from_b = springs.from[i + 1], to_a = springs.to[i],
+                to_b = springs.to[i + 1];
+    const Pair d_a = load_pair(q + to_a) - load_pair(q + from_a);
+    const Pair d_b = load_pair(q + to_b) - load_pair(q + from_b);
+    const Pair rate_a = load_pair(v + to_a) - load_pair(v + from_a);
+    const Pair rate_b = load_pair(v + to_b) - load_pair(v + from_b);
+    const Pair d_x = firsts(d_a, d_b), d_y = seconds(d_a, d_b);
+    const Pair square = d_x * d_x + d_y * d_y;
+    const Pair length = root(square);
+    const Pair inverse = where_not_zero(square, both(1.0) / length);
+    const Pair stretch = length - at(springs.free_length, springs.free_length_stride, i);
+    const Pair tension = at(springs.stiffness, springs.stiffness_stride, i) * stretch;
+    const Pair spring = tension * inverse;
+    const Pair dashpot = at(springs.damping, springs.damping_stride, i) *
+                         (d_x * firsts(rate_a, rate_b) + d_y * seconds(rate_a, rate_b)) * (inverse * inverse);
+    if constexpr (WithPotential) potential.add(both(0.5) * tension * stretch);
+    const auto apply = [&](double* load, Pair factor) {
+      const Pair force_a = both(factor[0]) * d_a, force_b = both(factor[1]) * d_b;
+      add(load + from_a, force_a);
+      add(load + to_a, -force_a);
+      add(load + from_b, force_b);
+      add(load + to_b, -force_b);
+    };
+    if constexpr (Together) {
+      apply(loads.conservative, spring + dashpot);
+    } else {
+      apply(loads.conservative, spring);
+      apply(loads.dissipative, dashpot);
+    }
+  }
+  return i;
+}
+
 }  // namespace
 
 template <int D>
@@ -179,41 +222,7 @@ void SpringDamperKind<D>::sweep_centres(const StateView& state, Range elements, 
                                 damping_.stride(), free_length_.stride()};
     i = pull_by_fours(springs, i, elements.end, q, v, loads.conservative,
                       Together ? nullptr : loads.dissipative, WithPotential ? &potential : nullptr);
-    // Two springs at once: root and divisions, which cost most, serve both.
-    const auto at = [](const Column<double>& column, Index slot) {
-      return load_pair(column.data() + slot * column.stride());
-    };
-    const auto add = [](double* load, Pair force) { store_pair(load, load_pair(load) + force); };
-    for (; i + 1 < elements.end; i += 2) {
-      const Index from_a = from_[i], from_b = from_[i + 1], to_a = to_[i], to_b = to_[i + 1];
-      const Pair d_a = load_pair(q + to_a) - load_pair(q + from_a);
-      const Pair d_b = load_pair(q + to_b) - load_pair(q + from_b);
-      const Pair rate_a = load_pair(v + to_a) - load_pair(v + from_a);
-      const Pair rate_b = load_pair(v + to_b) - load_pair(v + from_b);
-      const Pair d_x = firsts(d_a, d_b), d_y = seconds(d_a, d_b);
-      const Pair square = d_x * d_x + d_y * d_y;
-      const Pair length = root(square);
-      const Pair inverse = where_not_zero(square, both(1.0) / length);
-      const Pair stretch = length - at(free_length_, i);
-      const Pair tension = at(stiffness_, i) * stretch;
-      const Pair spring = tension * inverse;
-      const Pair dashpot = at(damping_, i) * (d_x * firsts(rate_a, rate_b) + d_y * seconds(rate_a, rate_b)) *
-                           (inverse * inverse);
-      if constexpr (WithPotential) potential.add(both(0.5) * tension * stretch);
-      const auto apply = [&](double* load, Pair factor) {
-        const Pair force_a = both(factor[0]) * d_a, force_b = both(factor[1]) * d_b;
-        add(load + from_a, force_a);
-        add(load + to_a, -force_a);
-        add(load + from_b, force_b);
-        add(load + to_b, -force_b);
-      };
-      if constexpr (Together) {
-        apply(loads.conservative, spring + dashpot);
-      } else {
-        apply(loads.conservative, spring);
-        apply(loads.dissipative, dashpot);
-      }
-    }
+    i = pull_by_twos<Together, WithPotential>(springs, i, elements.end, q, v, loads, potential);
   }
   for (; i < elements.end; ++i) {
     const Vec<D> d = ConstMap(q + to_[i]) - ConstMap(q + from_[i]);

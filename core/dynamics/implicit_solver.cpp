@@ -28,6 +28,8 @@ struct ImplicitSolver::Factors {
   Matrix bordered_matrix;
   Eigen::SparseLU<Matrix> bordered;
 
+  void append_masses();
+  void make_definite(std::ptrdiff_t first_mass);
   [[nodiscard]] bool surround(const Border& joints);
 };
 
@@ -72,6 +74,45 @@ bool ImplicitSolver::Factors::surround(const Border& joints) {
   return bordered.info() == Eigen::Success;
 }
 
+/// Appends the mass matrix, lower triangle.
+void ImplicitSolver::Factors::append_masses() {
+  std::vector<double> unit, image;
+  assembly->for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+    const Index size = kind.v_size();
+    unit.assign(size, 0.0);
+    image.resize(size);
+    for (Index slot = slots.begin; slot < slots.end; ++slot, first += size) {
+      for (Index column = 0; column < size; ++column) {
+        unit[column] = 1.0;
+        kind.apply_mass({slot, slot + 1}, unit.data(), image.data());
+        unit[column] = 0.0;
+        for (Index row = column; row < size; ++row) {
+          triplets.emplace_back(static_cast<int>(first + row - v.begin),
+                                static_cast<int>(first + column - v.begin), image[row]);
+        }
+      }
+    }
+  });
+}
+
+/// Doubles the masses, which begin at a triplet, until the matrix is definite.
+void ImplicitSolver::Factors::make_definite(std::ptrdiff_t first_mass) {
+  // Loads that give way as much as this (a spring pushed together, against turning aside) are not followed to
+  // where they lead: the correction becomes shorter instead. Doubled: some 50 times are the whole range of
+  // numbers that a step can need.
+  constexpr int most_additions = 60;
+  const auto definite = [&] {
+    return factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0;
+  };
+  for (int i = 0; i < most_additions && !definite(); ++i) {
+    for (auto mass = triplets.begin() + first_mass; mass != triplets.end(); ++mass) {
+      *mass = {mass->row(), mass->col(), 2.0 * mass->value()};
+    }
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    factors.factorize(matrix);
+  }
+}
+
 ImplicitSolver::ImplicitSolver() : factors_(std::make_unique<Factors>()) {}
 ImplicitSolver::~ImplicitSolver() = default;
 ImplicitSolver::ImplicitSolver(ImplicitSolver&&) noexcept = default;
@@ -100,42 +141,14 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index c
     }
   }
   const auto first_mass = static_cast<std::ptrdiff_t>(self.triplets.size());
-  std::vector<double> unit, image;
-  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-    const Index size = kind.v_size();
-    unit.assign(size, 0.0);
-    image.resize(size);
-    for (Index slot = slots.begin; slot < slots.end; ++slot, first += size) {
-      for (Index column = 0; column < size; ++column) {
-        unit[column] = 1.0;
-        kind.apply_mass({slot, slot + 1}, unit.data(), image.data());
-        unit[column] = 0.0;
-        for (Index row = column; row < size; ++row) {
-          self.triplets.emplace_back(index(first + row), index(first + column), image[row]);
-        }
-      }
-    }
-  });
+  self.append_masses();
   const auto size = static_cast<Eigen::Index>(self.v.size());
   self.matrix.resize(size, size);
   self.matrix.setFromTriplets(self.triplets.begin(), self.triplets.end());
   // The pattern is that of the graph; an element may leave out entries at times, so it is looked at again.
   self.factors.analyzePattern(self.matrix);
   self.factors.factorize(self.matrix);
-  // Loads that give way as much as this (a spring pushed together, against turning aside) are not followed to
-  // where they lead: the correction becomes shorter instead. Doubled: some 50 times are the whole range of
-  // numbers that a step can need.
-  constexpr int most_additions = 60;
-  const auto definite = [&] {
-    return self.factors.info() == Eigen::Success && self.factors.vectorD().minCoeff() > 0.0;
-  };
-  for (int i = 0; make_definite && i < most_additions && !definite(); ++i) {
-    for (auto mass = self.triplets.begin() + first_mass; mass != self.triplets.end(); ++mass) {
-      *mass = {mass->row(), mass->col(), 2.0 * mass->value()};
-    }
-    self.matrix.setFromTriplets(self.triplets.begin(), self.triplets.end());
-    self.factors.factorize(self.matrix);
-  }
+  if (make_definite) self.make_definite(first_mass);
   if (self.factors.info() != Eigen::Success) return Outcome::singular;
   self.rows = 0;
   if (joints != nullptr && !self.surround(*joints)) return Outcome::singular;

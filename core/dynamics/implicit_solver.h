@@ -31,7 +31,7 @@ public:
     const JointConstraints& held;
     const JointConstraints& pushing;
   };
-  /// What came of factor().
+  /// Result of factor().
   enum class Outcome { definite, indefinite, singular };
 
   /// Linearises the loads at a state and factors. The position group of `evaluation` must be up to date. A

@@ -16,7 +16,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Gaps and velocities this small against the coordinates and velocities are rounding of a few terms.
 constexpr double rounding = 16.0 * epsilon;
 
-// What may be left where steps shrink no more: rounding of a poor matrix.
+// Gaps that may be left where steps shrink no more: rounding of a poor matrix.
 constexpr double accepted = 1e-11;
 
 // Newton's method from a start that is roughly right; more steps than this do not come to an end.
@@ -121,28 +121,29 @@ struct ClosureWork {
   std::vector<double> change, moved;
 };
 
-void close_component(const Assembly& assembly, Index component, ClosureWork& work, State& state,
-                     JointClosure& closure) {
+/// Joints of a component with the bodies that keep their places fixed.
+JointConstraints constraints_of(const Assembly& assembly, Index component) {
   JointConstraints joints(assembly, component);
-  if (joints.empty()) return;
-  const Component& range = assembly.components()[component];
+  if (joints.empty()) return joints;
   const Layout& layout = *assembly.layout();
-  for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
+  const Range bodies = assembly.components()[component].bodies;
+  for (Index body = bodies.begin; body < bodies.end; ++body) {
     const BodySlot slot = layout.bodies()[body];
     if (assembly.system().keeps_place(layout.id(body))) joints.fix({slot.v, slot.v + slot.v_size});
   }
-  Evaluation& evaluation = work.evaluation;
-  const std::vector<double>& lengths = work.lengths;
-  const auto locate = [&] {
-    evaluate_positions(assembly, component, state.view(), evaluation);
-    joints.update_and_factor({state.view(), evaluation.rotation.data()});
-  };
+  return joints;
+}
+
+/// Closes the gaps by Newton's method. Throws ModelError.
+void close_gaps(const Assembly& assembly, Index component, JointConstraints& joints, ClosureWork& work,
+                State& state) {
+  const Component& range = assembly.components()[component];
   std::vector<double> off(joints.size());
-  const std::vector<double>& start = work.start;
   std::vector<double>&change = work.change, &moved = work.moved;
   double best = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
-    locate();
+    evaluate_positions(assembly, component, state.view(), work.evaluation);
+    joints.update_and_factor({state.view(), work.evaluation.rotation.data()});
     for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gap(i);
     const std::size_t worst = worst_row(off);
     const double left = std::abs(off[worst]), size = largest(state.q, range.q, 1.0);
@@ -160,7 +161,36 @@ void close_component(const Assembly& assembly, Index component, ClosureWork& wor
     });
     std::copy(moved.begin() + range.q.begin, moved.begin() + range.q.end, state.q.begin() + range.q.begin);
   }
+}
+
+/// Brings the velocities onto the joints. Throws ModelError.
+void close_velocities(const Assembly& assembly, Index component, JointConstraints& joints, State& state) {
+  const Component& range = assembly.components()[component];
+  std::vector<double> off(joints.size());
+  const auto find_off = [&] { joints.residuals(JointLevel::velocity, state.v.data(), off.data()); };
+  double speed = largest(state.v, range.v, 0.0);
+  for (std::size_t i = 0; i < off.size(); ++i) speed = std::max(speed, std::abs(joints.rate(i)));
+  find_off();
+  if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
+  joints.project(JointLevel::velocity, state.v.data());
+  joints.project(JointLevel::velocity, state.v.data());  // the rounding left
+  find_off();
+  const std::size_t worst = worst_row(off);
+  const double left = off[worst];
+  if (!(std::abs(left) <= 1e-9 * std::max(speed, 1.0))) {
+    refuse(assembly, joints, worst, left, "cannot be kept closed", "m/s or rad/s");
+  }
+}
+
+void close_component(const Assembly& assembly, Index component, ClosureWork& work, State& state,
+                     JointClosure& closure) {
+  JointConstraints joints = constraints_of(assembly, component);
+  if (joints.empty()) return;
+  close_gaps(assembly, component, joints, work, state);
   demand_unique_pressure(assembly, component, joints);
+  const Component& range = assembly.components()[component];
+  const Layout& layout = *assembly.layout();
+  const std::vector<double>&lengths = work.lengths, &start = work.start, &before = work.before;
   // Displacements of all bodies: coordinates of the plane, and of particles, are their own displacements.
   for (Index body = range.bodies.begin; body < range.bodies.end; ++body) {
     const BodySlot slot = layout.bodies()[body];
@@ -169,21 +199,7 @@ void close_component(const Assembly& assembly, Index component, ClosureWork& wor
           std::max(closure.shift, std::abs(state.q[slot.q + i] - start[slot.q + i]) * lengths[slot.v + i]);
     }
   }
-
-  const auto find_off = [&] { joints.residuals(JointLevel::velocity, state.v.data(), off.data()); };
-  double speed = largest(state.v, range.v, 0.0);
-  for (std::size_t i = 0; i < off.size(); ++i) speed = std::max(speed, std::abs(joints.rate(i)));
-  find_off();
-  if (std::abs(off[worst_row(off)]) <= rounding * speed) return;
-  const std::vector<double>& before = work.before;
-  joints.project(JointLevel::velocity, state.v.data());
-  joints.project(JointLevel::velocity, state.v.data());  // what rounding left
-  find_off();
-  const std::size_t worst = worst_row(off);
-  const double left = off[worst];
-  if (!(std::abs(left) <= 1e-9 * std::max(speed, 1.0))) {
-    refuse(assembly, joints, worst, left, "cannot be kept closed", "m/s or rad/s");
-  }
+  close_velocities(assembly, component, joints, state);
   for (Index i = range.v.begin; i < range.v.end; ++i) {
     closure.change = std::max(closure.change, std::abs(state.v[i] - before[i]) * lengths[i]);
   }

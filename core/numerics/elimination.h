@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What the elimination of a sparse matrix with a symmetric pattern is known by before its numbers are: an
+/// Elimination of a sparse matrix with a symmetric pattern before its numbers are known: an
 /// order with little fill, and the pattern of the triangle that comes out.
 
 #include <carom/core/export.h>

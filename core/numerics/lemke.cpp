@@ -35,33 +35,34 @@ double largest_magnitude(std::span<const double> v) {
 
 void Lemke::scale(const Lcp& problem) {
   n_ = static_cast<std::size_t>(problem.size);
-  m_ = problem.m;
-  q_ = problem.q;
-  row_scale_.assign(n_, 1.0);
-  column_scale_.assign(n_, 1.0);
+  scaled_.m = problem.m;
+  scaled_.q = problem.q;
+  scaled_.row_scale.assign(n_, 1.0);
+  scaled_.column_scale.assign(n_, 1.0);
   for (std::size_t i = 0; i < n_; ++i) {
-    row_scale_[i] = 1.0 / power_of_two_near(largest_magnitude(std::span(m_).subspan(i * n_, n_)));
-    for (std::size_t j = 0; j < n_; ++j) m_[i * n_ + j] *= row_scale_[i];
-    q_[i] *= row_scale_[i];
+    scaled_.row_scale[i] =
+        1.0 / power_of_two_near(largest_magnitude(std::span(scaled_.m).subspan(i * n_, n_)));
+    for (std::size_t j = 0; j < n_; ++j) scaled_.m[i * n_ + j] *= scaled_.row_scale[i];
+    scaled_.q[i] *= scaled_.row_scale[i];
   }
   for (std::size_t j = 0; j < n_; ++j) {
     double largest = 0.0;
-    for (std::size_t i = 0; i < n_; ++i) largest = std::max(largest, std::abs(m_[i * n_ + j]));
-    column_scale_[j] = 1.0 / power_of_two_near(largest);
-    for (std::size_t i = 0; i < n_; ++i) m_[i * n_ + j] *= column_scale_[j];
+    for (std::size_t i = 0; i < n_; ++i) largest = std::max(largest, std::abs(scaled_.m[i * n_ + j]));
+    scaled_.column_scale[j] = 1.0 / power_of_two_near(largest);
+    for (std::size_t i = 0; i < n_; ++i) scaled_.m[i * n_ + j] *= scaled_.column_scale[j];
   }
-  const double q_scale = power_of_two_near(largest_magnitude(q_));
-  for (double& value : q_) value /= q_scale;
-  covering_ = row_scale_;
+  const double q_scale = power_of_two_near(largest_magnitude(scaled_.q));
+  for (double& value : scaled_.q) value /= q_scale;
+  scaled_.covering = scaled_.row_scale;
 }
 
 void Lemke::start() {
   tableau_.resize(n_ * (n_ + 1));
   for (std::size_t i = 0; i < n_; ++i) {
-    for (std::size_t j = 0; j < n_; ++j) entry(i, j) = m_[i * n_ + j];
-    entry(i, n_) = covering_[i];
+    for (std::size_t j = 0; j < n_; ++j) entry(i, j) = scaled_.m[i * n_ + j];
+    entry(i, n_) = scaled_.covering[i];
   }
-  value_ = q_;
+  value_ = scaled_.q;
   basic_.resize(n_);
   nonbasic_.resize(n_ + 1);
   place_.resize(2 * n_ + 1);
@@ -117,7 +118,7 @@ std::size_t Lemke::first_row() const {
   std::size_t best = none;
   double least = 0.0;
   for (std::size_t i = 0; i < n_; ++i) {
-    const double ratio = value_[i] / covering_[i];
+    const double ratio = value_[i] / scaled_.covering[i];
     if (ratio < 0.0 && ratio <= least) {
       least = ratio;
       best = i;
@@ -154,8 +155,8 @@ void Lemke::rebuild_tableau() {
   const auto fill_column = [&](std::size_t variable, std::size_t stride, double* out) {
     for (std::size_t i = 0; i < n_; ++i) {
       out[i * stride] = variable < n_       ? (variable == i ? 1.0 : 0.0)
-                        : variable < 2 * n_ ? -m_[i * n_ + variable - n_]
-                                            : -covering_[i];
+                        : variable < 2 * n_ ? -scaled_.m[i * n_ + variable - n_]
+                                            : -scaled_.covering[i];
     }
   };
   system_.resize(n_ * n_);
@@ -164,7 +165,7 @@ void Lemke::rebuild_tableau() {
   for (std::size_t j = 0; j < n_; ++j) fill_column(basic_[j], n_, system_.data() + j);
   qr_.factor(system_, n_, n_, basis_rank_tolerance);
   if (qr_.rank() < n_) return;
-  qr_.solve(q_, value_);
+  qr_.solve(scaled_.q, value_);
   for (std::size_t j = 0; j <= n_; ++j) {
     fill_column(nonbasic_[j], 1, rhs_.data());
     qr_.solve(rhs_, unknown_);
@@ -204,7 +205,7 @@ void Lemke::read_solution(const Lcp& problem, std::span<double> z) {
   unknown_.resize(k);
   // Rows scaled by powers of two as in the tableau; columns are scaled by the factorisation.
   for (std::size_t i = 0; i < k; ++i) {
-    const double factor = row_scale_[support_[i]];
+    const double factor = scaled_.row_scale[support_[i]];
     for (std::size_t j = 0; j < k; ++j)
       system_[i * k + j] = factor * problem.m[support_[i] * n_ + support_[j]];
     rhs_[i] = -factor * problem.q[support_[i]];

@@ -57,9 +57,14 @@ private:
     return tableau_[row * (n_ + 1) + column];
   }
 
+  // The problem with rows and columns scaled by powers of two.
+  struct Scaled {
+    std::vector<double> m, q, covering;
+    std::vector<double> row_scale, column_scale;
+  };
+
   std::size_t n_ = 0;
-  std::vector<double> m_, q_, covering_;  // the scaled problem
-  std::vector<double> row_scale_, column_scale_;
+  Scaled scaled_;
   std::vector<double> tableau_, value_;
   std::vector<std::size_t> basic_, nonbasic_;  // variable in each row, in each column
   std::vector<std::size_t> place_;             // row of a basic variable, n + column of a nonbasic one

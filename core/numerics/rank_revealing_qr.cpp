@@ -49,17 +49,7 @@ void RankRevealingQr::factor(std::span<const double> a, std::size_t rows, std::s
   rank_ = 0;
   double first_pivot = 0.0;
   for (std::size_t k = 0; k < std::min(rows, columns); ++k) {
-    // Remaining column norms are recomputed, not updated: the systems are small, the rank matters.
-    std::size_t best = k;
-    double best_norm = -1.0;
-    for (std::size_t j = k; j < columns; ++j) {
-      double sum = 0.0;
-      for (std::size_t i = k; i < rows; ++i) sum += r_[j * rows + i] * r_[j * rows + i];
-      if (sum > best_norm) {
-        best_norm = sum;
-        best = j;
-      }
-    }
+    const auto [best, best_norm] = longest_column(k);
     const double length = std::sqrt(std::max(best_norm, 0.0));
     if (k == 0) first_pivot = length;
     if (!(length > tolerance * first_pivot)) break;
@@ -69,22 +59,40 @@ void RankRevealingQr::factor(std::span<const double> a, std::size_t rows, std::s
                        r_.begin() + static_cast<std::ptrdiff_t>(best * rows));
       std::swap(column_[k], column_[best]);
     }
-    // Reflector I - tau v v^T with v_k = 1, the rest of v stored below the diagonal.
-    double* pivot = r_.data() + k * rows;
-    const double alpha = pivot[k] > 0.0 ? -length : length;
-    const double head = pivot[k] - alpha;
-    tau_[k] = -head / alpha;
-    for (std::size_t i = k + 1; i < rows; ++i) pivot[i] /= head;
-    pivot[k] = alpha;
-    for (std::size_t j = k + 1; j < columns; ++j) {
-      double* other = r_.data() + j * rows;
-      double dot = other[k];
-      for (std::size_t i = k + 1; i < rows; ++i) dot += pivot[i] * other[i];
-      dot *= tau_[k];
-      other[k] -= dot;
-      for (std::size_t i = k + 1; i < rows; ++i) other[i] -= dot * pivot[i];
-    }
+    reflect(k, length);
     ++rank_;
+  }
+}
+
+std::pair<std::size_t, double> RankRevealingQr::longest_column(std::size_t k) const {
+  // Remaining column norms are recomputed, not updated: the systems are small, the rank matters.
+  std::size_t best = k;
+  double best_norm = -1.0;
+  for (std::size_t j = k; j < columns_; ++j) {
+    double sum = 0.0;
+    for (std::size_t i = k; i < rows_; ++i) sum += r_[j * rows_ + i] * r_[j * rows_ + i];
+    if (sum > best_norm) {
+      best_norm = sum;
+      best = j;
+    }
+  }
+  return {best, best_norm};
+}
+
+void RankRevealingQr::reflect(std::size_t k, double length) {
+  double* pivot = r_.data() + k * rows_;
+  const double alpha = pivot[k] > 0.0 ? -length : length;
+  const double head = pivot[k] - alpha;
+  tau_[k] = -head / alpha;
+  for (std::size_t i = k + 1; i < rows_; ++i) pivot[i] /= head;
+  pivot[k] = alpha;
+  for (std::size_t j = k + 1; j < columns_; ++j) {
+    double* other = r_.data() + j * rows_;
+    double dot = other[k];
+    for (std::size_t i = k + 1; i < rows_; ++i) dot += pivot[i] * other[i];
+    dot *= tau_[k];
+    other[k] -= dot;
+    for (std::size_t i = k + 1; i < rows_; ++i) other[i] -= dot * pivot[i];
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -35,6 +36,10 @@ public:
   void null_vector(std::size_t index, std::span<double> x);
 
 private:
+  // Longest of the columns left, and the square of its length.
+  [[nodiscard]] std::pair<std::size_t, double> longest_column(std::size_t k) const;
+  // Reflector I - tau v v^T with v_k = 1, the rest of v stored below the diagonal.
+  void reflect(std::size_t k, double length);
   void solve_once(std::span<double> x);
   void back_substitute(std::span<double> x);
 

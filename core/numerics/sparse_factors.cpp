@@ -97,6 +97,36 @@ void SparseFactors::with_rows(F&& f) const {
   }
 }
 
+namespace {
+
+/// Factorises a block on the diagonal, from which the blocks before it have been subtracted in `d`. \param
+/// own its numbers of L \param relative pivots against `diagonal`
+template <Index Rows>
+void factor_diagonal(Index rows, const double* diagonal, double least_pivot, double* d, double* own,
+                     double* pivots, double* relative) {
+  const Index n = Rows == 0 ? rows : Rows;
+  const double* const first_own = own;
+  for (Index r = 0; r < n; ++r) {
+    // Of the row: L times D behind the diagonal's block, its own numbers of L there.
+    double pivot = d[r * n + r];
+    const double* before = first_own;
+    for (Index c = 0; c < r; ++c) {
+      double product = d[r * n + c];
+      for (Index m = 0; m < c; ++m) product -= *before++ * d[r * n + m];
+      d[r * n + c] = product;
+      own[c] = product / pivots[c];
+      pivot -= own[c] * product;
+    }
+    own += r;
+    const double whole = diagonal[r * n + r];
+    relative[r] = whole > 0.0 ? pivot / whole : 0.0;
+    // With an infinite pivot nothing comes from the row and nothing goes to it.
+    pivots[r] = pivot > least_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
+  }
+}
+
+}  // namespace
+
 /// Row of blocks by row of blocks. \tparam Rows of all blocks; 0 where they differ
 template <Index Rows>
 void SparseFactors::factor_blocks(double least_pivot) {
@@ -151,25 +181,8 @@ void SparseFactors::factor_blocks(double least_pivot) {
         }
       }
     }
-    double* own = own_.data() + at.own_begin[i];
-    double* const pivots = pivot_.data() + first;
-    for (Index r = 0; r < n; ++r) {
-      // Of the row: L times D behind the diagonal's block, its own numbers of L there.
-      double pivot = d[r * n + r];
-      const double* before = own_.data() + at.own_begin[i];
-      for (Index c = 0; c < r; ++c) {
-        double product = d[r * n + c];
-        for (Index m = 0; m < c; ++m) product -= *before++ * d[r * n + m];
-        d[r * n + c] = product;
-        own[c] = product / pivots[c];
-        pivot -= own[c] * product;
-      }
-      own += r;
-      const double whole = diagonal[r * n + r];
-      relative_pivot_[at.given_row[i] + r] = whole > 0.0 ? pivot / whole : 0.0;
-      // With an infinite pivot nothing comes from the row and nothing goes to it.
-      pivots[r] = pivot > least_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
-    }
+    factor_diagonal<Rows>(n, diagonal, least_pivot, d.data(), own_.data() + at.own_begin[i],
+                          pivot_.data() + first, relative_pivot_.data() + at.given_row[i]);
   }
 }
 
