@@ -1,18 +1,14 @@
-#include <carom/core/assembly.h>
-#include <carom/core/dynamics/force_directions.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/integrators/call_guard.h>
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
-#include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/run/companion.h>
-#include <carom/integrators/run/time_resolution.h>
 #include <carom/integrators/run_news.h>
+#include <carom/integrators/running_model.h>
 #include <carom/integrators/simulation.h>
-#include <carom/integrators/time_stepping/step_controller.h>
-#include <carom/integrators/time_stepping/time_stepper.h>
+#include <carom/integrators/step_grid.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,75 +21,23 @@
 
 namespace carom {
 
-namespace {
-
-/// An end of a step this close to a wanted time, relative to the step, is that time.
-constexpr double snap = 1e-9;
-
-StoredEnergies stored_energies(const Assembly& assembly, const State& state) {
-  Evaluation evaluation = make_evaluation(assembly);
-  return stored_energies(assembly, state.view(), evaluation);
-}
-
-}  // namespace
-
 struct Simulation::Impl {
-  // The machines of the mode, over one assembly.
-  struct Machines {
-    Machines(const Assembly& assembly, const Mode& mode, const StopRequest& stop) {
-      if (const auto* options = std::get_if<TimeStepping>(&mode)) {
-        stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
-        controller = std::make_unique<StepController>(assembly, *options);
-      } else {
-        driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
-      }
-    }
-    [[nodiscard]] const Detector& detector() const {
-      return stepper ? stepper->detector() : driver->detector();
-    }
-
-    std::unique_ptr<TimeStepper> stepper;  // null in the event-driven mode
-    std::unique_ptr<StepController> controller;
-    std::unique_ptr<EventDriver> driver;  // null in time stepping
-  };
-  // Everything made from the model, so that an edit can replace it as a whole.
-  struct Model {
-    Model(System system, const Mode& mode, const StopRequest& stop)
-        : assembly(std::move(system)), machines(assembly, mode, stop) {}
-    /// Brings a state onto the joints, and refuses one that a run cannot start from. The largest
-    /// displacement.
-    [[nodiscard]] double prepare(State& start) const {
-      const double shift = close_joints(assembly, start).shift;
-      demand_directions(assembly, start);
-      if (machines.driver) machines.driver->demand_start(start);
-      return shift;
-    }
-
-    Assembly assembly;
-    Machines machines;
-  };
-
   Impl(System system, Mode chosen)
-      : mode(std::move(chosen)), model(std::make_unique<Model>(std::move(system), mode, stop)) {
+      : mode(std::move(chosen)), model(std::make_unique<RunningModel>(std::move(system), mode, stop)) {
     state = model->assembly.initial_state();
     report.projected = model->prepare(state);
     report.findings = model->assembly.system().check();
     forget_history();
-    companion.ledger.open(stored_energies(model->assembly, state));
+    companion.ledger.open(model->stored_energies(state));
   }
 
-  [[nodiscard]] double next_due() const {
-    double next = std::numeric_limits<double>::infinity();
-    for (const Rhythm& rhythm : companion.rhythms) next = std::min(next, rhythm.due());
-    return next;
-  }
   void book_intervention() {
-    const StoredEnergies stored = stored_energies(model->assembly, state);
+    const StoredEnergies stored = model->stored_energies(state);
     EnergyFlows flows;
     flows[EnergyFlow::intervention] = stored.total() - companion.ledger.total();
     companion.ledger.book(flows, stored);
   }
-  /// What a run carries from step to step is void after the state was changed from outside.
+  /// Memory of a run from step to step is void after the state was changed from outside.
   void forget_history() {
     companion.modes.clear();
     companion.rounding.assign(state.v.size(), 0.0);
@@ -102,42 +46,18 @@ struct Simulation::Impl {
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();
   }
-  /// Times nearer to each other than this are one [s].
-  [[nodiscard]] double closeness() const {
-    if (const auto* options = std::get_if<TimeStepping>(&mode)) return snap * options->step;
-    // Components can go to any time; only what rounding makes of k intervals is not to be told apart.
-    return 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(state.time));
-  }
-  /// Distance of the times of a grid on which step() stops [s].
-  [[nodiscard]] double grid() const {
-    const auto* options = std::get_if<TimeStepping>(&mode);
-    return options ? options->step : std::get<EventDriven>(mode).interval;
-  }
-  void restart_grid() {
-    companion.grid_start = state.time;
-    companion.grid_steps = 0;
-  }
-  /// A checkpoint may come from a run with another step or interval.
-  void match_grid() {
-    const auto* const stepping = std::get_if<TimeStepping>(&mode);
-    if (stepping != nullptr && stepping->control) return;  // goes along no grid
-    const double present = companion.grid_start + static_cast<double>(companion.grid_steps) * grid();
-    if (!(std::abs(present - state.time) <= closeness())) restart_grid();
-  }
-  void demand_times(const char* call, double time) const;
+  /// The grid of times of the mode.
+  [[nodiscard]] StepGrid grid() const { return StepGrid(mode); }
   void step(Simulation& simulation, double limit);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
   void rethrow(const std::vector<std::exception_ptr>& thrown);
   void advance(double limit);
   void write_to_log(std::size_t told);
-  [[nodiscard]] std::unique_ptr<Model> assembled(System system) const {
-    return std::make_unique<Model>(std::move(system), mode, stop);
-  }
 
   CallGuard guard;
   StopRequest stop;
   Mode mode;
-  std::unique_ptr<Model> model;
+  std::unique_ptr<RunningModel> model;
   State state;
   Companion companion;
   StepReport report;
@@ -149,36 +69,16 @@ struct Simulation::Impl {
   bool progress = false;
 };
 
-/// Demands that the steps of the mode and all periodic events move times up to this one.
-void Simulation::Impl::demand_times(const char* call, double time) const {
-  const double shortest = shortest_step_at(time);
-  const auto refuse = [&](const std::string& what, double length, double allowed) {
-    throw ModelError(std::string(call) + ": " + what + " is " + to_text(length) + " s; allowed: at least " +
-                     to_text(allowed) + " s, or it is lost in the rounding of times around " + to_text(time) +
-                     " s");
-  };
-  const auto* const stepping = std::get_if<TimeStepping>(&mode);
-  const bool controlled = stepping != nullptr && stepping->control;
-  const double length = controlled ? stepping->control->largest : grid();
-  if (length < shortest) {
-    refuse(controlled ? "control.largest" : stepping != nullptr ? "step" : "interval", length, shortest);
-  }
-  const double apart = std::max(shortest, closeness());
-  for (const Rhythm& rhythm : companion.rhythms) {
-    if (rhythm.interval < apart) refuse("interval of a periodic event (every)", rhythm.interval, apart);
-  }
-}
-
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
 void Simulation::Impl::step(Simulation& simulation, double limit) {
-  const double close = closeness();
+  const double close = grid().closeness(state.time);
   if (limit - state.time <= close) {
     state.time = limit;
     return;
   }
   // Left over where an observer saved the state: actions come after observers.
   std::vector<std::exception_ptr> thrown;
-  if (next_due() <= state.time + close) {
+  if (next_due(companion) <= state.time + close) {
     call_actions(simulation, thrown);
     rethrow(thrown);
   }
@@ -186,7 +86,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
   {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
-    advance(std::min(limit, next_due()));
+    advance(std::min(limit, next_due(companion)));
   }
   try {
     write_to_log(told);
@@ -200,7 +100,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
 
 void Simulation::Impl::call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown) {
   if (companion.rhythms.empty()) return;
-  const double close = closeness();
+  const double close = grid().closeness(state.time);
   callbacks.call_actions(simulation, companion.rhythms, guard, thrown,
                          [&](const Rhythm& rhythm) { return rhythm.due() <= state.time + close; });
 }
@@ -214,7 +114,7 @@ void Simulation::Impl::rethrow(const std::vector<std::exception_ptr>& thrown) {
 }
 
 void Simulation::Impl::advance(double limit) {
-  Machines& machines = model->machines;
+  ModeMachines& machines = model->machines;
   if (machines.controller && std::get<TimeStepping>(mode).control) {
     machines.controller->step(*machines.stepper, state, companion, limit, report);
     return;
@@ -226,12 +126,12 @@ void Simulation::Impl::advance(double limit) {
       machines.driver->advance(state, companion, end, report, events);
     }
   };
-  const double full = grid(), close = closeness();
-  const double grid_end = companion.grid_start + static_cast<double>(companion.grid_steps + 1) * full;
+  const double full = grid().length(), close = grid().closeness(state.time);
+  const double grid_end = grid().next(companion);
   if (limit < grid_end - close) {
     // Cut short: the grid starts anew from there.
     advance_to(limit - state.time, limit);
-    restart_grid();
+    restart_grid(companion, state.time);
   } else {
     const bool snapped = limit <= grid_end + close;
     advance_to(full, snapped ? limit : grid_end);
@@ -260,7 +160,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const StepReport& Simulation::step() {
   impl_->guard.demand("step", CallGuard::Need::outside);
-  impl_->demand_times("step", impl_->state.time);
+  impl_->grid().demand_times("step", impl_->state.time, impl_->companion, impl_->state.time);
   impl_->step(*this, std::numeric_limits<double>::infinity());
   return impl_->report;
 }
@@ -273,7 +173,10 @@ void Simulation::run_until(double time) {
   if (!std::isfinite(time)) refuse("a finite time");
   if (time < self.state.time) refuse("not before the present, " + to_text(self.state.time) + " s");
   self.guard.demand("run_until", CallGuard::Need::outside);
-  if (time > self.state.time) self.demand_times("run_until", std::max(time, std::abs(self.state.time)));
+  if (time > self.state.time) {
+    self.grid().demand_times("run_until", std::max(time, std::abs(self.state.time)), self.companion,
+                             self.state.time);
+  }
 
   std::optional<ProgressBar> bar;
   if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
@@ -293,15 +196,7 @@ CallbackId Simulation::observe(Observer observer) {
 CallbackId Simulation::every(double interval, Action action) {
   Impl& self = *impl_;
   self.guard.demand("every", CallGuard::Need::no_step);
-  const double shortest = std::max(shortest_step_at(self.state.time), self.closeness());
-  if (!(std::isfinite(interval) && interval > 0.0)) {
-    throw ModelError("every: interval is " + to_text(interval) + " s; allowed: finite and > 0");
-  }
-  if (interval < shortest) {
-    throw ModelError("every: interval is " + to_text(interval) + " s; allowed: at least " +
-                     to_text(shortest) + " s, the distance of times that are told apart at " +
-                     to_text(self.state.time) + " s");
-  }
+  self.grid().demand_interval(interval, self.state.time);
   if (!action) throw ModelError("every: action is empty; allowed: a function");
   self.companion.rhythms.push_back({self.state.time, interval, 0});
   return self.callbacks.add_action(std::move(action));
@@ -335,23 +230,9 @@ void Simulation::edit(const std::function<void(System&)>& change) {
         "edit: the system was replaced by another one; allowed: changes of the one that is given");
   }
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
-  std::unique_ptr<Impl::Model> edited = self.assembled(std::move(system));
+  auto edited = std::make_unique<RunningModel>(std::move(system), self.mode, self.stop);
 
-  State state = edited->assembly.initial_state();
-  state.time = self.state.time;
-  const Layout& from = *self.state.layout();
-  for (const InternalSlot& slot : state.layout()->internals()) {
-    const ElementId id{slot.serial, edited->assembly.system().token()};
-    if (!from.contains(id)) continue;
-    std::copy_n(self.state.z.begin() + from.internal(id).first, slot.size, state.z.begin() + slot.first);
-  }
-  for (const BodySlot& slot : state.layout()->bodies()) {
-    const BodyId id{slot.serial, edited->assembly.system().token()};
-    if (!from.contains(id)) continue;
-    const BodySlot& old = from.slot(id);
-    std::copy_n(self.state.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
-    std::copy_n(self.state.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
-  }
+  State state = edited->continued(self.state);
   const double projected = edited->prepare(state);
   std::vector<ModelFinding> findings = edited->assembly.system().check();
   const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
@@ -360,7 +241,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   self.report.findings = std::move(findings);
   self.model = std::move(edited);
   self.state = std::move(state);
-  // What stuck goes on sticking: velocities have not changed.
+  // Contacts that stuck go on sticking: velocities have not changed.
   auto modes = std::move(self.companion.modes);
   self.forget_history();
   self.companion.modes = std::move(modes);
@@ -378,15 +259,11 @@ void Simulation::set_state(const State& state) {
   State closed = state;
   self.report.projected = self.model->prepare(closed);
   const bool moved_in_time = state.time != self.state.time;
-  if (moved_in_time) {
-    for (Rhythm& rhythm : self.companion.rhythms) {
-      // Periodic events keep their rhythm: those that the jump skips are not made up for.
-      const double passed = std::floor((state.time - rhythm.start) / rhythm.interval);
-      rhythm.fired = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
-    }
-  }
   self.state = std::move(closed);
-  if (moved_in_time) self.restart_grid();
+  if (moved_in_time) {
+    skip_events(self.companion, self.state.time);
+    restart_grid(self.companion, self.state.time);
+  }
   self.forget_history();
   self.book_intervention();
 }
@@ -396,7 +273,7 @@ void Simulation::switch_to(Mode mode) {
   self.guard.demand("switch_to", CallGuard::Need::no_reader);
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   const Assembly& assembly = self.model->assembly;
-  Impl::Machines machines(assembly, mode, self.stop);
+  ModeMachines machines(assembly, mode, self.stop);
   if (machines.driver && self.model->machines.stepper) {
     prepare_for_events(assembly, machines.driver->detector(), self.state, self.companion, self.report,
                        self.events);
@@ -413,7 +290,7 @@ void Simulation::switch_to(Mode mode) {
   self.model->machines = std::move(machines);
   self.companion.next_step = 0.0;
   self.companion.iterations.clear();
-  self.restart_grid();
+  restart_grid(self.companion, self.state.time);
 }
 
 Mobility Simulation::mobility() const {
@@ -425,30 +302,7 @@ JointReaction Simulation::reaction(JointId joint) const {
   Impl& self = *impl_;
   self.guard.demand("reaction", CallGuard::Need::no_step);
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
-  const Assembly& assembly = self.model->assembly;
-  const System& system = assembly.system();
-  if (!system.contains(joint)) {
-    throw ModelError("reaction of a joint: joint is " + refused_name(system, joint) +
-                     "; allowed: a joint of this model");
-  }
-  const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
-  if (kind.rows() == 0 && !kind.has_dry_friction()) {
-    throw ModelError("reaction of a joint: " + system.name(joint) +
-                     " only limits; allowed: a joint that binds (impacts of a stop are events)");
-  }
-  if (self.model->machines.driver) {
-    return self.model->machines.driver->reaction(self.state, self.companion, joint);
-  }
-  const auto told = std::find_if(self.report.joint_impulses.begin(), self.report.joint_impulses.end(),
-                                 [&](const JointImpulse& entry) { return entry.joint == joint; });
-  if (told == self.report.joint_impulses.end()) {
-    EventDriver driver(assembly, EventDriven{});
-    return driver.reaction(self.state, Companion{}, joint);
-  }
-  JointReaction mean = told->impulse;
-  for (double& force : mean.force) force /= self.report.step;
-  mean.moment /= self.report.step;
-  return mean;
+  return self.model->reaction(self.state, self.companion, self.report, joint);
 }
 
 const System& Simulation::system() const { return impl_->model->assembly.system(); }
@@ -482,7 +336,7 @@ void Simulation::load(const std::string& path) {
   impl_->guard.demand("load", CallGuard::Need::no_reader);
   load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
-  impl_->match_grid();
+  impl_->grid().match(impl_->companion, impl_->state.time);
 }
 
 }  // namespace carom

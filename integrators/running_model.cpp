@@ -1,0 +1,78 @@
+#include <carom/core/dynamics/force_directions.h>
+#include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/part_check.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/running_model.h>
+
+#include <algorithm>
+
+namespace carom {
+
+ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& stop) {
+  if (const auto* options = std::get_if<TimeStepping>(&mode)) {
+    stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
+    controller = std::make_unique<StepController>(assembly, *options);
+  } else {
+    driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
+  }
+}
+
+double RunningModel::prepare(State& start) const {
+  const double shift = close_joints(assembly, start).shift;
+  demand_directions(assembly, start);
+  if (machines.driver) machines.driver->demand_start(start);
+  return shift;
+}
+
+State RunningModel::continued(const State& other) const {
+  State state = assembly.initial_state();
+  state.time = other.time;
+  const Layout& from = *other.layout();
+  for (const InternalSlot& slot : state.layout()->internals()) {
+    const ElementId id{slot.serial, assembly.system().token()};
+    if (!from.contains(id)) continue;
+    std::copy_n(other.z.begin() + from.internal(id).first, slot.size, state.z.begin() + slot.first);
+  }
+  for (const BodySlot& slot : state.layout()->bodies()) {
+    const BodyId id{slot.serial, assembly.system().token()};
+    if (!from.contains(id)) continue;
+    const BodySlot& old = from.slot(id);
+    std::copy_n(other.q.begin() + old.q, slot.q_size, state.q.begin() + slot.q);
+    std::copy_n(other.v.begin() + old.v, slot.v_size, state.v.begin() + slot.v);
+  }
+  return state;
+}
+
+StoredEnergies RunningModel::stored_energies(const State& state) const {
+  Evaluation evaluation = make_evaluation(assembly);
+  return carom::stored_energies(assembly, state.view(), evaluation);
+}
+
+JointReaction RunningModel::reaction(const State& state, const Companion& companion, const StepReport& report,
+                                     JointId joint) const {
+  const System& system = assembly.system();
+  if (!system.contains(joint)) {
+    throw ModelError("reaction of a joint: joint is " + refused_name(system, joint) +
+                     "; allowed: a joint of this model");
+  }
+  const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
+  if (kind.rows() == 0 && !kind.has_dry_friction()) {
+    throw ModelError("reaction of a joint: " + system.name(joint) +
+                     " only limits; allowed: a joint that binds (impacts of a stop are events)");
+  }
+  if (machines.driver) {
+    return machines.driver->reaction(state, companion, joint);
+  }
+  const auto recorded = std::find_if(report.joint_impulses.begin(), report.joint_impulses.end(),
+                                     [&](const JointImpulse& entry) { return entry.joint == joint; });
+  if (recorded == report.joint_impulses.end()) {
+    EventDriver driver(assembly, EventDriven{});
+    return driver.reaction(state, Companion{}, joint);
+  }
+  JointReaction mean = recorded->impulse;
+  for (double& force : mean.force) force /= report.step;
+  mean.moment /= report.step;
+  return mean;
+}
+
+}  // namespace carom

@@ -1,0 +1,51 @@
+#pragma once
+
+/// \file
+/// A model assembled for a run, with the machines of its mode; an edit replaces it as a whole.
+
+#include <carom/core/assembly.h>
+#include <carom/integrators/event_driven/event_driver.h>
+#include <carom/integrators/run/stop_request.h>
+#include <carom/integrators/simulation.h>
+#include <carom/integrators/time_stepping/step_controller.h>
+#include <carom/integrators/time_stepping/time_stepper.h>
+
+#include <memory>
+#include <utility>
+
+namespace carom {
+
+/// Machines of a mode, over one assembly.
+struct ModeMachines {
+  ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& stop);
+  /// Detector of contacts.
+  [[nodiscard]] const Detector& detector() const {
+    return stepper ? stepper->detector() : driver->detector();
+  }
+
+  std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
+  std::unique_ptr<StepController> controller;  ///< likewise
+  std::unique_ptr<EventDriver> driver;         ///< null in time stepping
+};
+
+/// Assembly and machines.
+struct RunningModel {
+  RunningModel(System system, const Mode& mode, const StopRequest& stop)
+      : assembly(std::move(system)), machines(assembly, mode, stop) {}
+  /// Brings a state onto the joints, and refuses one that a run cannot start from. Returns the largest
+  /// displacement.
+  [[nodiscard]] double prepare(State& start) const;
+  /// A state of this model: bodies and elements of another one go on by identity, new ones start as
+  /// described.
+  [[nodiscard]] State continued(const State& other) const;
+  /// Energies that are stored in a state.
+  [[nodiscard]] StoredEnergies stored_energies(const State& state) const;
+  /// Reaction of a joint (Simulation::reaction). Throws ModelError.
+  [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion,
+                                       const StepReport& report, JointId joint) const;
+
+  Assembly assembly;
+  ModeMachines machines;
+};
+
+}  // namespace carom
