@@ -3,8 +3,8 @@
 #include <carom/core/part_check.h>
 #include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
+#include <carom/integrators/checkpoint_bytes.h>
 
-#include <bit>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -15,81 +15,6 @@ namespace carom {
 namespace {
 
 constexpr std::string_view mark = "carom checkpoint 6\n";
-
-/// Numbers as bytes, lowest first, whatever the machine.
-class Writer {
-public:
-  void add(std::uint64_t number) {
-    for (unsigned shift = 0; shift < 64; shift += 8)
-      bytes_.push_back(static_cast<char>((number >> shift) & 0xffU));
-  }
-  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
-  void add(int number) { add(std::int64_t{number}); }
-  template <class Real>
-  void add(const std::vector<Real>& numbers) {
-    add(std::uint64_t{numbers.size()});
-    for (const Real number : numbers) add(static_cast<double>(number));
-  }
-  [[nodiscard]] const std::vector<char>& bytes() const { return bytes_; }
-
-private:
-  std::vector<char> bytes_;
-};
-
-class Reader {
-public:
-  Reader(std::string path, std::string_view bytes) : path_(std::move(path)), bytes_(bytes) {}
-
-  void get(std::uint64_t& number) {
-    if (bytes_.size() < 8) damaged("ends too early");
-    number = 0;
-    for (unsigned i = 0; i < 8; ++i)
-      number |= std::uint64_t{static_cast<unsigned char>(bytes_[i])} << (8 * i);
-    bytes_.remove_prefix(8);
-  }
-  void get(double& number) {
-    std::uint64_t bits = 0;
-    get(bits);
-    number = std::bit_cast<double>(bits);
-  }
-  void get(std::int64_t& number) {
-    std::uint64_t bits = 0;
-    get(bits);
-    number = static_cast<std::int64_t>(bits);
-  }
-  void get(int& number) {
-    std::int64_t wide = 0;
-    get(wide);
-    number = static_cast<int>(wide);
-  }
-  /// A count of things of at least 8 bytes each, which must fit into what is left.
-  std::size_t count() {
-    std::uint64_t number = 0;
-    get(number);
-    if (number > bytes_.size() / 8) damaged("a count does not fit");
-    return static_cast<std::size_t>(number);
-  }
-  template <class Real>
-  void get(std::vector<Real>& numbers) {
-    numbers.resize(count());
-    for (Real& kept : numbers) {
-      double number = 0.0;
-      get(number);
-      kept = static_cast<Real>(number);
-    }
-  }
-  void finish() const {
-    if (!bytes_.empty()) damaged("goes on after its end");
-  }
-  [[noreturn]] void damaged(const std::string& how) const {
-    throw FileError("checkpoint '" + path_ + "': is damaged: " + how);
-  }
-
-private:
-  std::string path_;
-  std::string_view bytes_;
-};
 
 /// The numbers of Statistics, in the order in which they are saved.
 template <class S, class F>
@@ -134,13 +59,13 @@ void for_contact_statistics(S& s, F&& f) {
   f(s.worst_residual);
 }
 
-void add(Writer& out, const FeatureKey& key) {
+void add(CheckpointWriter& out, const FeatureKey& key) {
   out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
   out.add(std::uint64_t{key.serial});
   out.add(std::uint64_t{key.feature});
 }
 
-void get(Reader& in, FeatureKey& key) {
+void get(CheckpointReader& in, FeatureKey& key) {
   std::uint64_t owner = 0, serial = 0, feature = 0;
   in.get(owner);
   in.get(serial);
@@ -159,7 +84,7 @@ std::uint64_t checksum(std::string_view bytes) {
 
 void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const State& state,
                      const Companion& companion) {
-  Writer out;
+  CheckpointWriter out;
   out.add(fingerprint);
   out.add(state.time);
   out.add(state.q);
@@ -208,7 +133,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
     out.add(rhythm.fired);
   }
   const std::string_view body(out.bytes().data(), out.bytes().size());
-  Writer end;
+  CheckpointWriter end;
   end.add(checksum(body));
 
   std::string content(mark);
@@ -216,21 +141,110 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   write_file(path, content, "checkpoint");
 }
 
-void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
-  const std::string content = read_file(path, "checkpoint");
-  std::string_view text = content;
+namespace {
+
+void read_history(CheckpointReader& in, std::size_t velocities, LoadHistory& history) {
+  in.get(history.known);
+  if (history.known < 0 || history.known > LoadHistory::most)
+    in.damaged("its history of loads is of unknown length");
+  in.get(history.step);
+  for (int i = 0; i < LoadHistory::most; ++i) {
+    std::vector<float>& changes = history.changes[static_cast<std::size_t>(i)];
+    if (i < history.known) {
+      in.get(changes);
+      if (changes.size() != velocities) in.damaged("its sizes do not fit the model");
+    } else if (history.known > 0) {
+      changes.resize(velocities);
+    }
+  }
+  history.sweeps.resize(in.count());
+  for (int& sweeps : history.sweeps) in.get(sweeps);
+}
+
+void read_iterations(CheckpointReader& in, IterationMemory& iterations) {
+  const std::size_t remembered = in.count();
+  for (std::size_t i = 0; i < remembered; ++i) {
+    std::uint64_t component = 0, solved = 0;
+    IterationMemory::Entry entry;
+    in.get(component);
+    in.get(solved);
+    in.get(entry.steps);
+    entry.component = static_cast<Index>(component);
+    entry.solved = static_cast<Iteration>(solved);
+    if (component >= none || solved >= iteration_count || !iterations.append(entry)) {
+      in.damaged("an iteration is unknown");
+    }
+  }
+}
+
+void read_mean_loads(CheckpointReader& in, std::size_t velocities, PresentLoads& loads) {
+  std::uint64_t has_mean_loads = 0;
+  in.get(has_mean_loads);
+  if (has_mean_loads > 1) in.damaged("it is unknown whether it holds loads");
+  if (has_mean_loads == 0) return;
+  loads.valid = loads.mean = true;
+  in.get(loads.total);
+  if (loads.total.size() != velocities) in.damaged("its sizes do not fit the model");
+  loads.dissipative.resize(loads.total.size());
+  loads.external.resize(loads.total.size());
+}
+
+void read_modes(CheckpointReader& in, Companion& companion) {
+  companion.modes.resize(in.count());
+  for (auto& [key, mode] : companion.modes) {
+    get(in, key.a);
+    get(in, key.b);
+    std::uint64_t number = 0;
+    in.get(number);
+    if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");
+    mode = static_cast<ContactMode>(number);
+  }
+}
+
+void read_rhythms(CheckpointReader& in, std::vector<Rhythm>& rhythms) {
+  rhythms.resize(in.count());
+  for (Rhythm& rhythm : rhythms) {
+    in.get(rhythm.start);
+    in.get(rhythm.interval);
+    in.get(rhythm.fired);
+  }
+}
+
+/// Demands the periodic events of the simulation.
+void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
+                    const std::vector<Rhythm>& present) {
+  if (found.size() != present.size()) {
+    throw FileError("checkpoint '" + path + "': has " + std::to_string(found.size()) +
+                    " periodic events, the simulation " + std::to_string(present.size()));
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].interval == present[i].interval) continue;
+    throw FileError("checkpoint '" + path + "': periodic event " + std::to_string(i) +
+                    " has an interval of " + to_text(found[i].interval) + " s, in the simulation " +
+                    to_text(present[i].interval) + " s");
+  }
+}
+
+/// Content of a checkpoint without its mark and its checksum, both of which are demanded.
+std::string_view checked_body(const std::string& path, std::string_view text) {
   if (!text.starts_with(mark))
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   text.remove_prefix(mark.size());
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
   const std::string_view body = text.substr(0, text.size() - checksum_size);
-  Reader end(path, text.substr(body.size()));
+  CheckpointReader end(path, text.substr(body.size()));
   std::uint64_t expected = 0;
   end.get(expected);
   if (expected != checksum(body)) end.damaged("its checksum does not fit");
+  return body;
+}
 
-  Reader in(path, body);
+}  // namespace
+
+void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
+  const std::string content = read_file(path, "checkpoint");
+  CheckpointReader in(path, checked_body(path, content));
   std::uint64_t found = 0;
   in.get(found);
   if (found != fingerprint) throw FileError("checkpoint '" + path + "': is of another model");
@@ -250,75 +264,16 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for_contact_statistics(other.contact_statistics, [&in](auto& number) { in.get(number); });
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
-  LoadHistory& history = other.history;
-  in.get(history.known);
-  if (history.known < 0 || history.known > LoadHistory::most)
-    in.damaged("its history of loads is of unknown length");
-  in.get(history.step);
-  for (int i = 0; i < LoadHistory::most; ++i) {
-    std::vector<float>& changes = history.changes[static_cast<std::size_t>(i)];
-    if (i < history.known) {
-      in.get(changes);
-      if (changes.size() != state.v.size()) in.damaged("its sizes do not fit the model");
-    } else if (history.known > 0) {
-      changes.resize(state.v.size());
-    }
-  }
-  history.sweeps.resize(in.count());
-  for (int& sweeps : history.sweeps) in.get(sweeps);
-  const std::size_t remembered = in.count();
-  for (std::size_t i = 0; i < remembered; ++i) {
-    std::uint64_t component = 0, solved = 0;
-    IterationMemory::Entry entry;
-    in.get(component);
-    in.get(solved);
-    in.get(entry.steps);
-    entry.component = static_cast<Index>(component);
-    entry.solved = static_cast<Iteration>(solved);
-    if (component >= none || solved >= iteration_count || !other.iterations.append(entry)) {
-      in.damaged("an iteration is unknown");
-    }
-  }
-  std::uint64_t has_mean_loads = 0;
-  in.get(has_mean_loads);
-  if (has_mean_loads > 1) in.damaged("it is unknown whether it holds loads");
-  if (has_mean_loads == 1) {
-    PresentLoads& loads = other.loads;
-    loads.valid = loads.mean = true;
-    in.get(loads.total);
-    if (loads.total.size() != state.v.size()) in.damaged("its sizes do not fit the model");
-    loads.dissipative.resize(loads.total.size());
-    loads.external.resize(loads.total.size());
-  }
+  read_history(in, state.v.size(), other.history);
+  read_iterations(in, other.iterations);
+  read_mean_loads(in, state.v.size(), other.loads);
   in.get(other.next_step);
   in.get(other.grid_start);
   in.get(other.grid_steps);
-  other.modes.resize(in.count());
-  for (auto& [key, mode] : other.modes) {
-    get(in, key.a);
-    get(in, key.b);
-    std::uint64_t number = 0;
-    in.get(number);
-    if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");
-    mode = static_cast<ContactMode>(number);
-  }
-  other.rhythms.resize(in.count());
-  for (Rhythm& rhythm : other.rhythms) {
-    in.get(rhythm.start);
-    in.get(rhythm.interval);
-    in.get(rhythm.fired);
-  }
+  read_modes(in, other);
+  read_rhythms(in, other.rhythms);
   in.finish();
-  if (other.rhythms.size() != companion.rhythms.size()) {
-    throw FileError("checkpoint '" + path + "': has " + std::to_string(other.rhythms.size()) +
-                    " periodic events, the simulation " + std::to_string(companion.rhythms.size()));
-  }
-  for (std::size_t i = 0; i < other.rhythms.size(); ++i) {
-    if (other.rhythms[i].interval == companion.rhythms[i].interval) continue;
-    throw FileError("checkpoint '" + path + "': periodic event " + std::to_string(i) +
-                    " has an interval of " + to_text(other.rhythms[i].interval) + " s, in the simulation " +
-                    to_text(companion.rhythms[i].interval) + " s");
-  }
+  demand_rhythms(path, other.rhythms, companion.rhythms);
   state = std::move(read);
   companion = std::move(other);
 }
