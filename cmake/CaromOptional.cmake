@@ -17,13 +17,14 @@ function(carom_optional option package what)
   set(carom_has_${package} ${has} PARENT_SCOPE)
 endfunction()
 
-# nlohmann-json writes and reads contact problems. It is headers only, seen by contact/solvers/problem_file.cpp and the
+# nlohmann-json writes and reads contact problems. It is headers only, seen by contact/solvers/problem_file*.cpp and the
 # programs alone: neither users of a shared nor of a static copy need it.
 carom_optional(CAROM_WITH_JSON nlohmann_json "contact problems as JSON files")
 if(carom_has_nlohmann_json)
   target_link_libraries(carom PRIVATE $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
-  set_source_files_properties("${PROJECT_SOURCE_DIR}/contact/solvers/problem_file.cpp" PROPERTIES COMPILE_DEFINITIONS
-                                                                                          CAROM_WITH_JSON)
+  set_source_files_properties(
+    "${PROJECT_SOURCE_DIR}/contact/solvers/problem_file.cpp"
+    "${PROJECT_SOURCE_DIR}/contact/solvers/problem_file_writer.cpp" PROPERTIES COMPILE_DEFINITIONS CAROM_WITH_JSON)
 endif()
 
 # oneTBB shares work out to threads. It is seen by core/workers.cpp alone.

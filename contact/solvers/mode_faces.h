@@ -5,6 +5,7 @@
 /// combination of them.
 
 #include <carom/contact/solvers/contact_problem.h>
+#include <carom/core/export.h>
 
 #include <cstddef>
 #include <span>
@@ -13,7 +14,7 @@
 namespace carom {
 
 /// Faces of the groups of one problem: each a mode, or a boundary of one. A choice names one for each group.
-class ModeFaces {
+class CAROM_API ModeFaces {
 public:
   /// Size of the equations of a choice.
   struct Size {

@@ -1,6 +1,7 @@
-// Problem: write down a contact problem so that another machine solves the same one, bit for bit.
+// Problem: read a contact problem from a file that anybody may have written.
 
 #include <carom/contact/solvers/problem_file.h>
+#include <carom/contact/solvers/problem_format.h>
 #include <carom/core/errors.h>
 
 #if defined(CAROM_WITH_JSON)
@@ -27,84 +28,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view what = "contact problem";
-constexpr std::string_view format = "carom contact problem";
-constexpr int version = 1;
-
 // W may be off symmetry by this part of sqrt(W_ii W_jj): numbers written by hand or by another program with a
 // dozen digits. carom itself writes symmetric ones.
 constexpr double symmetry = 1e-12;
 
-constexpr std::array<std::pair<SetKind, std::string_view>, 5> kinds{
-    {{SetKind::half_line, "half_line"},
-     {SetKind::interval, "interval"},
-     {SetKind::bounded_interval, "bounded_interval"},
-     {SetKind::bounded_disc, "bounded_disc"},
-     {SetKind::proportional, "proportional"}}};
-
-// JSON knows neither infinities nor NaN.
-Json number(double value) {
-  if (std::isfinite(value)) return value;
-  return to_text(value);
-}
-
-Json numbers(std::span<const double> values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
-Json written(const RowSet& set) {
-  const auto* const kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.first == set.kind; });
-  Json out;
-  out["kind"] = kind->second;
-  switch (set.kind) {
-    case SetKind::half_line:
-      break;
-    case SetKind::interval:
-      out["lower"] = number(set.lower);
-      out["upper"] = number(set.upper);
-      break;
-    case SetKind::bounded_interval:
-    case SetKind::bounded_disc:
-    case SetKind::proportional:
-      out["bound"] = set.bound;
-      out["coefficient"] = number(set.coefficient);
-      break;
-  }
-  return out;
-}
-
-// One field on a line; of lists of lists (W, sets) one element.
-std::string laid_out(const Json& fields) {
-  std::string text = "{";
-  const char* separator = "\n";
-  for (const auto& [name, value] : fields.items()) {
-    text += separator + ("  " + Json(name).dump()) + ": ";
-    separator = ",\n";
-    if (!value.is_array() || value.empty() || !value.front().is_structured()) {
-      text += value.dump();
-      continue;
-    }
-    text += '[';
-    const char* comma = "\n";
-    for (const Json& element : value) {
-      text += comma + ("    " + element.dump());
-      comma = ",\n";
-    }
-    text += "\n  ]";
-  }
-  return text + "\n}\n";
-}
-
-// What was read, with its address in messages.
+// Values that were read, with their address in messages.
 class Reader {
 public:
   explicit Reader(const std::string& path) : path_(path) {}
 
   [[noreturn]] void refuse(const std::string& message) const {
-    throw FileError(std::string(what) + " '" + path_ + "': " + message);
+    throw FileError(std::string(problem_format::label) + " '" + path_ + "': " + message);
   }
   [[noreturn]] void refuse(const std::string& field, const std::string& value,
                            const std::string& allowed) const {
@@ -196,9 +130,9 @@ RowSet read_set(const Reader& in, const Json& value, int row) {
   const std::string field = at("sets", row);
   if (!value.is_object()) in.refuse(field, Reader::shown(value), "an object with a kind");
   const std::string kind = in.text(in.member(value, field + ".", "kind"), field + ".kind");
-  const auto* const known =
-      std::find_if(kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.second == kind; });
-  if (known == kinds.end()) {
+  const auto* const known = std::find_if(problem_format::kinds.begin(), problem_format::kinds.end(),
+                                         [&](const auto& entry) { return entry.second == kind; });
+  if (known == problem_format::kinds.end()) {
     in.refuse(field + ".kind", "\"" + kind + "\"",
               R"("half_line", "interval", "bounded_interval", "bounded_disc" or "proportional")");
   }
@@ -253,7 +187,10 @@ ProblemNotes read_notes(const Reader& in, const Json& file, std::size_t groups) 
 void demand_this_format(const Reader& in, const Json& file) {
   if (!file.is_object()) in.refuse("the file", Reader::shown(file), "an object");
   const std::string found = in.text(in.member(file, "", "format"), "format");
-  if (found != format) in.refuse("format", "\"" + found + "\"", "\"" + std::string(format) + "\"");
+  if (found != problem_format::name) {
+    in.refuse("format", "\"" + found + "\"", "\"" + std::string(problem_format::name) + "\"");
+  }
+  constexpr int version = problem_format::version;
   const Json& number = in.member(file, "", "version");
   if (number.is_number_integer() && number > version) {
     in.refuse("version", Reader::shown(number),
@@ -280,32 +217,9 @@ Json parsed(const Reader& in, const std::string& content) {
 
 bool problem_files_available() { return true; }
 
-void save_problem(const std::string& path, const ContactProblem& problem, const ProblemNotes& notes) {
-  const auto n = static_cast<std::size_t>(problem.rows());
-  Json file;
-  file["format"] = format;
-  file["version"] = version;
-  if (!notes.comment.empty()) file["comment"] = notes.comment;
-  if (notes.time) file["time"] = number(*notes.time);
-  if (!notes.contacts.empty()) file["contacts"] = notes.contacts;
-  file["rows"] = problem.rows();
-  file["W"] = Json::array();
-  for (std::size_t i = 0; i < n; ++i) file["W"].push_back(numbers(problem.matrix().subspan(i * n, n)));
-  file["b"] = numbers(problem.vector());
-  file["sets"] = Json::array();
-  for (const RowSet& set : problem.sets()) file["sets"].push_back(written(set));
-  std::string text;
-  try {
-    text = laid_out(file);
-  } catch (const Json::exception&) {
-    throw FileError(std::string(what) + " '" + path + "': a name or the comment is not UTF-8");
-  }
-  write_file(path, text, what);
-}
-
 ProblemFile load_problem(const std::string& path) {
   const Reader in(path);
-  const Json file = parsed(in, read_file(path, what));
+  const Json file = parsed(in, read_file(path, problem_format::label));
   demand_this_format(in, file);
   in.demand_fields(file, "", {"format", "version", "comment", "time", "contacts", "rows", "W", "b", "sets"});
   ProblemFile result;
@@ -350,8 +264,6 @@ namespace {
 }  // namespace
 
 bool problem_files_available() { return false; }
-
-void save_problem(const std::string& path, const ContactProblem&, const ProblemNotes&) { refuse(path); }
 
 ProblemFile load_problem(const std::string& path) { refuse(path); }
 
