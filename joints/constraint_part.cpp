@@ -1,3 +1,4 @@
+#include <carom/joints/condition_derivatives.h>
 #include <carom/joints/constraint_part.h>
 
 #include <algorithm>
@@ -7,9 +8,6 @@
 namespace carom::planar {
 
 namespace {
-
-/// A vector turned counter-clockwise by 90 degrees.
-Vec<2> turned(const Vec<2>& a) { return {-a[1], a[0]}; }
 
 double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -188,7 +186,7 @@ inline double* ConstraintPartTable::write(const JointView& at, const Geometry& g
   const Vec<2>& between = geometry.between;
   const Vec<2> a = direction(at, geometry, condition, joint);
   const ConstraintPart::Form form = condition.form[joint];
-  // What turning `from` adds where the axis turns with it.
+  // Part of turning `from` where the axis turns with it.
   double swing = 0.0;
   drift = a.dot(geometry.drift);
   gap = a.dot(between);
@@ -220,14 +218,6 @@ inline double* ConstraintPartTable::write(const JointView& at, const Geometry& g
   return jacobian;
 }
 
-/// With the direction a of a condition, numbers p that move d by d_p and the axis by s_p (1 for the angle of
-/// `from`, if the axis turns with it), a' = J a and rates along the motion d1 = sum d_p v_p, d2 = the drift
-/// of d, s the rate of the axis:
-///
-///     dG_p/dq_r = a.d_pr + s_r a'.d_p + s_p a'.d_r - s_p s_r a.d,      drift = a.d2 + 2 s a'.d1 - s^2 a.d
-///
-/// and for a distance, of which a is the direction itself, dG_p/dq_r = a.d_pr + (a'.d_p)(a'.d_r) / |d| and
-/// drift = a.d2 + (a'.d1)^2 / |d|. The drift's derivatives follow by the same rules.
 void ConstraintPartTable::derivatives(const JointView& at, Index joint, Index which,
                                       JointRowDerivative& out) const {
   out = {};
@@ -235,17 +225,8 @@ void ConstraintPartTable::derivatives(const JointView& at, Index joint, Index wh
   const ConstraintPart::Form form = condition.form[joint];
   if (form == ConstraintPart::Form::angles) return;
   const Geometry ends = geometry(at, joint);
-  const Vec<2> a = direction(at, ends, condition, joint), across = turned(a);
-  const bool distance = form == ConstraintPart::Form::distance;
   const bool swings = form == ConstraintPart::Form::axis_of_from && ends.places.from.rotation != none;
-  const double length = ends.between.norm(), spin = swings ? ends.from_spin : 0.0;
-  // One of the numbers that move the ends.
-  struct Motion {
-    Vec<2> path;         // d_p
-    Vec<2> bend;         // d_pp; those of two numbers are zero
-    double rate, swing;  // v_p, s_p
-  };
-  std::array<Motion, std::size_t{6}> motions;
+  std::array<EndMotion, std::size_t{6}> motions;
   std::size_t count = 0;
   const auto add = [&](const Place& place, double sign, const Vec<2>& lever, bool turns_axis) {
     if (place.v == none) return;
@@ -260,38 +241,12 @@ void ConstraintPartTable::derivatives(const JointView& at, Index joint, Index wh
   };
   add(ends.places.from, -1.0, ends.from_lever, swings);
   add(ends.places.to, 1.0, ends.to_lever, false);
-  const double along = a.dot(ends.between), sideways = across.dot(ends.apart);
-  for (std::size_t p = 0; p < count; ++p) {
-    const Motion& of = motions[p];
-    for (std::size_t r = 0; r < count; ++r) {
-      const Motion& by = motions[r];
-      double& entry = out.jacobian[p][r];
-      if (p == r) entry = a.dot(of.bend);
-      if (distance) {
-        entry += across.dot(of.path) * across.dot(by.path) / length;
-      } else if (swings) {
-        entry +=
-            across.dot(of.path) * by.swing + across.dot(by.path) * of.swing - along * of.swing * by.swing;
-      }
-    }
-    // d1 and d2 change by these, and with a velocity d1 by d_p, d2 by twice the first.
-    const Vec<2> first = of.rate * of.bend, second = of.rate * of.rate * turned(of.bend);
-    double& by_position = out.drift_by_position[p];
-    double& by_velocity = out.drift_by_velocity[p];
-    by_position = a.dot(second);
-    by_velocity = 2.0 * a.dot(first);
-    if (distance) {
-      const double tilt = across.dot(of.path) / length;  // da = tilt a'
-      by_position += tilt * across.dot(ends.drift) +
-                     2.0 * sideways / length * (across.dot(first) - tilt * a.dot(ends.apart)) -
-                     sideways * sideways / (length * length) * a.dot(of.path);
-      by_velocity += 2.0 * sideways * tilt;
-    } else if (swings) {
-      by_position += 2.0 * spin * across.dot(first) - spin * spin * a.dot(of.path) +
-                     of.swing * (across.dot(ends.drift) - 2.0 * spin * a.dot(ends.apart) -
-                                 spin * spin * across.dot(ends.between));
-      by_velocity += 2.0 * spin * across.dot(of.path) + of.swing * 2.0 * (sideways - spin * along);
-    }
+  const ConditionGeometry here{direction(at, ends, condition, joint), ends.between, ends.apart, ends.drift,
+                               swings ? ends.from_spin : 0.0};
+  if (form == ConstraintPart::Form::distance) {
+    differentiate_distance(here, std::span(motions).first(count), out);
+  } else {
+    differentiate_line(here, swings, std::span(motions).first(count), out);
   }
 }
 

@@ -266,14 +266,4 @@ TEST(ConstraintPart, PlanarJointsAreOfThePlane) {
                      "allowed: 3");
 }
 
-TEST(DescribedPlace, IsThatOfTheDescription) {
-  System system;
-  const BodyId dot = system.add(Particle{.mass = 1.0, .position = {3, 4}});
-  const BodyId plate =
-      system.add(RigidBody{.mass = disc(1.0, 1.0), .position = {1, 2}, .angle = std::acos(-1.0) / 2.0});
-  EXPECT_EQ(described_place(system, ground).point({5, 6}), Vec<2>(5, 6));
-  EXPECT_EQ(described_place(system, dot).point({0, 0}), Vec<2>(3, 4));
-  EXPECT_LE((described_place(system, plate).point({1, 0}) - Vec<2>(1, 3)).norm(), 1e-15);
-}
-
 }  // namespace
