@@ -119,7 +119,7 @@ private:
     }
   }
 
-  // What acts on the coordinate of a joint names it.
+  // A part on the coordinate of a joint names the joint.
   [[nodiscard]] std::string label_of(const std::string& name, JointId on) const {
     return " [label=" + quoted(on.valid() ? name + "\non " + system_.name(on) : name);
   }

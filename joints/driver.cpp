@@ -62,7 +62,7 @@ LawPoint DriverKind::prescribed(Index joint, double time) const {
   return point;
 }
 
-// What is prescribed depends on time alone.
+// Prescribed coordinates depend on time alone.
 void DriverKind::derivatives(const JointView& at, Index joint, JointRowDerivative* out) const {
   const JointTable& table = *layout_->joints();
   const JointTable::Place place = table.place(parts_[joint].part.joint.serial);

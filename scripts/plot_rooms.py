@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 TOP = ("core", "bodies", "joints", "contact", "integrators", "analysis", "testing")
-# What core/numerics has of core; no edge (tests/architecture/).
+# Headers of core that core/numerics has; no edge (tests/architecture/).
 GROUND = ("core/export.h", "core/ids.h")
 
 root = Path(__file__).resolve().parent.parent

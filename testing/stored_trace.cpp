@@ -8,7 +8,7 @@ namespace carom::energy_test {
 
 namespace {
 
-/// What is wrong with the trace; empty if nothing is.
+/// Faults of the trace; empty if there is none.
 std::string objections(const EnergyTrace& trace, const std::string& path, const TraceTolerances& tolerances) {
   if (!std::filesystem::exists(path)) return "there is no stored trace '" + path + "'\n";
   try {

@@ -87,7 +87,7 @@ private:
   std::optional<Place> first_, worst_;
 };
 
-/// What the recorded terms leave unexplained.
+/// Energy that the recorded terms leave unexplained.
 double unexplained(const TraceRow& row) {
   CompensatedSum sum(-row.initial);
   for (const double value : row.stored.values) sum.add(value);

@@ -16,7 +16,7 @@ scenes::PainleveRod rod_of(const Json& at) {
           .tip_speed = of(at, "tip_velocity_sign")};
 }
 
-/// What the forces of a state of the reference do.
+/// Effect of the forces of a state of the reference.
 std::string answer_of(const Json& at) {
   const Json& solutions = at.at("force_level_solutions");
   if (solutions.empty()) return "none: impact without collision";

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What the validation report is made of: pages with rows of its table, curves for its pictures.
+/// Parts of the validation report: pages with rows of its table, curves for its pictures.
 
 #include <limits>
 #include <string>

@@ -231,7 +231,7 @@ template <bool ModeByRule>
   return true;
 }
 
-// What is not regular: every mode is looked at.
+// Problems that are not regular: every mode is tried.
 [[gnu::noinline]] void certified_any(const PlanarContact& c, CertifiedImpulse& answer) {
   const PlanarSolutions found = solve_planar_contact(c);
   answer.outcome = found.outcome;

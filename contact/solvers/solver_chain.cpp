@@ -59,7 +59,7 @@ struct SolverChain::Workspace {
   std::vector<double> start;  // impulses of a start
   std::vector<ContactMode> start_modes;
 
-  // What the solvers tried so far have brought.
+  // Result of the solvers tried so far.
   struct Attempt {
     ContactReport& report;  // of the best answer
     SolverId best = SolverId::single_contact;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a failed step leaves behind in a directory that was set for it.
+/// Files that a failed step leaves behind in a directory that was set for it.
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>

@@ -135,7 +135,7 @@ TEST(RigidBody, ACentreMayBeOffByRounding) {
   EXPECT_NO_THROW(system.add(RigidBody{.mass = mass}));
   mass.centre = {0.0, 4.1e3 * epsilon};
   EXPECT_MODEL_ERROR(system.add(RigidBody{.mass = mass}), "centre of mass is");
-  // What composing symmetric parts leaves.
+  // Remainder of composing symmetric parts.
   const MassProperties<2> half = disc(0.1, 0.3);
   EXPECT_NO_THROW(
       system.add(RigidBody{.mass = compose({shifted(half, {0.7, 0.1}), half, shifted(half, {-0.7, -0.1})})}));

@@ -177,7 +177,7 @@ else
   echo "consumer: left out, this machine has no AVX2"
 fi
 
-# What a subdirectory brings unasked is looked at there; it is built as a static library, with all that can be
+# Targets that a subdirectory brings unasked are looked at there; it is built as a static library, with all that can be
 # installed, to serve the next part too.
 echo "consumer: subdirectory"
 configure "$here/add_subdirectory" "$work/unasked" -DCAROM_SOURCE="$source_dir"

@@ -258,7 +258,7 @@ void find_margins_in_a_corner(std::uint64_t seed, int count) {
     for (const double number : a) EXPECT_NEAR(number, 0.0, 1e-12);
     const double best = largest_margin(closed);
     EXPECT_NEAR(closed.margin(), best, 1e-10) << i;
-    // What is shared out still does the same.
+    // The distributed forces still do the same.
     double up = 0.0, along = 0.0;
     for (const ActiveContact& contact : closed.contacts.list()) {
       along += contact.normal * contact.at.row(0)[0] + contact.tangential * contact.at.row(1)[0];

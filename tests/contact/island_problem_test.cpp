@@ -92,7 +92,7 @@ TEST_F(IslandProblemTest, KeepsToItsModesWhereSeveralSolutionsExist) {
   EXPECT_TRUE(falling.changed_modes());
   EXPECT_EQ(solve(falling, 1.0, 0.1), ContactMode::open);
   EXPECT_EQ(solve(falling, 1.0, -0.1), ContactMode::stick);
-  // What was before build() is forgotten.
+  // The problem before build() is forgotten.
   EXPECT_EQ(solve(falling, 1.0, 0.1), ContactMode::stick);
   const std::array<double, 3> before{1.0, -0.1, 0.0};
   falling.build(contacts_, before.data());

@@ -98,7 +98,7 @@ inline Impact random_impact(std::uint64_t seed) {
   return impact;
 }
 
-/// What is known of a random problem before it is solved.
+/// Random problem, and the knowledge of it before it is solved.
 struct RandomProblem {
   ContactProblem problem;
   int bodies = 0;

@@ -71,7 +71,7 @@ struct LargeNet {
   State state;
 };
 
-/// What a second sweep might make of the first one's loads.
+/// State that a second sweep might make of the first one's loads.
 void move_on(const Block& block, const std::vector<double>& loads, State& state) {
   for (Index i = block.v.begin; i < block.v.end; ++i) {
     state.q[i] += 1e-6 * loads[i];

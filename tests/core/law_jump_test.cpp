@@ -32,7 +32,7 @@ struct Law {
     point.velocity[0] = rate ? rate(time) : TimeDifference(time, 1, breaks)(place);
     return point;
   }
-  /// What a run with steps of this length would notice from `begin` to `end`.
+  /// Jump that a run with steps of this length would notice from `begin` to `end`.
   [[nodiscard]] std::optional<LawJump> first_jump(double begin, double end, double step) const {
     const auto steps = static_cast<int>(std::ceil((end - begin) / step));
     LawPoint last = (*this)(begin);
@@ -121,7 +121,7 @@ TEST(LawJump, TablesAreNone) {
     law.place = interpolated(places);
     law.rate = interpolated(rates);
     EXPECT_FALSE(law.first_jump(0.0, 0.5, 1e-3));
-    // What does not fit costs looks, but no more than these for each step.
+    // A misfit costs looks, but no more than these for each step.
     EXPECT_LE(law.looks, 500 * 300);
   }
 }

@@ -1,4 +1,4 @@
-// What System::check() finds, and what it does not: models that are as they should be give nothing.
+// Findings of System::check(); models that are as they should be have none.
 
 #include "tests/random.h"
 

@@ -53,7 +53,7 @@ TEST(EnergyMomentum, TurningPairKeepsEnergyAndAngularMomentum) {
 }
 
 TEST(EnergyMomentum, TheDefaultRuleDoesNot) {
-  // What the tests above and below would miss if they could not fail.
+  // A failure that the tests above and below must be able to see.
   Simulation simulation(turning_pair(), TimeStepping{.step = 1e-3, .tolerance = 0.0});
   const Invariants start = invariants(simulation);
   const Departure largest = departure(simulation, 1000);

@@ -12,7 +12,7 @@
 
 namespace carom_test {
 
-/// What is kept without loads from outside, about the origin.
+/// Quantities that are kept without loads from outside, about the origin.
 struct Invariants {
   double energy = 0.0;
   carom::Vec<2> linear = carom::Vec<2>::Zero();

@@ -1,6 +1,6 @@
 #pragma once
 
-// What must hold of the energy ledger of every run.
+// Checks of the energy ledger that every run must pass.
 
 #include <carom/carom.h>
 #include <carom/testing/trace_checks.h>

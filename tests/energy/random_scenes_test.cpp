@@ -4,7 +4,7 @@
 // A solution of the contact problem is guaranteed if no impulses in the friction cones cancel each other
 // (sum H^T P = 0), or if all coefficients of restitution are equal. Obstacles whose cones all lie strictly in
 // one half-plane, |slope| + atan(mu) < pi/2, can never jam a body; scenes with others get one e everywhere.
-// What becomes of jammed contact with unequal e is asked in a test of its own.
+// Jammed contact with unequal e has a test of its own.
 
 #include "tests/energy/ledger_check.h"
 #include "tests/random.h"

@@ -1,4 +1,4 @@
-// What the trapezoidal rule keeps of a pair of particles on a spring in free flight.
+// Invariants that the trapezoidal rule keeps of a pair of particles on a spring in free flight.
 
 #include "tests/analytic/convergence.h"
 #include "tests/analytic/rotating_spring_pair.h"

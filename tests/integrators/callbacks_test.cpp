@@ -63,7 +63,7 @@ struct Model {
   }
 };
 
-/// What may be called, by name as messages have it.
+/// Calls that are allowed, by name as messages have it.
 std::map<std::string, std::function<void(Simulation&)>> calls(const Model& model, const std::string& file) {
   const JointId pin = model.pin;
   return {

@@ -1,5 +1,5 @@
-// What cannot be is refused by name in the event-driven mode too, with the value and what is allowed; nothing
-// has changed afterwards, and the run can go on.
+// Impossible input is refused by name in the event-driven mode too, with the value and what is allowed;
+// nothing has changed afterwards, and the run can go on.
 
 #include "tests/integrators/event_runs.h"
 #include "tests/integrators/same_run.h"
@@ -99,7 +99,7 @@ TEST(EventBadInput, ContactInSpace) {
     EXPECT_MODEL_ERROR(simulation.switch_to(EventDriven{}), "particle 'stone'", "space");
     EXPECT_EQ(bits_of(simulation), before);
   }
-  // What touches nothing flies.
+  // A body that touches nothing flies.
   System flight;
   flight.add(spatial::Gravity{{0.0, 0.0, -9.81}});
   const BodyId id = flight.add(spatial::Particle{.mass = 1.0, .velocity = {1.0, 2.0, 0.0}});

@@ -1,6 +1,6 @@
 #pragma once
 
-// What tests of the event-driven mode share.
+// Scenes and checks that tests of the event-driven mode share.
 
 #include <carom/carom.h>
 

@@ -141,7 +141,7 @@ TEST(JointsTimeStepping, LinearlyImplicitWithContact) {
   EXPECT_LE(largest_difference(run(scene, plain, 2.0), run(scene, implicit, 2.0)), 1e-9);
 }
 
-/// What test runs of projected gaps leave: the deepest gap at the ends of steps.
+/// Gaps that projection leaves: the deepest at the ends of steps.
 TEST(JointsTimeStepping, ProjectsGapsAlongTheJoints) {
   const Scene scene = falling(10.0);
   for (const Iteration iteration : {Iteration::fixed_point, Iteration::linearly_implicit}) {

@@ -239,7 +239,7 @@ TEST(Cancelling, LeavesTheLastGoodStateAndGoesOnFromThere) {
   }
 }
 
-// What tolerances leave of a contact is neither a lift-off nor an impact where a run goes on.
+// A contact that tolerances leave open a little is neither a lift-off nor an impact where a run goes on.
 TEST(Cancelling, ContactsThatLastGoOn) {
   Random random(1709);
   int stops = 0;

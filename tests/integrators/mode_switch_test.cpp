@@ -54,7 +54,7 @@ TEST(ModeSwitch, ViolationThatApproachesIsResolvedByAnImpactAndMovedOut) {
   EXPECT_NEAR(simulation.report().projected, depth, 1e-14);
   ASSERT_EQ(simulation.events().size(), 1U);
   EXPECT_EQ(simulation.events().front().kind, EventKind::mode_switch);
-  // What the impact took, less the potential energy that lifting the ball out brought in.
+  // Energy of the impact, less the potential energy that lifting the ball out brought in.
   const double taken = simulation.energy().flow(EnergyFlow::mode_switch);
   const double friction =
       std::min(1.0, 0.3 * 1.5 * -speed);  // change of the tangential velocity, 1 if it sticks

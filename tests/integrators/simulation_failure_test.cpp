@@ -1,4 +1,4 @@
-// What fails in a run is named, and leaves it at its last good state.
+// A failure in a run is named, and leaves it at its last good state.
 
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/contrary.h"

@@ -208,7 +208,7 @@ TEST(Simulation, AnEditThatChangesNothingDoesNotChangeTheRun) {
   EXPECT_EQ(edited.energy().flow(EnergyFlow::intervention), 0.0);
   edited.run_until(1.0);
   plain.run_until(1.0);
-  // What rounding cut off before the edit is forgotten; nothing else.
+  // Compensation of rounding before the edit is forgotten; nothing else.
   for (std::size_t i = 0; i < plain.state().q.size(); ++i)
     EXPECT_NEAR(edited.state().q[i], plain.state().q[i], 1e-11);
 }

@@ -56,7 +56,7 @@ System made(const Net& net) {
   return system;
 }
 
-/// What a running simulation of the net holds, its copy of the system included [bytes].
+/// Memory of a running simulation of the net, its copy of the system included [bytes].
 std::int64_t storage(const Net& net) {
   const std::int64_t before = carom_test::bytes_in_use();
   const Simulation simulation = [&net] {

@@ -224,7 +224,7 @@ TEST(Driver, WhatIsInUseIsNotRemoved) {
   EXPECT_EQ(system.joints(), (std::vector{table.pin, table.slide, driver}));
   EXPECT_EQ(system.joint("crank"), driver);
   EXPECT_MODEL_ERROR(system.joint("rod"), "joint 'rod'", "there is none");
-  // What is left still works after others are gone.
+  // The others still work after one is gone.
   system.remove(driver);
   system.remove(table.pin);
   const JointModel model(system);

@@ -121,7 +121,7 @@ TEST(Gear, RowsMeetDifferences) {
 }
 
 TEST(Gear, KeepsTheRatioAgainstTheCarrier) {
-  // What all turn by together changes nothing; against the arm the wheels turn as their radii say.
+  // A turn of all together changes nothing; against the arm the wheels turn as their radii say.
   Random random(322);
   for (int repeat = 0; repeat < 20; ++repeat) {
     Wheels wheels;

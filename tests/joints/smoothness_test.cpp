@@ -1,4 +1,4 @@
-// What elements tell of where their loads are not smooth: guards, breaks, dependence on time.
+// Places where the loads of elements are not smooth: guards, breaks, dependence on time.
 
 #include <carom/carom.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a matcher says of a value, as a user sees it.
+// Verdict of a matcher on a value, as a user sees it.
 
 #include <gmock/gmock.h>
 

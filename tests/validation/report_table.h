@@ -59,7 +59,7 @@ inline bool same_cell(const std::string& a, const std::string& b, double part, d
   return std::abs(x - y) <= part * std::max(std::abs(x), std::abs(y)) + least;
 }
 
-/// What two lines that should be the same differ in; empty if in nothing that matters. Costs never do.
+/// Difference of two lines that should be the same; empty if it does not matter. Costs never do.
 inline std::string difference(const ReportLine& a, const ReportLine& b) {
   const auto differs = [](const std::string& what, const std::string& x, const std::string& y) {
     return what + " '" + x + "' and '" + y + "'";

@@ -45,7 +45,7 @@ Quad tolerance(const QuadMode& mode, Quad value) {
   return magnitude(value) * epsilon * (mode.kind == 1 ? Quad(6) : 2 + mode.condition);
 }
 
-// What is wrong with the library's answer to this impact; empty if nothing.
+// Faults of the library's answer to this impact; empty if there is none.
 std::string compare(std::uint64_t seed, SolverChain& chain, Counts& counts) {
   const Impact impact = contact_test::random_impact(seed);
   ContactProblem problem;

@@ -181,7 +181,7 @@ TEST(SlidingContact, ModeIsTheDirectionTold) {
   EXPECT_EQ(mode(-0.0, -1.0), ContactMode::slip_positive);
   EXPECT_EQ(mode(0.0, -1.0), ContactMode::slip_negative);
   EXPECT_EQ(mode(0.3, 1.0), ContactMode::open);
-  // What the fast path would say of the same numbers, with friction of unknown direction: it sticks.
+  // The same numbers with friction of unknown direction, by the fast path: it sticks.
   ContactProblem sticks;
   contact_test::make_problem(2.0, 0.5, 1.0, -1.0, -0.25, 0.3, sticks);
   ASSERT_TRUE(chain.solve(sticks, impulse).usable());

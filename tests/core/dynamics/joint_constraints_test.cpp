@@ -143,7 +143,7 @@ TEST(JointConstraints, HoldMakesNumbersObeyAtEveryLevel) {
         std::vector<double> again = before;
         joints.add_response(multipliers.data(), again.data());
         EXPECT_EQ(again, x);
-        // What obeys is not changed any more.
+        // Numbers that obey are not changed any more.
         std::vector<double> twice = x;
         joints.project(level, twice.data());
         for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(twice[i], x[i], 1e-11);

@@ -246,7 +246,7 @@ TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
     const Eigen::VectorXd found = solved(factors, right);
     EXPECT_LE((matrix * found - right).cwiseAbs().maxCoeff(), 1e-13 * (1.0 + found.cwiseAbs().maxCoeff()))
         << size;
-    // What is solved for is not large: as large as what the best solution needs.
+    // The solution is not large: as large as the best one needs.
     const Eigen::VectorXd least = matrix.completeOrthogonalDecomposition().solve(right);
     EXPECT_LE(found.cwiseAbs().maxCoeff(), 100.0 * (1.0 + least.cwiseAbs().maxCoeff()));
   }
@@ -285,7 +285,7 @@ TEST(SparseFactors, WeakRowsDoNotPassForIndependent) {
       independent += factors.pivot(row) > dependent_pivot ? 1 : 0;
     }
     EXPECT_EQ(independent, cranks + 1) << trial << ", a = " << a;
-    // What the rows ask of velocities that they allow but for a small change.
+    // Change that the rows ask of velocities which they allow but for a little.
     const Eigen::VectorXd change = random_vector(rows.cols(), random);
     const Eigen::VectorXd left = rows * (change - rows.transpose() * solved(factors, rows * change));
     EXPECT_LE(left.cwiseAbs().maxCoeff(), 1e-13 / a) << trial << ", a = " << a;

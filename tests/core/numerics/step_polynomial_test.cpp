@@ -122,7 +122,7 @@ TEST(StepPolynomial, StartsAtZero) {
   EXPECT_NEAR(StepPolynomial::quintic({0.0, -1.0, 0.0}, {-1.0, -1.0, 0.0}).first_fall(), 0.0, 4.0 * eps);
   // Below zero, though it rises.
   EXPECT_EQ(StepPolynomial::quintic({-1e-300, 1.0, 0.0}, {1.0, 1.0, 0.0}).first_fall(), 0.0);
-  // What is not a number is an event at once, rather than none.
+  // A value that is not a number is an event at once, rather than none.
   EXPECT_EQ(StepPolynomial::cubic({std::nan(""), 1.0, 0.0}, {1.0, 1.0, 0.0}).first_fall(), 0.0);
 }
 

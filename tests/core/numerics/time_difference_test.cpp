@@ -15,7 +15,7 @@ namespace {
 
 using namespace carom;
 
-/// What the header states, away from breaks and beside one.
+/// Errors that the header states, away from breaks and beside one.
 double first_error(double w) { return std::pow(w / 4096, 6) / 140 * w + 2e-12; }
 double second_error(double w) { return std::pow(w / 1024, 6) / 560 * w * w + 2e-9; }
 double first_beside(double w, double size) { return std::pow(w / 4096, 6) * w + size * 4e-11; }

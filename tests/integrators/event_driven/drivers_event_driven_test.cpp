@@ -98,7 +98,7 @@ TEST(DriversEventDriven, BreaksAreMetExactly) {
     JointCheck check(simulation);
     simulation.run_until(1.2);
     EXPECT_LE(check.gap, gap_limit);
-    // What differences leave of the rates.
+    // Error of the rates by differences.
     EXPECT_LE(check.speed, speed_limit);
     const auto breaks = events_of(simulation, EventKind::discontinuity);
     EXPECT_EQ(breaks.size(), 2U);

@@ -142,7 +142,7 @@ TEST_P(SharedFlow, RefusesToServeWhatItDoesNotFit) {
   EXPECT_THROW(flow->resume(step), ModelError);
 }
 
-// What was left of a step before an error can be gone on from; the flow that failed leaves nothing.
+// A step left before an error can be resumed; the flow that failed leaves nothing.
 TEST_P(SharedFlow, AnErrorLeavesNothing) {
   Problem half(1, 1e-9, [](double t, const double*, double* rates) { rates[0] = std::sqrt(1.0 - t); });
   const auto flow = make(half, 1e-9);

@@ -154,7 +154,7 @@ TEST(SharedFlows, AThousandBallsNeedOne) {
   }
 }
 
-// What one ball does, as bits: motion at the times looked at, then its events.
+// Motion of one ball as bits, at the times of output, then its events.
 std::vector<std::uint64_t> story(const System& system, BodyId ball, const EventDriven& options) {
   std::vector<std::uint64_t> bits;
   Simulation simulation(system, options);

@@ -1,4 +1,4 @@
-// What a failed step leaves behind, and what the contact solvers did on the way.
+// Files that a failed step leaves behind, and counts of the contact solvers on the way.
 
 #include "tests/integrators/throws.h"
 

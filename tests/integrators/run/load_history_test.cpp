@@ -28,7 +28,7 @@ std::vector<double> cubic(int n) { return {1.0 * n * n * n, 7.0 - 2.0 * n * n * 
 
 constexpr double step = 0.25;
 
-/// What was seen of steps 0 to `steps`.
+/// History of steps 0 to `steps`.
 LoadHistory seen(int steps) {
   LoadHistory history;
   for (int n = 1; n <= steps; ++n) {
