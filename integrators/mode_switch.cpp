@@ -42,6 +42,32 @@ namespace {
   throw SolverError(message, std::move(failure));
 }
 
+/// Record of a contact that took part in the answer of its island.
+EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std::size_t c, double time,
+                     const double* velocity_after) {
+  const Constraint& contact = island.constraints()[c];
+  EventRecord event;
+  event.time = time;
+  event.kind = EventKind::mode_switch;
+  event.contact = contact.key;
+  event.body = assembly.layout()->id(contact.body());
+  if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
+    event.obstacle = {contact.key.b.serial, assembly.system().token()};
+  }
+  for (int row = 0; row < contact.rows; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    const auto place = static_cast<std::size_t>(island.first_row(c)) + at;
+    event.velocity_before[at] = island.before()[place];
+    event.velocity_after[at] = contact.velocity(row, velocity_after);
+    event.impulse[at] = island.impulses()[place];
+  }
+  event.mode = island.modes()[c];
+  event.outcome = island.report().outcome;
+  event.residual = island.report().residual;
+  event.solver = island.report().solver;
+  return event;
+}
+
 }  // namespace
 
 void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
@@ -56,7 +82,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   ObstaclePlaces places;
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
-  std::vector<EventRecord> told;
+  std::vector<EventRecord> recorded;
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
@@ -80,25 +106,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
       if (!cluster.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
       cluster.map().add_velocities(trial.v.data());
       for (std::size_t c = 0; c < of_body.size(); ++c) {
-        EventRecord& event = told.emplace_back();
-        event.time = state.time;
-        event.kind = EventKind::mode_switch;
-        event.contact = of_body[c].key;
-        event.body = assembly.layout()->id(of_body[c].body());
-        if (of_body[c].key.b.owner == FeatureKey::Owner::obstacle) {
-          event.obstacle = {of_body[c].key.b.serial, assembly.system().token()};
-        }
-        for (int row = 0; row < of_body[c].rows; ++row) {
-          const auto at = static_cast<std::size_t>(row);
-          const auto place = static_cast<std::size_t>(cluster.first_row(c)) + at;
-          event.velocity_before[at] = cluster.before()[place];
-          event.velocity_after[at] = of_body[c].velocity(row, trial.v.data());
-          event.impulse[at] = cluster.impulses()[place];
-        }
-        event.mode = cluster.modes()[c];
-        event.outcome = cluster.report().outcome;
-        event.residual = cluster.report().residual;
-        event.solver = cluster.report().solver;
+        recorded.push_back(event_of(assembly, cluster, c, state.time, trial.v.data()));
       }
     }
     // All of them: out of one obstacle a body may come into another.
@@ -115,12 +123,12 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   companion.ledger.book(flows, stored);
   companion.contact_statistics += chain.statistics();
   companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
-      static_cast<std::int64_t>(told.size());
+      static_cast<std::int64_t>(recorded.size());
   state = std::move(trial);
   report = {};
   report.time = state.time;
   report.projected = shift;
-  events.insert(events.end(), told.begin(), told.end());
+  events.insert(events.end(), recorded.begin(), recorded.end());
 }
 
 }  // namespace carom
