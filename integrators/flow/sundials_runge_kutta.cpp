@@ -77,7 +77,7 @@ class Stepper {
 public:
   Stepper(SundialsLink& link, N_Vector y)
       : memory_(ERKStepCreate(SundialsLink::rates, 0.0, y, link.context())), link_(&link) {
-    link.demand(memory_ != nullptr, "ERKStepCreate");
+    link.errors().demand(memory_ != nullptr, "ERKStepCreate");
 #if SUNDIALS_VERSION_MAJOR < 7
     demand(ERKStepSetErrHandlerFn(memory_, SundialsLink::take_message, &link));
 #endif
