@@ -90,7 +90,7 @@ public:
     demand(CAROM_ERK(SetMaxGrowth)(memory_, growth));
 #if SUNDIALS_VERSION_MAJOR >= 7
     controller_ = control_.make(link.context());
-    link.demand(controller_ != nullptr, "making a controller of steps");
+    link.errors().demand(controller_ != nullptr, "making a controller of steps");
     demand(CAROM_ERK(SetAdaptController)(memory_, controller_));
 #else
     demand(ERKStepSetAdaptivityFn(memory_, LengthControl::adapt, &control_));

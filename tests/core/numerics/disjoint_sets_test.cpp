@@ -13,9 +13,9 @@ TEST(DisjointSets, AreNamedByTheirSmallestNumber) {
   sets.join(5, 3);
   sets.join(4, 5);
   sets.join(4, 3);
-  for (const Index i : {3, 4, 5}) EXPECT_EQ(sets.find(i), 3U);
+  for (const Index i : {3U, 4U, 5U}) EXPECT_EQ(sets.find(i), 3U);
   sets.join(5, 1);
-  for (const Index i : {1, 3, 4, 5}) EXPECT_EQ(sets.find(i), 1U);
+  for (const Index i : {1U, 3U, 4U, 5U}) EXPECT_EQ(sets.find(i), 1U);
   EXPECT_EQ(sets.find(0), 0U);
   EXPECT_EQ(sets.find(2), 2U);
 }
