@@ -65,6 +65,7 @@ set(carom_public_headers
     core/space.h
     core/state.h
     core/surface.h
+    core/surface_table.h
     core/system.h
     core/text_table.h
     core/time_course.h

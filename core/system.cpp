@@ -180,7 +180,7 @@ void System::remove(ShapeId id) {
 }
 void System::remove(ObstacleId id) {
   remove_from(Role::obstacle, obstacles_, id, "obstacle");
-  surfaces_.erase(id.serial);
+  surfaces_.remove_own(id.serial);
 }
 
 void System::keep_place(BodyId body, bool keep) {
@@ -199,19 +199,32 @@ bool System::keeps_place(BodyId body) const {
 
 MaterialId System::material(std::string_view name) {
   if (name.empty()) throw ModelError("material: name is empty; allowed: a name");
-  const auto found = std::find(materials_.begin(), materials_.end(), name);
-  const auto serial = static_cast<Index>(found - materials_.begin());
-  if (found == materials_.end()) materials_.emplace_back(name);
-  return {serial, token_};
+  return {surfaces_.material(name), token_};
 }
 
 void System::between(MaterialId a, MaterialId b, const Surface& surface) {
   for (const MaterialId id : {a, b}) {
     if (!contains(id)) throw ModelError("surface: material is unknown; allowed: a material of this system");
   }
-  PartCheck("surface between '" + materials_[a.serial] + "' and '" + materials_[b.serial] + "'", *this)
+  PartCheck("surface between '" + surfaces_.name(a.serial) + "' and '" + surfaces_.name(b.serial) + "'",
+            *this)
       .surface(surface);
-  laws_[std::minmax(a.serial, b.serial)] = surface;
+  surfaces_.set(a.serial, b.serial, surface);
+}
+
+void System::set_default_law(const Surface& surface) {
+  PartCheck("default law of contact", *this).surface(surface);
+  surfaces_.set_default(surface);
+}
+
+std::optional<Surface> System::find_law(const ContactSide& a, const ContactSide& b) const {
+  const Surface* const found = surfaces_.find(a, b);
+  return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+std::optional<Surface> System::law(MaterialId a, MaterialId b) const {
+  for (const MaterialId id : {a, b}) PartCheck("law of contact", *this).material(id);
+  return find_law({.material = a.serial}, {.material = b.serial});
 }
 
 std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
@@ -221,12 +234,7 @@ std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
   PartCheck("law of contact", *this).material(a);
   const auto place = obstacles_.place(obstacle.serial);
   const MaterialId b = obstacles_.entries()[place.entry].kind->material(place.slot);
-  if (a.valid() && b.valid()) {
-    if (const auto found = laws_.find(std::minmax(a.serial, b.serial)); found != laws_.end())
-      return found->second;
-  }
-  if (const auto found = surfaces_.find(obstacle.serial); found != surfaces_.end()) return found->second;
-  return std::nullopt;
+  return find_law({.material = a.serial}, {.material = b.serial, .own = obstacle.serial});
 }
 
 std::uint64_t System::fingerprint() const {
@@ -248,23 +256,7 @@ std::uint64_t System::fingerprint() const {
   add_kinds(joints_);
   add_kinds(shapes_);
   add_kinds(obstacles_);
-  const auto add_surface = [&print](const Surface& surface) {
-    print.add(surface.friction);
-    print.add(surface.normal_restitution);
-    print.add(surface.tangential_restitution);
-    if (!surface.has_static_friction()) return;
-    print.add(surface.static_friction);
-    print.add(surface.stribeck_speed);
-  };
-  for (const auto& [pair, surface] : laws_) {
-    print.add(std::uint64_t{pair.first});
-    print.add(std::uint64_t{pair.second});
-    add_surface(surface);
-  }
-  for (const auto& [serial, surface] : surfaces_) {
-    print.add(std::uint64_t{serial});
-    add_surface(surface);
-  }
+  surfaces_.fingerprint(print);
   return print.value();
 }
 

@@ -10,6 +10,7 @@
 #include <carom/core/part.h>
 #include <carom/core/registry.h>
 #include <carom/core/surface.h>
+#include <carom/core/surface_table.h>
 
 #include <map>
 #include <optional>
@@ -43,7 +44,8 @@ public:
     return {serial, token_};
   }
 
-  /// Adds an obstacle with its contact law, which holds where no law of materials is set (see between()).
+  /// Adds an obstacle with its contact law. Short for a material of its own that has this law with
+  /// everything; it holds where no law of materials is set (see between()).
   template <Part P>
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
@@ -51,7 +53,7 @@ public:
     const Index serial = obstacles_.next_serial();
     PartCheck(describe(Kind::part_label(), name, serial), *this).surface(surface);
     const ObstacleId id = add(part, std::move(name));
-    surfaces_.emplace(id.serial, surface);
+    surfaces_.set_own(id.serial, surface);
     return id;
   }
 
@@ -73,9 +75,16 @@ public:
   MaterialId material(std::string_view name);
   /// Sets the contact law between two materials. Throws ModelError for invalid coefficients.
   void between(MaterialId a, MaterialId b, const Surface& surface);
+  /// Sets the contact law of all pairs that have no other, of parts without a material too. Unless it is set
+  /// there is no such law, and a pair without a law is an error: a Simulation refuses it by name. Throws
+  /// ModelError for invalid coefficients.
+  void set_default_law(const Surface& surface);
+  /// Contact law between parts of two materials, in either order: that set by between(), else the default
+  /// law, else none. Either may be no material. Throws ModelError for a material that is not of this system.
+  [[nodiscard]] std::optional<Surface> law(MaterialId a, MaterialId b) const;
   /// Contact law between a part of material `a` and an obstacle: that of their materials, set by between(),
-  /// else the surface that the obstacle was added with, else none. `a` may be no material. Throws ModelError
-  /// for a material or an obstacle that is not of this system.
+  /// else the surface that the obstacle was added with, else the default law, else none. `a` may be no
+  /// material. Throws ModelError for a material or an obstacle that is not of this system.
   [[nodiscard]] std::optional<Surface> law(MaterialId a, ObstacleId obstacle) const;
 
   /// The part of that name. Throws ModelError if there is none.
@@ -107,7 +116,7 @@ public:
     return id.token == token_ && obstacles_.contains(id.serial);
   }
   [[nodiscard]] bool contains(MaterialId id) const {
-    return id.token == token_ && id.serial < materials_.size();
+    return id.token == token_ && id.serial < surfaces_.size();
   }
   /// The body that a shape is fixed to, or was until it was removed. Throws ModelError for a shape that was
   /// never in this system.
@@ -171,6 +180,7 @@ private:
   [[nodiscard]] static std::string describe(std::string_view label, const std::string& name, Index serial);
   void added(Role role, int dimension, Index serial, std::string name);
   [[nodiscard]] Index by_name(Role role, std::string_view name, std::string_view what) const;
+  [[nodiscard]] std::optional<Surface> find_law(const ContactSide& a, const ContactSide& b) const;
   template <class Identity, class K>
   [[nodiscard]] std::string name_in(Role role, const Registry<K>& registry, Identity id) const;
   template <class Identity, class K>
@@ -185,9 +195,7 @@ private:
   Registry<ObstacleKind> obstacles_;
   std::map<Role, Names> names_;
   std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name_;
-  std::vector<std::string> materials_;
-  std::map<std::pair<Index, Index>, Surface> laws_;
-  std::map<Index, Surface> surfaces_;
+  SurfaceTable surfaces_;
   std::set<Index> kept_;                     // bodies that stay where they are
   std::map<Index, BodyId> former_carriers_;  // bodies of removed shapes
 };

@@ -133,8 +133,8 @@ void find_contacts_without_law(const System& system, const Touching& touching,
       out.push_back({FindingKind::contact_without_law,
                      {toucher.name, name},
                      "contact of " + toucher.name + " on " + name +
-                         ": law is not given; allowed: a Surface on the obstacle or between the two "
-                         "materials"});
+                         ": law is not given; allowed: a Surface on the obstacle, between the two "
+                         "materials or as default law"});
     }
   }
 }
@@ -148,10 +148,11 @@ std::vector<ModelFinding> System::check() const {
   const auto is_solid = [&](MaterialId material) {
     return std::find(solid.begin(), solid.end(), material) != solid.end();
   };
-  for (const auto& [pair, law] : laws_) {
+  for (const auto& [pair, law] : surfaces_.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
-    const std::string name_a = "'" + materials_[a.serial] + "'", name_b = "'" + materials_[b.serial] + "'";
+    const std::string &given_a = surfaces_.name(a.serial), &given_b = surfaces_.name(b.serial);
+    const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
     std::string text = "surface between " + name_a + " and " + name_b + ": ";
     if (!is_solid(a) && !is_solid(b)) {
       text += "no obstacle is of " + name_a + (a == b ? "" : " or " + name_b) + who_touches;
@@ -160,7 +161,7 @@ std::vector<ModelFinding> System::check() const {
       text += "an obstacle is of " + (solid_a ? name_a : name_b) + ", but nothing that can touch it is of " +
               (solid_a ? name_b : name_a);
     }
-    found.push_back({FindingKind::law_without_effect, {materials_[a.serial], materials_[b.serial]}, text});
+    found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
   if (solid.empty()) {
     if (!touching.intended.empty()) {

@@ -110,7 +110,8 @@ void Detector::make_law_table() {
                                       : feature->key;
       const ConstraintKey key{of, {FeatureKey::Owner::obstacle, obstacle.serial, 0}};
       throw ModelError("contact of " + name(key) +
-                       ": law is not given; allowed: a Surface on the obstacle or between the two materials");
+                       ": law is not given; allowed: a Surface on the obstacle, between the two materials or "
+                       "as default law");
     }
   }
 }

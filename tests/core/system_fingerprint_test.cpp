@@ -154,4 +154,22 @@ TEST(SystemFingerprint, ForgetsWhatWasRemoved) {
   EXPECT_EQ(system.fingerprint(), print);
 }
 
+// The value that earlier versions gave: checkpoints of such models are still accepted.
+TEST(SystemFingerprint, IsThatOfEarlierVersions) {
+  System system;
+  const MaterialId steel = system.material("steel"), ice = system.material("ice");
+  const BodyId ball = system.add(Particle{.mass = 1.0, .material = steel});
+  const BodyId plate = system.add(RigidBody{.mass = box(2.0, 1.0, 0.5)});
+  system.add(Disc{.body = plate, .radius = 0.25, .material = steel});
+  system.add(SpringDamper{.from = ball, .to = plate, .stiffness = 3.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .material = ice});
+  system.add(
+      HalfPlane{.point = {-2.0, 0.0},
+                .normal = {1.0, 0.0},
+                .motion = {.displacement = [](double) { return Vec<2>(0.0, 0.0); }, .breaks = {1.0}}},
+      Surface{.friction = 0.1, .normal_restitution = 0.2, .static_friction = 0.3, .stribeck_speed = 0.5});
+  system.between(steel, ice, {.friction = 0.4, .normal_restitution = 0.5, .tangential_restitution = 0.6});
+  EXPECT_EQ(system.fingerprint(), 14331642320107730341U);
+}
+
 }  // namespace
