@@ -44,6 +44,7 @@ set(carom_public_headers
     core/force_element.h
     core/force_kind.h
     core/function_ref.h
+    core/ground_shape_kind.h
     core/guard_motion.h
     core/ids.h
     core/internal_step.h
@@ -55,7 +56,6 @@ set(carom_public_headers
     core/numerics/compensated_sum.h
     core/numerics/pair.h
     core/numerics/time_difference.h
-    core/obstacle_kind.h
     core/part.h
     core/part_check.h
     core/registry.h

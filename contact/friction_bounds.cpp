@@ -19,7 +19,7 @@ FrictionBounds::FrictionBounds(const Assembly& assembly, Index component, const 
     if (!kind.has_dry_friction()) continue;
     const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
-      const JointRub dry_friction = kind.dry_friction(slot);
+      const JointDryFriction dry_friction = kind.dry_friction(slot);
       if (dry_friction.coefficient == 0.0) continue;
       const JointId bearing = kind.on_joint(slot);
       const JointTable::Place place = table->place(bearing.serial);

@@ -19,7 +19,12 @@ namespace carom {
 /// One feature of something that can touch.
 struct FeatureKey {
   /// Owner of the feature.
-  enum class Owner : std::uint8_t { body, shape, obstacle, joint };
+  enum class Owner : std::uint8_t {
+    body,      ///< a body that touches at its centre
+    shape,     ///< a shape of a body
+    obstacle,  ///< a shape on ground
+    joint      ///< a limit of a joint, or friction in one
+  };
 
   Owner owner = Owner::body;  ///< what it belongs to
   Index serial = none;        ///< serial number of the owner

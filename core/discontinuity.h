@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Times at which laws of time jump or have a kink, with the part whose law it is.
+/// Times at which laws of time jump or are not smooth, with the part whose law it is.
 
 #include <carom/core/ids.h>
 
@@ -15,7 +15,7 @@ struct Discontinuity {
   double time = 0.0;      ///< [s]
   ElementId element{};    ///< whose load jumps
   JointId joint{};        ///< the driver whose prescribed coordinate jumps
-  ObstacleId obstacle{};  ///< whose prescribed motion jumps
+  ObstacleId obstacle{};  ///< the shape on ground whose prescribed motion jumps
   friend bool operator==(const Discontinuity&, const Discontinuity&) = default;
 };
 

@@ -30,7 +30,7 @@ using BodyId = Id<struct BodyTag>;          ///< a body
 using ElementId = Id<struct ElementTag>;    ///< a force element
 using ShapeId = Id<struct ShapeTag>;        ///< a shape fixed to a body
 using JointId = Id<struct JointTag>;        ///< a joint
-using ObstacleId = Id<struct ObstacleTag>;  ///< an obstacle
+using ObstacleId = Id<struct ObstacleTag>;  ///< an obstacle: a shape on ground, fixed or moved as prescribed
 using MaterialId = Id<struct MaterialTag>;  ///< a material
 
 /// The fixed frame. An end of a force element or joint may be on it; it belongs to every system.

@@ -89,7 +89,7 @@ struct JointLimit {
 };
 
 /// Dry friction along the coordinate of a joint.
-struct JointRub {
+struct JointDryFriction {
   double bound = 0.0;          ///< of the friction while it slides, constant part [N, N m]
   double static_factor = 1.0;  ///< ratio of the bound of sticking to that of sliding
   double coefficient = 0.0;  ///< of the force between the bodies of the joint, which adds to the bound [1, m]
@@ -165,7 +165,7 @@ public:
   /// True if joints of this kind have dry friction along the coordinate of the joint that they act on.
   [[nodiscard]] virtual bool has_dry_friction() const { return false; }
   /// The friction of a joint.
-  [[nodiscard]] virtual JointRub dry_friction(Index /*joint*/) const { return {}; }
+  [[nodiscard]] virtual JointDryFriction dry_friction(Index /*joint*/) const { return {}; }
   /// Load of the multipliers of the rows of a joint on its body `to`; for dry friction, that of the friction.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;

@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// Kinds of findings. Bodies touch obstacles; bodies do not touch bodies.
+/// Kinds of findings. Bodies touch obstacles (shapes on ground); bodies do not touch bodies.
 enum class FindingKind : std::uint8_t {
   law_without_effect,   ///< System::between() two materials that never meet
   contact_without_law,  ///< a part that touches and an obstacle without a law; a Simulation refuses it

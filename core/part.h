@@ -5,9 +5,9 @@
 
 #include <carom/core/body_kind.h>
 #include <carom/core/force_kind.h>
+#include <carom/core/ground_shape_kind.h>
 #include <carom/core/ids.h>
 #include <carom/core/joint_kind.h>
-#include <carom/core/obstacle_kind.h>
 #include <carom/core/part_check.h>
 #include <carom/core/shape_kind.h>
 
@@ -22,7 +22,7 @@ enum class Role : std::uint8_t {
   force,     ///< a force element: an edge, or a load on one body
   joint,     ///< an edge with constraints
   shape,     ///< geometry fixed to a body
-  obstacle,  ///< geometry fixed to the ground, or moved as prescribed
+  obstacle,  ///< a shape on ground: fixed to the ground, or moved as prescribed
 };
 
 /// Interface and identity that belong to a role.
@@ -52,10 +52,10 @@ struct RoleTraits<Role::shape> {
   using Interface = ShapeKind;
   using Identity = ShapeId;
 };
-/// Of obstacles.
+/// Of shapes on ground.
 template <>
 struct RoleTraits<Role::obstacle> {
-  using Interface = ObstacleKind;
+  using Interface = GroundShapeKind;
   using Identity = ObstacleId;
 };
 

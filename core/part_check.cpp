@@ -52,7 +52,7 @@ std::string refused_name(const System& system, ShapeId id) {
   return with_removal(system, system.shape_kinds(), id);
 }
 std::string refused_name(const System& system, ObstacleId id) {
-  return with_removal(system, system.obstacle_kinds(), id);
+  return with_removal(system, system.ground_shape_kinds(), id);
 }
 
 void PartCheck::refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const {

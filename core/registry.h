@@ -38,7 +38,7 @@ public:
   Registry(const Registry& other) : next_serial_(other.next_serial_) {
     entries_.reserve(other.entries_.size());
     for (const Entry& entry : other.entries_)
-      entries_.push_back({entry.type, entry.kind->clone(), entry.serials, entry.given});
+      entries_.push_back({entry.type, copy_of(*entry.kind), entry.serials, entry.given});
   }
   Registry(Registry&&) noexcept = default;
   Registry& operator=(Registry other) noexcept {
@@ -111,6 +111,11 @@ public:
   }
 
 private:
+  // A copy is of the type of the original, also where clone() is that of a wider interface.
+  static std::unique_ptr<K> copy_of(const K& kind) {
+    return std::unique_ptr<K>(static_cast<K*>(kind.clone().release()));
+  }
+
   std::vector<Entry> entries_;
   Index next_serial_ = 0;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Interface of a kind of shapes.
+/// Interface of a kind of shapes: fixed to bodies, or to the ground (core/ground_shape_kind.h).
 
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// A point fixed to a body with a radius: a place where a convex shape can touch a half-plane.
+/// A point fixed to a body with a radius: a place where a convex shape can touch a half-plane on ground.
 struct RoundedPoint {
   std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
   double radius = 0.0;             ///< [m]
@@ -30,11 +30,12 @@ public:
   [[nodiscard]] virtual std::string_view label() const = 0;         ///< name used in messages
   [[nodiscard]] virtual int dimension() const = 0;                  ///< 2 or 3
   [[nodiscard]] virtual Index size() const = 0;                     ///< number of shapes
-  [[nodiscard]] virtual BodyId body(Index slot) const = 0;          ///< the body it is fixed to
+  [[nodiscard]] virtual BodyId body(Index slot) const = 0;          ///< the body it is fixed to, or `ground`
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
-  /// Appends the features that may touch a half-plane, in a fixed order (their places are feature numbers).
+  /// Appends the points that may touch a shape on ground, in a fixed order (their places are feature
+  /// numbers).
   virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;
-  /// Adds all data that distinguish the shapes of this kind.
+  /// Adds all data that distinguish the shapes of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };
 

@@ -63,7 +63,7 @@ std::string System::name(BodyId id) const {
 std::string System::name(ElementId id) const { return name_in(Role::force, forces_, id); }
 std::string System::name(JointId id) const { return name_in(Role::joint, joints_, id); }
 std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_, id); }
-std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, obstacles_, id); }
+std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, ground_shapes_, id); }
 
 std::string System::given_name(BodyId id) const {
   if (id == ground) return {};
@@ -179,7 +179,7 @@ void System::remove(ShapeId id) {
   former_carriers_.emplace(id.serial, carrier);
 }
 void System::remove(ObstacleId id) {
-  remove_from(Role::obstacle, obstacles_, id, "obstacle");
+  remove_from(Role::obstacle, ground_shapes_, id, "obstacle");
   surfaces_.remove_own(id.serial);
 }
 
@@ -232,8 +232,8 @@ std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
     throw ModelError("law of contact: obstacle is " + refused_name(*this, obstacle) +
                      "; allowed: one of this system");
   PartCheck("law of contact", *this).material(a);
-  const auto place = obstacles_.place(obstacle.serial);
-  const MaterialId b = obstacles_.entries()[place.entry].kind->material(place.slot);
+  const auto place = ground_shapes_.place(obstacle.serial);
+  const MaterialId b = ground_shapes_.entries()[place.entry].kind->material(place.slot);
   return find_law({.material = a.serial}, {.material = b.serial, .own = obstacle.serial});
 }
 
@@ -255,7 +255,7 @@ std::uint64_t System::fingerprint() const {
   add_kinds(forces_);
   add_kinds(joints_);
   add_kinds(shapes_);
-  add_kinds(obstacles_);
+  add_kinds(ground_shapes_);
   surfaces_.fingerprint(print);
   return print.value();
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// The model: a graph of bodies (nodes), force elements and joints (edges), shapes and obstacles.
+/// The model: a graph of bodies (nodes), force elements and joints (edges), shapes of bodies and shapes on
+/// ground (obstacles).
 
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
@@ -28,7 +29,7 @@ class CAROM_API System {
 public:
   System();
 
-  /// Adds a part: a body, force element, joint, shape or obstacle, of the library or of the user.
+  /// Adds a part, of the library or of the user: a body, force element, joint, shape of a body or on ground.
   /// \param name optional, unique among the parts of its role
   /// \return its identity
   /// Throws ModelError (naming the part, the value and what is allowed) if the part is invalid.
@@ -44,13 +45,13 @@ public:
     return {serial, token_};
   }
 
-  /// Adds an obstacle with its contact law. Short for a material of its own that has this law with
+  /// Adds a shape on ground with its contact law. Short for a material of its own that has this law with
   /// everything; it holds where no law of materials is set (see between()).
   template <Part P>
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
     using Kind = typename KindOf<P>::type;
-    const Index serial = obstacles_.next_serial();
+    const Index serial = ground_shapes_.next_serial();
     PartCheck(describe(Kind::part_label(), name, serial), *this).surface(surface);
     const ObstacleId id = add(part, std::move(name));
     surfaces_.set_own(id.serial, surface);
@@ -82,9 +83,9 @@ public:
   /// Contact law between parts of two materials, in either order: that set by between(), else the default
   /// law, else none. Either may be no material. Throws ModelError for a material that is not of this system.
   [[nodiscard]] std::optional<Surface> law(MaterialId a, MaterialId b) const;
-  /// Contact law between a part of material `a` and an obstacle: that of their materials, set by between(),
-  /// else the surface that the obstacle was added with, else the default law, else none. `a` may be no
-  /// material. Throws ModelError for a material or an obstacle that is not of this system.
+  /// Contact law between a part of material `a` and a shape on ground: that of their materials, set by
+  /// between(), else the surface that the shape was added with, else the default law, else none. `a` may be
+  /// no material. Throws ModelError for a material or a shape that is not of this system.
   [[nodiscard]] std::optional<Surface> law(MaterialId a, ObstacleId obstacle) const;
 
   /// The part of that name. Throws ModelError if there is none.
@@ -113,7 +114,7 @@ public:
   [[nodiscard]] bool contains(JointId id) const { return id.token == token_ && joints_.contains(id.serial); }
   [[nodiscard]] bool contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
   [[nodiscard]] bool contains(ObstacleId id) const {
-    return id.token == token_ && obstacles_.contains(id.serial);
+    return id.token == token_ && ground_shapes_.contains(id.serial);
   }
   [[nodiscard]] bool contains(MaterialId id) const {
     return id.token == token_ && id.serial < surfaces_.size();
@@ -134,7 +135,7 @@ public:
   [[nodiscard]] std::vector<ElementId> elements() const { return identities<ElementId>(forces_); }
   [[nodiscard]] std::vector<JointId> joints() const { return identities<JointId>(joints_); }
   [[nodiscard]] std::vector<ShapeId> shapes() const { return identities<ShapeId>(shapes_); }
-  [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(obstacles_); }
+  [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(ground_shapes_); }
 
   /// 2 or 3; 0 while no part determines it.
   [[nodiscard]] int dimension() const { return dimension_; }
@@ -149,7 +150,7 @@ public:
   [[nodiscard]] const Registry<ForceKind>& force_kinds() const { return forces_; }
   [[nodiscard]] const Registry<JointKind>& joint_kinds() const { return joints_; }
   [[nodiscard]] const Registry<ShapeKind>& shape_kinds() const { return shapes_; }
-  [[nodiscard]] const Registry<ObstacleKind>& obstacle_kinds() const { return obstacles_; }
+  [[nodiscard]] const Registry<GroundShapeKind>& ground_shape_kinds() const { return ground_shapes_; }
 
 private:
   template <Role R>
@@ -163,7 +164,7 @@ private:
     } else if constexpr (R == Role::shape) {
       return shapes_;
     } else {
-      return obstacles_;
+      return ground_shapes_;
     }
   }
   template <class Identity, class K>
@@ -192,7 +193,7 @@ private:
   Registry<ForceKind> forces_;
   Registry<JointKind> joints_;
   Registry<ShapeKind> shapes_;
-  Registry<ObstacleKind> obstacles_;
+  Registry<GroundShapeKind> ground_shapes_;
   std::map<Role, Names> names_;
   std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name_;
   SurfaceTable surfaces_;

@@ -37,7 +37,7 @@ struct Toucher {
   std::string name;
 };
 
-/// Everything that can touch an obstacle.
+/// Everything that can touch a shape on ground.
 struct Touching {
   std::vector<Toucher> by_material;
   PartNames intended;  // shapes, and particles with a material: made to touch something
@@ -53,7 +53,7 @@ Touching touching_parts(const System& system) {
                                     [&](const Toucher& toucher) { return toucher.material == material; });
     if (known == all.by_material.end()) all.by_material.push_back({material, system.name(id)});
   };
-  // PartNames are made of few parts only where there are obstacles: then none is listed as intended.
+  // PartNames are made of few parts only where there are shapes on ground: then none is listed as intended.
   const bool lists = system.obstacles().empty();
   for (const auto& entry : system.body_kinds().entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
@@ -75,10 +75,10 @@ bool has(const Touching& touching, MaterialId material) {
                      [&](const Toucher& toucher) { return toucher.material == material; });
 }
 
-/// Materials of obstacles.
-std::vector<MaterialId> obstacle_materials(const System& system) {
+/// Materials of shapes on ground.
+std::vector<MaterialId> ground_materials(const System& system) {
   std::vector<MaterialId> all;
-  for (const auto& entry : system.obstacle_kinds().entries()) {
+  for (const auto& entry : system.ground_shape_kinds().entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) all.push_back(entry.kind->material(slot));
   }
   return all;
@@ -144,7 +144,7 @@ void find_contacts_without_law(const System& system, const Touching& touching,
 std::vector<ModelFinding> System::check() const {
   std::vector<ModelFinding> found;
   const Touching touching = touching_parts(*this);
-  const std::vector<MaterialId> solid = obstacle_materials(*this);
+  const std::vector<MaterialId> solid = ground_materials(*this);
   const auto is_solid = [&](MaterialId material) {
     return std::find(solid.begin(), solid.end(), material) != solid.end();
   };

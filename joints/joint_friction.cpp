@@ -24,7 +24,7 @@ void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {
   store(part, check);
 }
 
-JointRub JointFrictionKind::dry_friction(Index joint) const {
+JointDryFriction JointFrictionKind::dry_friction(Index joint) const {
   const JointFriction& friction = parts_[joint].part;
   return {friction.bound, friction.static_factor, friction.coefficient};
 }

@@ -42,7 +42,7 @@ public:
   void evaluate(const JointView&, Index, JointRow*) const override {}
   void derivatives(const JointView&, Index, JointRowDerivative*) const override {}
   [[nodiscard]] bool has_dry_friction() const override { return true; }
-  [[nodiscard]] JointRub dry_friction(Index joint) const override;
+  [[nodiscard]] JointDryFriction dry_friction(Index joint) const override;
   /// Friction is given as the moment of the reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView&, Index, const double* multipliers) const override;
   void fingerprint(Fingerprint& print) const override;

@@ -30,19 +30,19 @@ namespace {
 
 std::string joint_name(const System& system, const FeatureKey& key) {
   const JointKind* const kind = system.joint_kinds().kind_ever(key.serial);
-  if (kind == nullptr) refuse("of", key);
+  if (kind == nullptr) refuse("a", key);
   std::string name = system.name(JointId{key.serial, system.token()});
   if (kind->has_dry_friction()) return name;
-  if (key.feature >= kind->limits()) refuse("of", key);
+  if (key.feature >= kind->limits()) refuse("a", key);
   return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
 }
 
 std::string shape_name(const System& system, const FeatureKey& key) {
-  if (system.shape_kinds().kind_ever(key.serial) == nullptr) refuse("of", key);
+  if (system.shape_kinds().kind_ever(key.serial) == nullptr) refuse("a", key);
   if (const auto place = system.shape_kinds().place(key.serial); place.slot != none) {
     std::vector<RoundedPoint> points;
     system.shape_kinds().entries()[place.entry].kind->rounded_points(place.slot, points);
-    if (key.feature >= points.size()) refuse("of", key);
+    if (key.feature >= points.size()) refuse("a", key);
   }
   const ShapeId shape{key.serial, system.token()};
   return system.name(shape) + " (feature " + std::to_string(key.feature) + ") of " +
@@ -54,17 +54,16 @@ std::string shape_name(const System& system, const FeatureKey& key) {
 std::string contact_name(const System& system, const ConstraintKey& key) {
   if (key == ConstraintKey{}) return "no contact";
   if (key.a.owner == FeatureKey::Owner::joint) return joint_name(system, key.a);
-  const FeatureKey& against = key.b;
-  if (against.owner != FeatureKey::Owner::obstacle ||
-      system.obstacle_kinds().kind_ever(against.serial) == nullptr) {
-    refuse("against", against);
+  if (key.b.owner != FeatureKey::Owner::obstacle ||
+      system.ground_shape_kinds().kind_ever(key.b.serial) == nullptr) {
+    refuse("b", key.b);
   }
-  const std::string obstacle = " on " + system.name(ObstacleId{against.serial, system.token()});
-  if (key.a.owner == FeatureKey::Owner::shape) return shape_name(system, key.a) + obstacle;
+  const std::string on_ground = " on " + system.name(ObstacleId{key.b.serial, system.token()});
+  if (key.a.owner == FeatureKey::Owner::shape) return shape_name(system, key.a) + on_ground;
   if (key.a.owner != FeatureKey::Owner::body || system.body_kinds().kind_ever(key.a.serial) == nullptr) {
-    refuse("of", key.a);
+    refuse("a", key.a);
   }
-  return system.name(BodyId{key.a.serial, system.token()}) + obstacle;
+  return system.name(BodyId{key.a.serial, system.token()}) + on_ground;
 }
 
 }  // namespace carom

@@ -29,10 +29,10 @@ Detector::Detector(const Assembly& assembly) : assembly_(&assembly) {
 }
 
 void Detector::collect_obstacles() {
-  const auto& registry = assembly_->system().obstacle_kinds();
+  const auto& registry = assembly_->system().ground_shape_kinds();
   for (const Index serial : registry.serials()) {
     const auto place = registry.place(serial);
-    const ObstacleKind& kind = *registry.entries()[place.entry].kind;
+    const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
     const Index moving = kind.moves(place.slot) ? moving_++ : none;
     obstacles_.push_back({&kind, place.slot, serial, moving});
   }
@@ -213,7 +213,7 @@ void Detector::add(const BodySlot& body, const Feature& feature, const Query& qu
   const Vec<D> centre = Eigen::Map<const Vec<D>>(query.state.q + body.q) + off;
   for (Index o = 0; o < obstacles_.size(); ++o) {
     const Obstacle& obstacle = obstacles_[o];
-    const ObstacleMotion* const motion =
+    const GroundMotion* const motion =
         obstacle.moving == none ? nullptr : &query.places->motions_[obstacle.moving];
     const Gap gap = motion == nullptr ? obstacle.kind->gap(obstacle.slot, centre.data())
                                       : obstacle.kind->moved_gap(obstacle.slot, *motion, centre.data());
@@ -238,7 +238,7 @@ void Detector::add(const BodySlot& body, const Feature& feature, const Query& qu
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
     if constexpr (D == 2) {
       if (motion != nullptr) {
-        const ObstacleMotion* const after =
+        const GroundMotion* const after =
             query.after == nullptr ? nullptr : &query.after->motions_[obstacle.moving];
         fill_motion(body, feature.radius, off, query.state, *motion, after, contact);
       }
@@ -252,7 +252,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   if (pair.stop != none) return make_stop(pair.stop, state, evaluation, out);
   const Obstacle& obstacle = obstacles_[pair.obstacle];
   if (obstacle.moving == none) return make_contact(pair, state, evaluation, nullptr, out);
-  const ObstacleMotion now = motion(obstacle, state.time);
+  const GroundMotion now = motion(obstacle, state.time);
   make_contact(pair, state, evaluation, &now, out);
 }
 
@@ -265,7 +265,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 }
 
 void Detector::make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                            const ObstacleMotion* motion, Constraint& out) const {
+                            const GroundMotion* motion, Constraint& out) const {
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const Feature feature =
       pair.feature == none ? centre_of(body, pair.body, pair.material) : features_[pair.feature];

@@ -39,7 +39,7 @@ public:
 private:
   friend class Detector;
   double time_ = std::numeric_limits<double>::quiet_NaN();
-  std::vector<ObstacleMotion> motions_;  // of the obstacles that move, in the detector's order
+  std::vector<GroundMotion> motions_;  // of the obstacles that move, in the detector's order
 };
 
 /// Features of the bodies of an assembly and the laws they obey.
@@ -140,7 +140,7 @@ private:
     JointBodies bodies;  // that it binds
   };
   struct Obstacle {
-    const ObstacleKind* kind;
+    const GroundShapeKind* kind;
     Index slot;
     Index serial;
     Index moving;  // its place among those that move; `none`: at rest
@@ -168,7 +168,7 @@ private:
   // Writes the contact of a stop or of friction.
   void make_stop(Index number, const StateView& state, const Evaluation& evaluation, Constraint& out) const;
   [[nodiscard]] Feature centre_of(const BodySlot& body, Index place, Index material) const;
-  [[nodiscard]] ObstacleMotion motion(const Obstacle& obstacle, double time) const;
+  [[nodiscard]] GroundMotion motion(const Obstacle& obstacle, double time) const;
   template <int D>
   void add(const BodySlot& body, const Feature& feature, const Query& query,
            std::vector<Constraint>& out) const;
@@ -180,16 +180,16 @@ private:
             const StateView& state, Constraint& out) const;
   // Terms of the motion of the obstacle. `after` may be null.
   static void fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
-                          const ObstacleMotion& motion, const ObstacleMotion* after, Constraint& out);
+                          const GroundMotion& motion, const GroundMotion* after, Constraint& out);
   // Whether an open contact lasts. `turning`: bound on its drift by turning.
   [[nodiscard]] static bool lasts(const Query& query, const ConstraintKey& key, double gap, double turning);
   // Share of the obstacle's motion in that bound.
   [[nodiscard]] static double turning_of(const BodySlot& body, const Vec<2>& arm, const StateView& state,
-                                         const ObstacleMotion& motion, double above);
+                                         const GroundMotion& motion, double above);
   // Friction where it depends on the speed of sliding.
   static void set_friction(const StateView& state, Constraint& contact);
   void make_contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                    const ObstacleMotion* motion, Constraint& out) const;
+                    const GroundMotion* motion, Constraint& out) const;
   void find(Index component, const Query& query, std::vector<Constraint>& out) const;
   template <int D>
   void find_in(Index component, const Query& query, std::vector<Constraint>& out) const;

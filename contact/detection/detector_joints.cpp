@@ -81,7 +81,7 @@ void Detector::make_stop(Index number, const StateView& state, const Evaluation&
   out.key = {key, key};
   out.law.tangential_restitution = 0.0;
   if (has_dry_friction) {
-    const JointRub dry_friction = stop.kind->dry_friction(stop.slot);
+    const JointDryFriction dry_friction = stop.kind->dry_friction(stop.slot);
     out.type = ConstraintType::joint_friction;
     out.source = number;
     out.friction_bound = dry_friction.bound;

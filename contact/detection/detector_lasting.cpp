@@ -36,7 +36,7 @@ bool Detector::lasts(const Query& query, const ConstraintKey& key, double gap, d
 /// Of the drift in docs/method.md, section 1, without the acceleration of the place that is touched, which
 /// its velocity at the end of the step has in it already. \param above distance of the feature's centre
 double Detector::turning_of(const BodySlot& body, const Vec<2>& arm, const StateView& state,
-                            const ObstacleMotion& motion, double above) {
+                            const GroundMotion& motion, double above) {
   const double w = std::abs(motion.spin);
   Vec<2> relative =
       Eigen::Map<const Vec<2>>(state.v + body.v) - Vec<2>(motion.velocity[0], motion.velocity[1]);

@@ -12,8 +12,8 @@
 
 namespace carom {
 
-ObstacleMotion Detector::motion(const Obstacle& obstacle, double time) const {
-  const ObstacleMotion motion = obstacle.kind->place(obstacle.slot, time);
+GroundMotion Detector::motion(const Obstacle& obstacle, double time) const {
+  const GroundMotion motion = obstacle.kind->place(obstacle.slot, time);
   const NonFiniteMotion bad = find_non_finite(motion);
   if (bad.quantity == nullptr) return motion;
   const System& system = assembly_->system();
@@ -39,7 +39,7 @@ void Detector::place(double time, ObstaclePlaces& places) const {
 }
 
 void Detector::demand_continuous(const ObstaclePlaces& before, const ObstaclePlaces& after) const {
-  const auto point_of = [](const ObstacleMotion& motion, double time) {
+  const auto point_of = [](const GroundMotion& motion, double time) {
     return LawPoint{time,        motion.point,          motion.velocity,  motion.angle,
                     motion.spin, motion.velocity_given, motion.spin_given};
   };
@@ -66,7 +66,7 @@ std::vector<Discontinuity> Detector::breaks() const {
   std::vector<double> times;
   for (const Obstacle& obstacle : obstacles_) {
     times.clear();
-    obstacle.kind->breaks(obstacle.slot, times);
+    obstacle.kind->discontinuity_times(obstacle.slot, times);
     const ObstacleId id{obstacle.serial, assembly_->system().token()};
     for (const double time : times) all.push_back({.time = time, .obstacle = id});
   }
@@ -74,7 +74,7 @@ std::vector<Discontinuity> Detector::breaks() const {
 }
 
 void Detector::fill_motion(const BodySlot& body, double radius, const Vec<2>& arm, const StateView& state,
-                           const ObstacleMotion& motion, const ObstacleMotion* after, Constraint& contact) {
+                           const GroundMotion& motion, const GroundMotion* after, Constraint& contact) {
   // docs/method.md, section 1: C the centre of the feature, o the obstacle's point, w its spin, r = C - o.
   const Vec<2> n = Eigen::Map<const Vec<2>>(contact.row(0)), t = Eigen::Map<const Vec<2>>(contact.row(1));
   const Vec<2> centre = Eigen::Map<const Vec<2>>(state.q + body.q) + arm;

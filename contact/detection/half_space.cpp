@@ -1,34 +1,13 @@
+#include <carom/contact/detection/gap_point_half_space.h>
 #include <carom/contact/detection/half_space.h>
 
 namespace carom::generic {
 
 namespace {
 
+/// A normal turned with its half-plane; unturned, it is the same to the bit.
 template <int D>
-Gap gap_from(const Vec<D>& origin, const Vec<D>& normal, const double* point) {
-  Gap gap;
-  for (int i = 0; i < D; ++i) {
-    gap.distance += normal[i] * (point[i] - origin[i]);
-    gap.normal[static_cast<std::size_t>(i)] = normal[i];
-  }
-  return gap;
-}
-
-template <int D>
-bool any_from(const Vec<D>& origin, const Vec<D>& normal, const double* points, Index stride, Index count,
-              double margin) {
-  bool any = false;
-  for (Index i = 0; i < count; ++i, points += stride) {
-    double distance = 0.0;
-    for (int d = 0; d < D; ++d) distance += normal[d] * (points[d] - origin[d]);
-    any |= distance <= margin;
-  }
-  return any;
-}
-
-/// A normal turned with its obstacle; unturned, it is the same to the bit.
-template <int D>
-Vec<D> turned(const Vec<D>& normal, const ObstacleMotion& motion) {
+Vec<D> turned(const Vec<D>& normal, const GroundMotion& motion) {
   Vec<D> now = normal;
   now[0] = motion.cosine * normal[0] - motion.sine * normal[1];
   now[1] = motion.sine * normal[0] + motion.cosine * normal[1];
@@ -36,7 +15,7 @@ Vec<D> turned(const Vec<D>& normal, const ObstacleMotion& motion) {
 }
 
 template <int D>
-Vec<D> point_of(const ObstacleMotion& motion) {
+Vec<D> point_of(const GroundMotion& motion) {
   return Eigen::Map<const Vec<D>>(motion.point.data());
 }
 
@@ -58,7 +37,7 @@ void HalfSpaceKind<D>::add(const HalfSpace<D>& part, const PartCheck& check) {
 }
 
 template <int D>
-std::unique_ptr<ObstacleKind> HalfSpaceKind<D>::clone() const {
+std::unique_ptr<ShapeKind> HalfSpaceKind<D>::clone() const {
   return std::make_unique<HalfSpaceKind>(*this);
 }
 
@@ -67,49 +46,50 @@ bool HalfSpaceKind<D>::moves(Index slot) const {
   if constexpr (D == 2) {
     return !parts_[slot].motion.empty();
   } else {
-    return ObstacleKind::moves(slot);
+    return GroundShapeKind::moves(slot);
   }
 }
 
 template <int D>
-ObstacleMotion HalfSpaceKind<D>::place(Index slot, double time) const {
+GroundMotion HalfSpaceKind<D>::place(Index slot, double time) const {
   if constexpr (D == 2) {
     return parts_[slot].motion.at(time, parts_[slot].point);
   } else {
-    return ObstacleKind::place(slot, time);
+    return GroundShapeKind::place(slot, time);
   }
 }
 
 template <int D>
-void HalfSpaceKind<D>::breaks(Index slot, std::vector<double>& out) const {
+void HalfSpaceKind<D>::discontinuity_times(Index slot, std::vector<double>& out) const {
   if constexpr (D == 2) {
     const std::vector<double>& times = parts_[slot].motion.breaks;
     out.insert(out.end(), times.begin(), times.end());
   } else {
-    ObstacleKind::breaks(slot, out);
+    GroundShapeKind::discontinuity_times(slot, out);
   }
 }
 
 template <int D>
 Gap HalfSpaceKind<D>::gap(Index slot, const double* point) const {
-  return gap_from(parts_[slot].point, parts_[slot].normal, point);
+  return gap_point_half_space<D>(point, parts_[slot].point, parts_[slot].normal);
 }
 
 template <int D>
-Gap HalfSpaceKind<D>::moved_gap(Index slot, const ObstacleMotion& motion, const double* point) const {
-  return gap_from(point_of<D>(motion), turned(parts_[slot].normal, motion), point);
+Gap HalfSpaceKind<D>::moved_gap(Index slot, const GroundMotion& motion, const double* point) const {
+  return gap_point_half_space<D>(point, point_of<D>(motion), turned(parts_[slot].normal, motion));
 }
 
 template <int D>
 bool HalfSpaceKind<D>::any_within(Index slot, const double* points, Index stride, Index count,
                                   double margin) const {
-  return any_from(parts_[slot].point, parts_[slot].normal, points, stride, count, margin);
+  return any_point_in_half_space<D>({points, stride, count}, parts_[slot].point, parts_[slot].normal, margin);
 }
 
 template <int D>
-bool HalfSpaceKind<D>::any_within_moved(Index slot, const ObstacleMotion& motion, const double* points,
+bool HalfSpaceKind<D>::any_within_moved(Index slot, const GroundMotion& motion, const double* points,
                                         Index stride, Index count, double margin) const {
-  return any_from(point_of<D>(motion), turned(parts_[slot].normal, motion), points, stride, count, margin);
+  return any_point_in_half_space<D>({points, stride, count}, point_of<D>(motion),
+                                    turned(parts_[slot].normal, motion), margin);
 }
 
 template <int D>

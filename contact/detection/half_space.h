@@ -1,11 +1,10 @@
 #pragma once
 
 /// \file
-/// Half-planes and half-spaces as obstacles: gap(x) = n.(x - p), the distance of a point from the boundary.
-/// A half-plane may move as prescribed.
+/// Half-planes and half-spaces: shapes on ground, where a half-plane may move as prescribed.
 
 #include <carom/contact/detection/prescribed_motion.h>
-#include <carom/core/obstacle_kind.h>
+#include <carom/core/ground_shape_kind.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
 #include <carom/core/space.h>
@@ -49,28 +48,28 @@ struct HalfSpace<2> {
 
 /// All half-spaces of a system.
 template <int D>
-class CAROM_API HalfSpaceKind final : public ObstacleKind {
+class CAROM_API HalfSpaceKind final : public GroundShapeKind {
 public:
   static constexpr int part_dimension() { return D; }
   static constexpr std::string_view part_label() { return D == 2 ? "half-plane" : "half-space"; }
 
-  /// Checks and stores an obstacle. Throws ModelError.
+  /// Checks and stores a half-space. Throws ModelError.
   void add(const HalfSpace<D>& part, const PartCheck& check);
 
-  [[nodiscard]] std::unique_ptr<ObstacleKind> clone() const override;
+  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override;
   void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
   [[nodiscard]] bool moves(Index slot) const override;
-  [[nodiscard]] ObstacleMotion place(Index slot, double time) const override;
-  void breaks(Index slot, std::vector<double>& out) const override;
+  [[nodiscard]] GroundMotion place(Index slot, double time) const override;
+  void discontinuity_times(Index slot, std::vector<double>& out) const override;
   [[nodiscard]] Gap gap(Index slot, const double* point) const override;
-  [[nodiscard]] Gap moved_gap(Index slot, const ObstacleMotion& motion, const double* point) const override;
+  [[nodiscard]] Gap moved_gap(Index slot, const GroundMotion& motion, const double* point) const override;
   [[nodiscard]] bool any_within(Index slot, const double* points, Index stride, Index count,
                                 double margin) const override;
-  [[nodiscard]] bool any_within_moved(Index slot, const ObstacleMotion& motion, const double* points,
+  [[nodiscard]] bool any_within_moved(Index slot, const GroundMotion& motion, const double* points,
                                       Index stride, Index count, double margin) const override;
   void fingerprint(Fingerprint& print) const override;
 

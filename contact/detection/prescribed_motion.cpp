@@ -6,7 +6,7 @@
 
 namespace carom {
 
-NonFiniteMotion find_non_finite(const ObstacleMotion& motion) {
+NonFiniteMotion find_non_finite(const GroundMotion& motion) {
   for (const double value : motion.point) {
     if (!std::isfinite(value)) return {"position", value, "m"};
   }
@@ -26,8 +26,8 @@ NonFiniteMotion find_non_finite(const ObstacleMotion& motion) {
 
 namespace planar {
 
-ObstacleMotion PrescribedMotion::at(double time, const Vec<2>& point) const {
-  ObstacleMotion motion;
+GroundMotion PrescribedMotion::at(double time, const Vec<2>& point) const {
+  GroundMotion motion;
   motion.point = {point[0], point[1], 0.0};
   motion.velocity_given = static_cast<bool>(velocity);
   motion.spin_given = static_cast<bool>(spin);

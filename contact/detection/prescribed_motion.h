@@ -1,10 +1,10 @@
 #pragma once
 
 /// \file
-/// The motion of an obstacle as given by its user: functions of time.
+/// The motion of a shape on ground as given by its user: functions of time.
 
 #include <carom/core/export.h>
-#include <carom/core/obstacle_kind.h>
+#include <carom/core/ground_shape_kind.h>
 #include <carom/core/part_check.h>
 #include <carom/core/space.h>
 
@@ -13,8 +13,8 @@
 
 namespace carom::planar {
 
-/// How an obstacle moves: its point o by a displacement, about o by an angle. Empty: at rest. Functions must
-/// depend on the time alone, not on what was asked before; those not given follow from those that are,
+/// How a shape on ground moves: its point o by a displacement, about o by an angle. Empty: at rest. Functions
+/// must depend on the time alone, not on what was asked before; those not given follow from those that are,
 /// accelerations from velocities, else velocities and accelerations from positions, by differences whose
 /// accuracy core/numerics/time_difference.h states (they look some milliseconds ahead and back, before time 0
 /// too). A fingerprint cannot tell functions apart.
@@ -25,15 +25,15 @@ struct CAROM_API PrescribedMotion {
   std::function<double(double time)> angle{};                 ///< from how it is described [rad]
   std::function<double(double time)> spin{};                  ///< its rate [rad/s]
   std::function<double(double time)> angular_acceleration{};  ///< and that of the spin [rad/s^2]
-  /// Times at which velocities jump or functions have kinks, ascending [s]. At a break functions are taken
-  /// for what holds after it. Displacement and angle are continuous, at breaks too: a jump of them, or a rate
-  /// that is not theirs, is a SolverError that names the obstacle and the time (core/law_jump.h).
+  /// Times at which velocities jump or functions are not smooth, ascending [s]. At a break functions are
+  /// taken for what holds after it. Displacement and angle are continuous, at breaks too: a jump of them, or
+  /// a rate that is not theirs, is a SolverError that names the shape and the time (core/law_jump.h).
   std::vector<double> breaks{};
 
   /// True if there is no motion.
   [[nodiscard]] bool empty() const { return !displacement && !angle; }
-  /// Where an obstacle with its point described at `point` is at a time [s].
-  [[nodiscard]] ObstacleMotion at(double time, const Vec<2>& point) const;
+  /// Where a shape with its point described at `point` is at a time [s].
+  [[nodiscard]] GroundMotion at(double time, const Vec<2>& point) const;
   /// Throws ModelError for functions without the one that they are rates of, breaks out of order, or values
   /// at time 0 that are not finite.
   void check(const PartCheck& check) const;
@@ -50,6 +50,6 @@ struct NonFiniteMotion {
   const char* unit = "";           ///< its unit
 };
 /// Looks for such a number.
-[[nodiscard]] CAROM_API NonFiniteMotion find_non_finite(const ObstacleMotion& motion);
+[[nodiscard]] CAROM_API NonFiniteMotion find_non_finite(const GroundMotion& motion);
 
 }  // namespace carom

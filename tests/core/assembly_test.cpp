@@ -360,7 +360,7 @@ TEST(Assembly, InSpaceParticlesSpringsGravityAndObstaclesWork) {
   EXPECT_EQ(model.energies()[StoredEnergy::gravity], 140.0);
   EXPECT_EQ(model.energies()[StoredEnergy::kinetic], 1.0);
   EXPECT_EQ(Vec<3>(model.state.position(b)), Vec<3>(1, 2, 8));
-  const Gap gap = system.obstacle_kinds().kind_of(floor.serial).gap(0, model.state.position(b).data());
+  const Gap gap = system.ground_shape_kinds().kind_of(floor.serial).gap(0, model.state.position(b).data());
   EXPECT_EQ(gap.distance, 8.0);
   EXPECT_EQ(gap.normal, (std::array<double, 3>{0, 0, 1}));
 }

@@ -227,7 +227,7 @@ TEST(System, ARefusedPartChangesNothing) {
   EXPECT_EQ(system.body_kinds().entries().size(), 1U);
   EXPECT_TRUE(system.force_kinds().entries().empty());
   EXPECT_TRUE(system.shape_kinds().entries().empty());
-  EXPECT_TRUE(system.obstacle_kinds().entries().empty());
+  EXPECT_TRUE(system.ground_shape_kinds().entries().empty());
   EXPECT_EQ(system.add(particle(), "name").serial, a.serial + 1);
 
   System empty;

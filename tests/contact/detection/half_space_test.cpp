@@ -35,7 +35,7 @@ TYPED_TEST(HalfSpaceTest, GapIsTheDistanceAlongTheNormal) {
     System system;
     const Vec<D> p = random.vec<D>(), n = random.vec<D>(), unit = n.normalized();
     system.add(typename TestFixture::Obstacle{.point = p, .normal = n});
-    const ObstacleKind& kind = *system.obstacle_kinds().entries()[0].kind;
+    const GroundShapeKind& kind = *system.ground_shape_kinds().entries()[0].kind;
     Vec<D> along = random.vec<D>();
     along -= along.dot(unit) * unit;
     const double height = random.uniform(-2.0, 2.0);
@@ -57,7 +57,7 @@ TYPED_TEST(HalfSpaceTest, NormalsOfAnyLengthBecomeUnitVectors) {
       System system;
       system.add(typename TestFixture::Obstacle{.normal = length * random.vec<D>()});
       const Vec<D> origin = Vec<D>::Zero();
-      const Gap gap = system.obstacle_kinds().entries()[0].kind->gap(0, origin.data());
+      const Gap gap = system.ground_shape_kinds().entries()[0].kind->gap(0, origin.data());
       EXPECT_NEAR(TestFixture::normal(gap).norm(), 1.0, 2 * epsilon);
       EXPECT_EQ(gap.distance, 0.0);
     }
@@ -95,7 +95,7 @@ TEST(HalfPlane, ManyAreKeptApart) {
   system.add(HalfPlane{.normal = {0, 1}});
   const ObstacleId left = system.add(HalfPlane{.point = {-2, 0}, .normal = {1, 0}, .material = ice});
   system.add(HalfPlane{.point = {5, 0}, .normal = {-1, 0}});
-  const ObstacleKind& kind = *system.obstacle_kinds().entries()[0].kind;
+  const GroundShapeKind& kind = *system.ground_shape_kinds().entries()[0].kind;
   EXPECT_EQ(kind.size(), 3U);
   const Vec<2> x(1, 7);
   EXPECT_EQ(kind.gap(0, x.data()).distance, 7.0);
@@ -103,7 +103,7 @@ TEST(HalfPlane, ManyAreKeptApart) {
   EXPECT_EQ(kind.gap(2, x.data()).distance, 4.0);
   EXPECT_EQ(kind.material(1), ice);
   system.remove(left);
-  EXPECT_EQ(system.obstacle_kinds().entries()[0].kind->gap(1, x.data()).distance, 4.0);
+  EXPECT_EQ(system.ground_shape_kinds().entries()[0].kind->gap(1, x.data()).distance, 4.0);
 }
 
 TEST(Incline, RisesWithXAtItsSlope) {

@@ -224,9 +224,9 @@ TEST(MovingHalfPlane, StandsWhereItsFunctionsSay) {
                        .normal = {0.0, 3.0},
                        .motion = {.displacement = [](double time) { return Vec<2>(time, -2.0 * time); },
                                   .angle = [](double time) { return 0.3 * time; }}});
-  const ObstacleKind& kind = *system.obstacle_kinds().entries()[0].kind;
+  const GroundShapeKind& kind = *system.ground_shape_kinds().entries()[0].kind;
   ASSERT_TRUE(kind.moves(0));
-  const ObstacleMotion motion = kind.place(0, t);
+  const GroundMotion motion = kind.place(0, t);
   const Vec<2> normal(-std::sin(0.21), std::cos(0.21)), o(1.7, 0.6), x(-3.0, 4.0);
   const Gap gap = kind.moved_gap(0, motion, x.data());
   EXPECT_NEAR(gap.distance, normal.dot(x - o), 1e-15 * 10);
@@ -247,7 +247,7 @@ TEST(MovingHalfPlane, RatesThatAreNotGivenFollowFromThoseThatAre) {
   PrescribedMotion motion{.displacement = [](double t) { return Vec<2>(t * t, 0.0); },
                           .velocity = [](double t) { return Vec<2>(5.0 + 3.0 * t, 0.0); },
                           .angle = [](double t) { return t * t; }};
-  ObstacleMotion at = motion.at(1.0, {0.0, 0.0});
+  GroundMotion at = motion.at(1.0, {0.0, 0.0});
   EXPECT_EQ(at.velocity[0], 8.0);
   EXPECT_NEAR(at.acceleration[0], 3.0, 1e-10);  // of the velocity, not 2
   EXPECT_NEAR(at.spin, 2.0, 1e-11);
@@ -274,7 +274,7 @@ TEST(MovingHalfPlane, DoesNotLookAcrossBreaks) {
       system.add(HalfPlane{.normal = {1.0, 0.0},
                            .motion = {.angle = [](double t) { return t; }, .breaks = {-1.0, 0.5, 1.0}}},
                  law);
-  const ObstacleKind& kind = *system.obstacle_kinds().entries()[0].kind;
+  const GroundShapeKind& kind = *system.ground_shape_kinds().entries()[0].kind;
   EXPECT_EQ(kind.place(0, std::nextafter(1.0, 0.0)).velocity[1], 0.0);
   EXPECT_NEAR(kind.place(0, 1.0).velocity[1], 2.0, 1e-11);
   const Assembly assembly(system);
