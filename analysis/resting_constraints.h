@@ -87,7 +87,7 @@ private:
 
   const Assembly* assembly_;
   Detector detector_;
-  ObstaclePlaces places_;
+  GroundPlaces places_;
   std::vector<Joint> joints_;
   std::vector<Support> supports_;
   std::vector<std::vector<std::size_t>> joints_of_body_, supports_of_body_;

@@ -26,7 +26,7 @@ void ActiveSet::bind(const Assembly& assembly, JointConstraints& joints) {
 }
 
 void ActiveSet::update_and_factor(const Detector& detector, const StateView& state,
-                                  const Evaluation& evaluation, const ObstaclePlaces& places) {
+                                  const Evaluation& evaluation, const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
     detector.contact(contact.pair, state, evaluation, places, contact.at);
     contact.friction = contact.friction_at(contact.at, state.v);

@@ -40,7 +40,7 @@ public:
 
   /// Brings `at` and the coefficients of sliding contacts to a state.
   void update_and_factor(const Detector& detector, const StateView& state, const Evaluation& evaluation,
-                         const ObstaclePlaces& places);
+                         const GroundPlaces& places);
   /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in:
   /// a_free False where no forces keep the constraints; the contacts' forces are then not finite.
   bool add_reactions(const Assembly& assembly, double* acceleration);

@@ -79,7 +79,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   IslandPartition partition;
   GapProjection projection;
   const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
-  ObstaclePlaces places;
+  GroundPlaces places;
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
   std::vector<EventRecord> recorded;

@@ -21,7 +21,7 @@ namespace carom {
 class CAROM_API LastingContacts {
 public:
   /// Gaps up to this many times h^2 d count as opened by turning. The steady gap is h^2 d. From 0 a contact
-  /// comes there with at most h^2 d (1 + d/(2 (a - d))), a the normal acceleration towards the obstacle that
+  /// comes there with at most h^2 d (1 + d/(2 (a - d))), a the normal acceleration towards the ground that
   /// the body would have without it, and d < a while the contact lasts: one about to lift off, a < 15/14 d,
   /// may be lost on that way.
   static constexpr double most_opening = 8.0;
@@ -50,6 +50,10 @@ public:
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
   [[nodiscard]] double step() const { return step_; }
+  /// True if a contact is among them and turning explains its gap. \param turning bound on |d| [m/s^2]
+  [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
+    return gap <= reach(turning) && contains(key);
+  }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
 

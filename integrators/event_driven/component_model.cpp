@@ -13,7 +13,7 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
                                   const JointConstraints& joints) {
   std::vector<ContactPair> pairs = detector.pairs(component);
   if (joints.empty()) return pairs;
-  const std::vector<ContactPair> dry_friction = detector.rubbing(component);
+  const std::vector<ContactPair> dry_friction = detector.joint_friction(component);
   pairs.insert(pairs.end(), dry_friction.begin(), dry_friction.end());
   std::stable_sort(pairs.begin(), pairs.end(), [&](const ContactPair& a, const ContactPair& b) {
     return assembly.mechanism(a.body) < assembly.mechanism(b.body);
@@ -35,9 +35,9 @@ std::vector<Range> mechanisms_of(const Assembly& assembly, const std::vector<Con
   return ranges;
 }
 
-LoadTraits load_traits(const Assembly& assembly, Index component, bool driven, bool obstacles_move) {
+LoadTraits load_traits(const Assembly& assembly, Index component, bool driven, bool ground_moves) {
   LoadTraits traits;
-  traits.depends_on_time = driven || obstacles_move;
+  traits.depends_on_time = driven || ground_moves;
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     if (assembly.elements(component, kind).empty()) continue;
     const ForceKind& elements = *assembly.force_kinds()[kind];
@@ -119,10 +119,10 @@ ComponentModel::ComponentModel(const Assembly& assembly_in, const Detector& dete
       pairs(pairs_of(*assembly, *detector, component, joints)),
       mechanisms(mechanisms_of(*assembly, pairs)),
       tolerances(tolerances_of(*assembly, component, unknowns, options->absolute_tolerance)) {
-  const bool obstacles_move = !pairs.empty() && detector->has_moving_obstacles();
-  loads = load_traits(*assembly, component, joints.depends_on_time(), obstacles_move);
+  const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
+  loads = load_traits(*assembly, component, joints.depends_on_time(), ground_moves);
   discontinuities = discontinuities_of(*assembly, component,
-                                       obstacles_move ? detector->breaks() : std::vector<Discontinuity>{});
+                                       ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
 }
 
 double ComponentModel::kinetic_energy(const double* velocities) const {

@@ -10,7 +10,7 @@ namespace carom {
 void LawContinuity::demand(double from, double to) {
   try {
     if (!prescribed_.empty()) prescribed_.demand_continuous(from, to);
-    if (!detector_->has_moving_obstacles()) return;
+    if (!detector_->has_moving_ground()) return;
     if (after_.time() == from) std::swap(before_, after_);
     detector_->place(from, before_);
     detector_->place(to, after_);

@@ -23,7 +23,7 @@ public:
 private:
   const Detector* detector_;
   PrescribedJoints prescribed_;
-  ObstaclePlaces before_, after_;  // at the ends of an advance
+  GroundPlaces before_, after_;  // at the ends of an advance
 };
 
 }  // namespace carom

@@ -20,7 +20,7 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
 }
 
 void ContactStage::place_surfaces(const StepInput& in) {
-  if (!detector_.has_moving_obstacles()) return;
+  if (!detector_.has_moving_ground()) return;
   if (places_after_.time() == in.start.time) std::swap(places_, places_after_);
   detector_.place(in.start.time, places_);
   detector_.place(in.end_time, places_after_);

@@ -35,7 +35,7 @@ public:
   /// What the constraints are found with.
   [[nodiscard]] const Detector& detector() const { return detector_; }
   /// Ground shapes that move, at the end of the step.
-  [[nodiscard]] const ObstaclePlaces& places_at_end() const { return places_after_; }
+  [[nodiscard]] const GroundPlaces& places_at_end() const { return places_after_; }
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
   void place_surfaces(const StepInput& in);
 
@@ -87,9 +87,9 @@ private:
   Detector detector_;
   MassResponse masses_;
   double capture_speed_;
-  ObstaclePlaces places_, places_after_;  // at the start; at the end
-  LastingContacts lasting_;               // contacts of the last step that turning may have opened
-  std::vector<ConstraintKey> sticking_;   // in the last step, ordered; where static friction asks
+  GroundPlaces places_, places_after_;   // at the start; at the end
+  LastingContacts lasting_;              // contacts of the last step that turning may have opened
+  std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   std::vector<Constraint> constraints_, again_;
   std::vector<Index> members_;  // components, island by island
   std::vector<StepIsland> islands_;

@@ -39,7 +39,7 @@ Index first_jointed(const Assembly& assembly, Index component) {
 }  // namespace
 
 /// Contacts near enough to matter, of those that are asked for (both lists are in the detector's order).
-void GapProjection::find(Index component, const Detector& detector, const ObstaclePlaces& places,
+void GapProjection::find(Index component, const Detector& detector, const GroundPlaces& places,
                          const Which& which, double margin, const State& state,
                          const Evaluation& evaluation) {
   found_.clear();
@@ -60,7 +60,7 @@ void GapProjection::find(Index component, const Detector& detector, const Obstac
 }
 
 GapProjection::Result GapProjection::project(const Assembly& assembly, Index component,
-                                             const Detector& detector, const ObstaclePlaces& places,
+                                             const Detector& detector, const GroundPlaces& places,
                                              const Which& which, SolverChain& chain, State& state,
                                              Evaluation& evaluation, JointConstraints& joints) {
   // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.

@@ -46,11 +46,11 @@ public:
   /// be up to date, and is so afterwards.
   /// \param joints of the component; may be empty
   Result project(const Assembly& assembly, Index component, const Detector& detector,
-                 const ObstaclePlaces& places, const Which& which, SolverChain& chain, State& state,
+                 const GroundPlaces& places, const Which& which, SolverChain& chain, State& state,
                  Evaluation& evaluation, JointConstraints& joints);
 
 private:
-  void find(Index component, const Detector& detector, const ObstaclePlaces& places, const Which& which,
+  void find(Index component, const Detector& detector, const GroundPlaces& places, const Which& which,
             double margin, const State& state, const Evaluation& evaluation);
   void state_problem(std::span<const Constraint> contacts, BodyResponse& response);
   /// Makes a better estimate for one body; false if there is none.

@@ -31,7 +31,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/integrators/time_stepping/joint_rows.h>
+#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -99,8 +99,8 @@ public:
   [[nodiscard]] const std::vector<double>& displacement() const { return arrays_->displacement; }
   /// True if anything but friction in joints takes part.
   [[nodiscard]] bool is_struck() const { return struck_; }
-  [[nodiscard]] JointRows& rows() { return rows_; }
-  [[nodiscard]] const JointRows& rows() const { return rows_; }
+  [[nodiscard]] StepJointRows& rows() { return rows_; }
+  [[nodiscard]] const StepJointRows& rows() const { return rows_; }
   /// The joint whose constraints the last iterate violates most. \param violation out: by how much
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
@@ -115,7 +115,7 @@ private:
   const Assembly* assembly_;
   Index component_;
   JointArrays* arrays_;
-  JointRows rows_;
+  StepJointRows rows_;
   bool struck_ = false;
   std::vector<double> impulse_;  // L
   std::vector<double> total_;    // L, and what contact adds

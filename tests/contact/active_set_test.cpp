@@ -64,7 +64,7 @@ struct Closed {
   Detector detector;
   State state;
   Evaluation evaluation;
-  ObstaclePlaces places;
+  GroundPlaces places;
   ActiveSet contacts;
   bool solved = false;
 };

@@ -68,7 +68,7 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   EXPECT_EQ(contact.normal_velocity(model.state.v.data()), 0.0);
   EXPECT_DOUBLE_EQ(contact.tangential_velocity(model.state.v.data()), model.state.rate(slide));
   EXPECT_TRUE(detector.pairs(component).empty());
-  EXPECT_EQ(detector.rubbing(component).size(), 1u);
+  EXPECT_EQ(detector.joint_friction(component).size(), 1u);
 }
 
 TEST(JointFriction, RefusesWhatCannotBe) {

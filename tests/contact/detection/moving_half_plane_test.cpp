@@ -78,7 +78,7 @@ public:
   /// The same from a step of length h that begins there.
   Constraint contact_of_step(std::size_t pair, double t, double h) {
     go_to(t);
-    ObstaclePlaces now, after;
+    GroundPlaces now, after;
     detector_.place(t, now);
     detector_.place(t + h, after);
     std::vector<Constraint> found;
@@ -282,7 +282,7 @@ TEST(MovingHalfPlane, DoesNotLookAcrossBreaks) {
                                             {.time = -1.0, .obstacle = drum},
                                             {.time = 0.5, .obstacle = drum},
                                             {.time = 1.0, .obstacle = drum}};
-  EXPECT_EQ(Detector(assembly).breaks(), expected);
+  EXPECT_EQ(Detector(assembly).discontinuities(), expected);
 }
 
 TEST(MovingHalfPlane, ImpossibleMotionsAreRefusedByName) {

@@ -1,6 +1,6 @@
 // Problem: rows of joints for every place of a step, past singular positions too.
 
-#include <carom/integrators/time_stepping/joint_rows.h>
+#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -34,25 +34,25 @@ double angle(const JointConstraints& joints, std::size_t row) {
 
 }  // namespace
 
-JointRows::JointRows(const Assembly& assembly, Index component)
+StepJointRows::StepJointRows(const Assembly& assembly, Index component)
     : component_(component), end_(assembly, component), midpoint_(end_), start_(end_) {}
 
-void JointRows::place_start(const StepInput& in, StepTrial& trial) {
+void StepJointRows::place_start(const StepInput& in, StepTrial& trial) {
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
   update(start_, view_of(in.start, trial.at_start), in);
 }
 
-void JointRows::place_end(const StepInput& in, StepTrial& trial) {
+void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
   update(end_, view_of(trial.end, trial.at_end), in);
 }
 
-void JointRows::place_gaps(const StepInput& in, StepTrial& trial) {
+void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
   evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
   end_.update_gaps(view_of(trial.end, trial.at_end));
 }
 
-void JointRows::place(const StepInput& in, StepTrial& trial) {
+void StepJointRows::place(const StepInput& in, StepTrial& trial) {
   trial.place_midpoint(in, component_);
   evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
   place_end(in, trial);
@@ -65,7 +65,7 @@ void JointRows::place(const StepInput& in, StepTrial& trial) {
 /// there at the end, b halfway, sweeps contract by |1 - b/a|. Reactions along the rows at the end contract,
 /// and cost an error of second order once; where those halfway have some hold, the matrix of both does
 /// without. The angle at the start is 2 b - a.
-void JointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
+void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
   end_.factor();
   roundoff_growth_ = 1.0;
   double nearest = 1.0;
@@ -86,7 +86,7 @@ void JointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double
 }
 
 /// Rows of the reactions by one row. \param halfway,start its angles there
-void JointRows::look_ahead(std::size_t row, double halfway, double start) {
+void StepJointRows::look_ahead(std::size_t row, double halfway, double start) {
   // A contraction that is good enough; halfway rows that have some hold, against those at the end.
   constexpr double good_contraction = 0.7, some_hold = 0.1;
   // Of a pivot, rounding beside the diagonal.
@@ -108,7 +108,7 @@ void JointRows::look_ahead(std::size_t row, double halfway, double start) {
   }
 }
 
-void JointRows::factor() {
+void StepJointRows::factor() {
   if (reactions_ == Reactions::mixed) {
     if (mixed_.factor(end_, midpoint_)) return;
     reactions_ = Reactions::at_end;
@@ -116,7 +116,7 @@ void JointRows::factor() {
   end_.factor();
 }
 
-void JointRows::solve(std::vector<double>& r) {
+void StepJointRows::solve(std::vector<double>& r) {
   if (reactions_ == Reactions::mixed) {
     mixed_.solve(r.data());
   } else {
@@ -124,7 +124,7 @@ void JointRows::solve(std::vector<double>& r) {
   }
 }
 
-bool JointRows::correct_velocities(const StepInput& in, StepTrial& trial, std::vector<double>& residuals) {
+bool StepJointRows::correct_velocities(const StepInput& in, StepTrial& trial, std::vector<double>& residuals) {
   update(end_, view_of(trial.end, trial.at_end), in);
   end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());
   if (!mixed_.factor(end_, midpoint_)) return false;

@@ -24,9 +24,9 @@ enum class Reactions : std::uint8_t {
 };
 
 /// The rows of a step. Memory of one component.
-class CAROM_API JointRows {
+class CAROM_API StepJointRows {
 public:
-  JointRows(const Assembly& assembly, Index component);
+  StepJointRows(const Assembly& assembly, Index component);
 
   /// Begins a step: reactions along the rows halfway.
   void start() { reactions_ = Reactions::halfway; }

@@ -1,0 +1,75 @@
+#pragma once
+
+/// \file
+/// Features of the bodies of an assembly that can touch: rounded points of their shapes, and the centres of
+/// bodies without extent. Collected once.
+
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <array>
+#include <vector>
+
+namespace carom {
+
+/// A rounded point of a body.
+struct BodyFeature {
+  Index body = none;               ///< in the order of assembly
+  Index material = none;           ///< number in BodyFeatures::materials()
+  FeatureKey key;                  ///< identity
+  std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
+  double radius = 0.0;             ///< [m]
+
+  /// That of a body which touches at its centre of mass. \param place of the body in the order of assembly
+  [[nodiscard]] static BodyFeature at_centre(const BodySlot& body, Index place, Index material) {
+    return {place, material, {FeatureKey::Owner::body, body.serial, 0}, {}, 0.0};
+  }
+};
+
+/// Neighbouring bodies of one kind and component that touch at their centres.
+struct CentreRun {
+  Range bodies;           ///< in the order of assembly
+  Index material = none;  ///< number in BodyFeatures::materials()
+};
+
+/// All features that can touch, ordered by body.
+class CAROM_API BodyFeatures {
+public:
+  /// Ranges of centres() and points() that belong to one component.
+  struct OfComponent {
+    Range centres, points;
+  };
+
+  /// Of nothing that can touch.
+  BodyFeatures() = default;
+  /// Of all bodies.
+  explicit BodyFeatures(const Assembly& assembly);
+
+  /// Bodies that touch at their centres.
+  [[nodiscard]] const std::vector<CentreRun>& centres() const { return centres_; }
+  /// Rounded points of shapes.
+  [[nodiscard]] const std::vector<BodyFeature>& points() const { return points_; }
+  /// Those of one component.
+  [[nodiscard]] OfComponent of(Index component) const {
+    return of_component_.empty() ? OfComponent{} : of_component_[component];
+  }
+  /// Materials that features have; one of them may be no material.
+  [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
+  /// The first feature of a material.
+  [[nodiscard]] FeatureKey first_of(Index material, const Layout& layout) const;
+  /// True if a point stands off the centre of mass.
+  [[nodiscard]] bool any_off_centre() const;
+
+private:
+  [[nodiscard]] Index number_of(MaterialId material);
+  void collect_centres(const Assembly& assembly);
+  void collect_points(const Assembly& assembly);
+
+  std::vector<CentreRun> centres_;
+  std::vector<BodyFeature> points_;
+  std::vector<MaterialId> materials_;
+  std::vector<OfComponent> of_component_;  // empty where nothing was collected
+};
+
+}  // namespace carom

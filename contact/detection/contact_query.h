@@ -1,0 +1,23 @@
+#pragma once
+
+/// \file
+/// One question to detection.
+
+#include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/lasting_contacts.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/state.h>
+
+namespace carom {
+
+/// A state, and which contacts of it are asked for. It is read during the call that it is given to.
+struct ContactQuery {
+  const StateView& state;                    ///< positions, velocities, time
+  const Evaluation& evaluation;              ///< with its position group up to date
+  const GroundPlaces& places;                ///< of the state's time
+  const GroundPlaces* after = nullptr;       ///< at the end of the step; null where no time passes
+  double margin = 0.0;                       ///< largest gap [m]
+  const LastingContacts* lasting = nullptr;  ///< found also where they are a little open; null: none
+};
+
+}  // namespace carom

@@ -1,0 +1,116 @@
+#include <carom/contact/detection/contact_rows.h>
+
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+Vec<2> planar_part(const std::array<double, 3>& numbers) { return {numbers[0], numbers[1]}; }
+
+/// Velocity of the feature's centre relative to the reference point of a shape on ground.
+Vec<2> relative_velocity(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion) {
+  Vec<2> relative = Eigen::Map<const Vec<2>>(state.v + at.body.v) - planar_part(motion.velocity);
+  if (at.body.rotation != none) relative += Space<2>::lever_velocity(state.v + at.body.v + 2, at.arm);
+  return relative;
+}
+
+/// Share of a moving shape in the bound: of the drift in docs/method.md, section 1, without the acceleration
+/// of the place that is touched, which its velocity at the end of the step has in it already.
+double ground_turning(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
+                      double above) {
+  const double w = std::abs(motion.spin);
+  return 2.0 * w * (relative_velocity(at, state, motion).lpNorm<1>() + w * std::abs(above));
+}
+
+}  // namespace
+
+template <int D>
+PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature, const StateView& state,
+                               const Evaluation& evaluation) {
+  Vec<D> arm = Vec<D>::Zero();
+  if constexpr (Space<D>::has_orientation) {
+    if (body.rotation != none) {
+      arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
+                             Vec<D>(Eigen::Map<const Vec<D>>(feature.centre.data())));
+    }
+  }
+  return {body, feature, arm, Eigen::Map<const Vec<D>>(state.q + body.q) + arm};
+}
+
+template <int D>
+void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& state, Constraint& out) {
+  const BodySlot& body = at.body;
+  out.bodies = 0;
+  out.add_body(at.feature.body, body.v, static_cast<int>(body.v_size));
+  out.rows = D;
+  out.gap = gap.distance - at.feature.radius;
+  const Vec<D> normal = Eigen::Map<const Vec<D>>(gap.normal.data());
+  const auto tangents = Space<D>::tangent_frame(normal);
+  for (int row = 0; row < D; ++row) {
+    const Vec<D> direction = row == 0 ? normal : tangents[static_cast<std::size_t>(row - 1)];
+    Eigen::Map<Vec<D>>(out.row(row)) = direction;
+    if constexpr (Space<D>::has_orientation) {
+      if (body.rotation != none) {
+        const Vec<D> lever = at.arm - at.feature.radius * normal;
+        Eigen::Map<Vec<Space<D>::spin_size>>(out.row(row) + D) = Space<D>::spin_row(direction, lever);
+        out.drift[static_cast<std::size_t>(row)] =
+            direction.dot(Space<D>::centripetal(state.v + body.v + D, at.arm));
+      }
+    }
+  }
+}
+
+void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
+                       const GroundMotion* after, Constraint& out) {
+  // docs/method.md, section 1: C the centre of the feature, o the shape's point, w its spin, r = C - o.
+  const Vec<2> n = Eigen::Map<const Vec<2>>(out.row(0)), t = Eigen::Map<const Vec<2>>(out.row(1));
+  const Vec<2> r = at.centre - planar_part(motion.point), velocity = planar_part(motion.velocity);
+  const double radius = at.feature.radius;
+  const double w = motion.spin, along = t.dot(r), above = n.dot(r);
+  out.surface_velocity = {n.dot(velocity) + w * along, t.dot(velocity) - w * (above - radius), 0.0};
+  out.surface_velocity_after = out.surface_velocity;
+
+  const Vec<2> relative = relative_velocity(at, state, motion);
+  const Vec<2> acceleration = planar_part(motion.acceleration);
+  out.drift[0] -=
+      n.dot(acceleration) + 2.0 * w * t.dot(relative) + motion.angular_acceleration * along + w * w * above;
+  out.drift[1] += -t.dot(acceleration) + 2.0 * w * n.dot(relative) +
+                  motion.angular_acceleration * (above - radius) - w * w * along;
+  if (after == nullptr) return;
+
+  // The place that is touched goes with the shape: its arm turns from the one angle to the other.
+  const std::array<double, 2> turn{after->cosine * motion.cosine + after->sine * motion.sine,
+                                   after->sine * motion.cosine - after->cosine * motion.sine};
+  const Vec<2> end =
+      planar_part(after->velocity) +
+      Space<2>::lever_velocity(&after->spin, Space<2>::rotate(turn.data(), Vec<2>(r - radius * n)));
+  out.surface_velocity_after = {n.dot(end), t.dot(end), 0.0};
+}
+
+template <int D>
+double turning_bound(const PlacedFeature<D>& at, const StateView& state, const GroundMotion* motion,
+                     double above) {
+  double rate = 0.0;
+  if constexpr (Space<D>::has_orientation) {
+    if (at.body.rotation != none) {
+      rate = Space<D>::centripetal(state.v + at.body.v + D, at.arm).template lpNorm<1>();
+    }
+  }
+  if constexpr (D == 2) {
+    if (motion != nullptr) rate += ground_turning(at, state, *motion, above);
+  }
+  return rate;
+}
+
+template PlacedFeature<2> place_feature<2>(const BodySlot&, const BodyFeature&, const StateView&,
+                                           const Evaluation&);
+template PlacedFeature<3> place_feature<3>(const BodySlot&, const BodyFeature&, const StateView&,
+                                           const Evaluation&);
+template void fill_rows<2>(const PlacedFeature<2>&, const Gap&, const StateView&, Constraint&);
+template void fill_rows<3>(const PlacedFeature<3>&, const Gap&, const StateView&, Constraint&);
+template double turning_bound<2>(const PlacedFeature<2>&, const StateView&, const GroundMotion*, double);
+template double turning_bound<3>(const PlacedFeature<3>&, const StateView&, const GroundMotion*, double);
+
+}  // namespace carom

@@ -1,0 +1,44 @@
+#pragma once
+
+/// \file
+/// Rows of a contact between a rounded point of a body and a shape on ground: Jacobian, drift, and the terms
+/// of the shape's motion (docs/method.md, section 1).
+
+#include <carom/contact/detection/body_features.h>
+#include <carom/core/constraint.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/ground_shape_kind.h>
+#include <carom/core/space.h>
+#include <carom/core/state.h>
+
+namespace carom {
+
+/// A feature where its body is now.
+template <int D>
+struct PlacedFeature {
+  const BodySlot& body;        ///< its body
+  const BodyFeature& feature;  ///< as described
+  Vec<D> arm;                  ///< of its centre, from the body's centre of mass [m]
+  Vec<D> centre;               ///< its centre [m]
+};
+
+/// Places a feature. The position group of `evaluation` must be up to date.
+template <int D>
+[[nodiscard]] PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature,
+                                             const StateView& state, const Evaluation& evaluation);
+
+/// Writes body, gap, Jacobian and drift of a contact with a shape at rest; `out` is as made by default.
+template <int D>
+void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& state, Constraint& out);
+
+/// Adds the motion of the shape. \param after the motion at the end of the step; null where no time passes
+void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
+                       const GroundMotion* after, Constraint& out);
+
+/// Bound on the rate of the normal velocity by turning of the body, and of the shape if it moves
+/// (contact/detection/lasting_contacts.h) [m/s^2]. \param above distance of the feature's centre [m]
+template <int D>
+[[nodiscard]] double turning_bound(const PlacedFeature<D>& at, const StateView& state,
+                                   const GroundMotion* motion, double above);
+
+}  // namespace carom

@@ -1,0 +1,61 @@
+#pragma once
+
+/// \file
+/// Contacts of bodies with shapes on ground: all pairs of a rounded point and a shape whose gap is closed.
+
+#include <carom/contact/detection/body_features.h>
+#include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/contact_rows.h>
+#include <carom/contact/detection/ground_laws.h>
+#include <carom/contact/detection/ground_shapes.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <vector>
+
+namespace carom {
+
+/// Features of the bodies of an assembly, shapes on ground, and the laws between them.
+class CAROM_API GroundContacts {
+public:
+  /// Throws ModelError where a feature and a shape have no contact law. \param assembly outlives it
+  explicit GroundContacts(const Assembly& assembly);
+
+  /// The shapes on ground.
+  [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
+  /// True if some law takes more to slip than to slide.
+  [[nodiscard]] bool has_static_friction() const { return laws_.has_static_friction(); }
+  /// True if find() looks at the rotations of bodies.
+  [[nodiscard]] bool needs_rotations() const { return features_.any_off_centre(); }
+
+  /// Appends the contacts of one component that a query asks for, ordered by body, feature and shape.
+  void find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Appends all pairs of one component, in the order of find().
+  void append_pairs(Index component, std::vector<ContactPair>& out) const;
+  /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
+  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+               const GroundMotion* motion, Constraint& out) const;
+
+private:
+  template <int D>
+  void find_in(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  // Appends the contacts of one feature.
+  template <int D>
+  void add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,
+           std::vector<Constraint>& out) const;
+  // Writes a contact. \param after motion of the shape at the end of the step; may be null
+  template <int D>
+  void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
+            const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
+  // Whether any of some neighbours that touch at their centres may have a contact.
+  [[nodiscard]] bool any_touches(Range bodies, const ContactQuery& query) const;
+
+  const Assembly* assembly_;
+  GroundShapes shapes_;
+  BodyFeatures features_;
+  GroundLaws laws_;
+};
+
+}  // namespace carom

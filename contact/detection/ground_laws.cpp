@@ -1,0 +1,26 @@
+#include <carom/contact/detection/body_features.h>
+#include <carom/contact/detection/contact_name.h>
+#include <carom/contact/detection/ground_laws.h>
+#include <carom/contact/detection/ground_shapes.h>
+
+namespace carom {
+
+GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes)
+    : shapes_(shapes.size()) {
+  const System& system = assembly.system();
+  for (Index material = 0; material < features.materials().size(); ++material) {
+    for (Index shape = 0; shape < shapes_; ++shape) {
+      const auto law = system.law(features.materials()[material], shapes.id(shape));
+      if (!law) {
+        const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};
+        throw ModelError("contact of " + contact_name(system, key) +
+                         ": law is not given; allowed: a Surface on the obstacle, between the two materials "
+                         "or as default law");
+      }
+      laws_.push_back(*law);
+      has_static_friction_ = has_static_friction_ || law->has_static_friction();
+    }
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,37 @@
+#pragma once
+
+/// \file
+/// Laws of the contacts between features of bodies and shapes on ground, looked up once.
+
+#include <carom/core/export.h>
+#include <carom/core/ids.h>
+#include <carom/core/surface.h>
+
+#include <vector>
+
+namespace carom {
+
+class Assembly;
+class BodyFeatures;
+class GroundShapes;
+
+/// A law for each material of the features and each shape on ground.
+class CAROM_API GroundLaws {
+public:
+  /// Throws ModelError, naming a contact, where a pair has no law.
+  GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes);
+
+  /// Law of a pair. \param material number in BodyFeatures::materials()
+  [[nodiscard]] const Surface& law(Index material, Index shape) const {
+    return laws_[material * shapes_ + shape];
+  }
+  /// True if some law takes more to slip than to slide.
+  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
+
+private:
+  Index shapes_;               // number of shapes
+  std::vector<Surface> laws_;  // row-major: material, shape
+  bool has_static_friction_ = false;
+};
+
+}  // namespace carom

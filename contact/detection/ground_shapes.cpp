@@ -1,0 +1,89 @@
+#include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/prescribed_motion.h>
+#include <carom/core/law_jump.h>
+#include <carom/core/system.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace carom {
+
+GroundShapes::GroundShapes(const System& system) : system_(&system) {
+  const auto& registry = system.ground_shape_kinds();
+  for (const Index serial : registry.serials()) {
+    const auto place = registry.place(serial);
+    const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
+    const Index moving = kind.moves(place.slot) ? moving_++ : none;
+    shapes_.push_back({&kind, place.slot, serial, moving});
+  }
+}
+
+Index GroundShapes::find(Index serial) const {
+  const auto found = std::find_if(shapes_.begin(), shapes_.end(),
+                                  [serial](const Shape& shape) { return shape.serial == serial; });
+  return found == shapes_.end() ? none : static_cast<Index>(found - shapes_.begin());
+}
+
+ObstacleId GroundShapes::id(Index shape) const { return {shapes_[shape].serial, system_->token()}; }
+
+GroundMotion GroundShapes::motion(Index shape, double time) const {
+  const GroundMotion motion = shapes_[shape].kind->place(shapes_[shape].slot, time);
+  const NonFiniteMotion bad = find_non_finite(motion);
+  if (bad.quantity == nullptr) return motion;
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(system_->name(id(shape)));
+  const std::string message = failure.parts.front() + ": " + bad.quantity +
+                              " of its motion at t = " + to_text(time) + " s is " + to_text(bad.value) + " " +
+                              bad.unit + "; allowed: a finite number";
+  throw SolverError(message, std::move(failure));
+}
+
+void GroundShapes::place(double time, GroundPlaces& places) const {
+  if (places.time_ == time && places.motions_.size() == moving_) return;
+  places.time_ = std::numeric_limits<double>::quiet_NaN();  // for as long as it takes
+  places.motions_.clear();
+  if (moving_ > 0) {
+    for (Index shape = 0; shape < size(); ++shape) {
+      if (moves(shape)) places.motions_.push_back(motion(shape, time));
+    }
+  }
+  places.time_ = time;
+}
+
+void GroundShapes::demand_continuous(const GroundPlaces& before, const GroundPlaces& after) const {
+  const auto point_of = [](const GroundMotion& motion, double time) {
+    return LawPoint{time,        motion.point,          motion.velocity,  motion.angle,
+                    motion.spin, motion.velocity_given, motion.spin_given};
+  };
+  for (Index shape = 0; shape < size(); ++shape) {
+    if (!moves(shape)) continue;
+    const Shape& at = shapes_[shape];
+    const LawPoint from = point_of(before.motions_[at.moving], before.time_),
+                   to = point_of(after.motions_[at.moving], after.time_);
+    if (looks_smooth(from, to)) continue;
+    auto law = [&](double time) { return point_of(at.kind->place(at.slot, time), time); };
+    if (const auto jump = find_jump(law, from, to)) {
+      fail_jump(system_->name(id(shape)), jump->of_angle ? "angle" : "displacement",
+                jump->of_angle ? "rad" : "m", *jump);
+    }
+    if (const auto rate = find_false_rate(law, from, to)) {
+      fail_rate(system_->name(id(shape)), rate->of_angle ? "spin" : "velocity",
+                rate->of_angle ? "angle" : "displacement", rate->of_angle ? "rad/s" : "m/s", *rate);
+    }
+  }
+}
+
+std::vector<Discontinuity> GroundShapes::discontinuities() const {
+  std::vector<Discontinuity> all;
+  std::vector<double> times;
+  for (Index shape = 0; shape < size(); ++shape) {
+    times.clear();
+    shapes_[shape].kind->discontinuity_times(shapes_[shape].slot, times);
+    for (const double time : times) all.push_back({.time = time, .obstacle = id(shape)});
+  }
+  return all;
+}
+
+}  // namespace carom

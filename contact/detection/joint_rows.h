@@ -1,0 +1,81 @@
+#pragma once
+
+/// \file
+/// Rows that joints have in common with contacts: their limits, and dry friction along their coordinates.
+
+#include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/contact_query.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/core/joint_kind.h>
+
+#include <array>
+#include <vector>
+
+namespace carom {
+
+/// Limits of the joints of an assembly, by component, then friction in them, by component. A row is known by
+/// its number in this list (Constraint::source, ContactPair::joint_row).
+class CAROM_API JointRows {
+public:
+  /// \param assembly outlives it
+  explicit JointRows(const Assembly& assembly);
+
+  /// True if there is none.
+  [[nodiscard]] bool empty() const { return rows_.empty(); }
+  /// True if there is friction in a joint.
+  [[nodiscard]] bool has_friction() const { return first_friction_ < rows_.size(); }
+  /// True if there is in a component.
+  [[nodiscard]] bool has_friction(Index component) const {
+    return !of_component_[component].friction.empty();
+  }
+
+  /// Appends the limits of one component that a query asks for.
+  void find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Appends the friction in the joints of one component, as Detector::find_joint_friction().
+  void find_friction(Index component, const StateView& state, const Evaluation& evaluation,
+                     std::vector<Constraint>& out) const;
+  /// Appends all limits of one component.
+  void append_limits(Index component, std::vector<ContactPair>& out) const;
+  /// Appends all friction in its joints.
+  void append_friction(Index component, std::vector<ContactPair>& out) const;
+
+  /// Writes a row as a constraint, whatever its gap.
+  void constraint(Index number, const StateView& state, const Evaluation& evaluation, Constraint& out) const;
+  /// Brings the row of friction in a joint to a configuration, and its drift.
+  void update_friction(const JointView& at, Constraint& constraint) const;
+
+private:
+  // Bodies that a joint binds, in the order of assembly; `none` behind the last.
+  using JointBodies = std::array<Index, std::size_t{Constraint::max_bodies}>;
+  // A unilateral row of a joint, or friction in one.
+  struct Row {
+    const JointKind* kind;
+    Index slot;
+    Index limit;  // which of the joint's limits; `none`: friction
+    Index serial;
+    JointBodies bodies;
+  };
+  // Ranges of rows_.
+  struct OfComponent {
+    Range limits, friction;
+  };
+
+  // Calls f(a row without a limit) for joints of one component that may have limits or friction.
+  template <class F>
+  void for_joints(Index component, F&& f) const;
+  void collect_limits();
+  void collect_friction();
+  void append(Range rows, std::vector<ContactPair>& out) const;
+  void fill_limit(const Row& row, const JointView& at, Constraint& out) const;
+  // Makes a row of a joint that of a constraint.
+  void take(const JointRow& from, const JointBodies& bodies, Constraint& out) const;
+
+  const Assembly* assembly_;
+  std::vector<Row> rows_;
+  Index first_friction_ = 0;  // behind the last limit
+  std::vector<OfComponent> of_component_;
+};
+
+}  // namespace carom

@@ -1,0 +1,121 @@
+#include <carom/contact/detection/ground_contacts.h>
+
+#include "tests/contact/detection/placed_model.h"
+#include "tests/random.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const Surface law{.friction = 0.5, .normal_restitution = 0.5};
+
+/// A chain of particles and rigid bodies at random places over a floor and beside a wall: one component.
+System random_chain(carom_test::Random& random, int bodies) {
+  System system;
+  system.add(HalfPlane{.normal = {0, 1}}, law);
+  system.add(HalfPlane{.normal = {1, 0.2}}, law);
+  BodyId last = ground;
+  for (int i = 0; i < bodies; ++i) {
+    BodyId next;
+    if (i % 7 == 3) {
+      next = system.add(RigidBody{.mass = box(1.0, 0.2, 0.1), .position = random.vec<2>(), .angle = 0.1 * i});
+      system.add(Segment{.body = next, .from = {-0.1, 0.0}, .to = {0.1, 0.05}});
+    } else {
+      next = system.add(Particle{.mass = 1.0, .position = random.vec<2>(), .contact = i % 11 != 5});
+    }
+    if (i > 0) system.add(SpringDamper{.from = last, .to = next, .stiffness = 1.0});
+    last = next;
+  }
+  return system;
+}
+
+// The search by parts finds what a look at each pair finds, in the same order and to the bit.
+TEST(GroundContacts, FindAllPairsThatTouch) {
+  carom_test::Random random(4201);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const carom_test::PlacedModel model(random_chain(random, 90));
+    ASSERT_EQ(model.assembly.components().size(), 1U);
+    const GroundContacts contacts(model.assembly);
+    EXPECT_TRUE(contacts.needs_rotations());
+    std::vector<ContactPair> pairs;
+    contacts.append_pairs(0, pairs);
+    const GroundPlaces places;
+    for (const double margin : {-0.9, 0.0, 0.1, infinity}) {
+      std::vector<Constraint> found;
+      contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, margin, nullptr}, found);
+      std::size_t next = 0;
+      for (const ContactPair& pair : pairs) {
+        Constraint at;
+        contacts.contact(pair, model.state.view(), model.evaluation, nullptr, at);
+        if (at.gap > margin) continue;
+        ASSERT_LT(next, found.size());
+        EXPECT_EQ(found[next].key, at.key);
+        EXPECT_EQ(found[next].gap, at.gap);
+        EXPECT_EQ(found[next].jacobian, at.jacobian);
+        ++next;
+      }
+      EXPECT_EQ(next, found.size());
+    }
+  }
+}
+
+TEST(GroundContacts, WithoutGroundNothingTouches) {
+  System system;
+  system.add(Particle{.mass = 1.0});
+  const carom_test::PlacedModel model(system);
+  const GroundContacts contacts(model.assembly);
+  EXPECT_TRUE(contacts.shapes().empty());
+  EXPECT_FALSE(contacts.needs_rotations());
+  EXPECT_FALSE(contacts.has_static_friction());
+  std::vector<ContactPair> pairs;
+  contacts.append_pairs(0, pairs);
+  EXPECT_TRUE(pairs.empty());
+}
+
+TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
+  System system;
+  const Surface curve{
+      .friction = 0.2, .normal_restitution = 0.0, .static_friction = 0.6, .stribeck_speed = 0.5};
+  system.add(HalfPlane{.normal = {0, 1}}, curve);
+  system.add(Particle{.mass = 1.0, .velocity = {0.3, 0.0}});
+  const carom_test::PlacedModel model(system);
+  const GroundContacts contacts(model.assembly);
+  EXPECT_TRUE(contacts.has_static_friction());
+  const GroundPlaces places;
+  std::vector<Constraint> found;
+  contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, 0.0, nullptr}, found);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].friction, curve.friction_at(0.3));
+}
+
+// In space: three rows, the tangents in the plane.
+TEST(GroundContacts, InSpaceRowsAreAFrame) {
+  System system;
+  system.add(spatial::HalfSpace{.normal = {0.0, 0.6, 0.8}}, law);
+  system.add(spatial::Particle{.mass = 1.0, .position = {1.0, 2.0, 3.0}});
+  const carom_test::PlacedModel model(system);
+  const GroundContacts contacts(model.assembly);
+  const GroundPlaces places;
+  std::vector<Constraint> found;
+  contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].rows, 3);
+  EXPECT_NEAR(found[0].gap, 3.6, 1e-14);
+  const auto row = [&](int i) { return Vec<3>(found[0].row(i)); };
+  EXPECT_NEAR((row(0) - Vec<3>(0.0, 0.6, 0.8)).norm(), 0.0, 1e-15);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(row(i).norm(), 1.0, 1e-15);
+    EXPECT_NEAR(row(i).dot(row((i + 1) % 3)), 0.0, 1e-15);
+  }
+}
+
+}  // namespace
