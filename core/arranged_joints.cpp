@@ -1,5 +1,5 @@
 #include <carom/core/arranged_joints.h>
-#include <carom/core/numerics/disjoint_sets.h>
+#include <carom/core/numerics/union_find.h>
 
 #include <algorithm>
 
@@ -13,7 +13,8 @@ ArrangedJoints::ArrangedJoints(const System& system, Layout& layout, const std::
   serials_.resize(kinds);
   if (system.joints().empty() && kinds == 0) return;
   const auto bodies = static_cast<Index>(layout.bodies().size());
-  DisjointSets sets(bodies);
+  UnionFind sets;
+  sets.start(bodies);
   is_jointed_.assign(bodies, 0);
   table_->places.assign(system.joint_kinds().next_serial(), {});
   layout.place_joints(table_);

@@ -1,5 +1,5 @@
 #include <carom/core/assembly.h>
-#include <carom/core/numerics/disjoint_sets.h>
+#include <carom/core/numerics/union_find.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ struct BodyKey {
 
 /// Joins the bodies of each element or joint.
 template <class Kinds>
-void join_ends(const Kinds& kinds, DisjointSets& bodies) {
+void join_ends(const Kinds& kinds, UnionFind& bodies) {
   std::vector<BodyId> ends;
   for (const auto& entry : kinds.entries()) {
     for (Index part = 0; part < entry.serials.size(); ++part) {
@@ -31,7 +31,8 @@ void join_ends(const Kinds& kinds, DisjointSets& bodies) {
 
 std::vector<BodyKey> ordered_bodies(const System& system) {
   const auto& registry = system.body_kinds();
-  DisjointSets connected(registry.next_serial());
+  UnionFind connected;
+  connected.start(registry.next_serial());
   join_ends(system.force_kinds(), connected);
   join_ends(system.joint_kinds(), connected);
   std::vector<BodyKey> keys;

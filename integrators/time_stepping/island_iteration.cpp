@@ -97,6 +97,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_streamed(const SweepStages& s
     made.converged_one_early = verdict == Verdict::converged;
   }
   made.change = parts_->schedule.change(stages);
+  parts_->trial.swept = true;
   return made;
 }
 
