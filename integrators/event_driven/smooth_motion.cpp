@@ -31,7 +31,7 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   const StateView state = out.view();
   evaluate_positions(assembly, model_.index, state, out.evaluation);
   double* const force = out.evaluation.force.data();
-  const LoadTraits& traits = model_.loads;
+  const LoadTraits traits = model_.loads;
   Loads loads{force, force, force};
   if (traits.books_dissipative) loads.dissipative = out.dissipative.data();
   if (traits.books_external) loads.external = out.external.data();
@@ -82,12 +82,13 @@ void SmoothMotion::rates(double time, const double* y, double* rates) {
 
 void SmoothMotion::write_works(const MotionSample& at, double lost_inside, double* rates) {
   const MotionUnknowns& unknowns = model_.unknowns;
+  const LoadTraits traits = model_.loads;
   const Range v = model_.ranges().v;
   const StateView state = at.view();
   double dashpot = lost_inside, external = 0.0, sliding = 0.0, in_joints = 0.0;
   for (Index i = v.begin; i < v.end; ++i) {
-    if (model_.loads.books_dissipative) dashpot -= at.dissipative[i] * state.v[i];
-    if (model_.loads.books_external) external += at.external[i] * state.v[i];
+    if (traits.books_dissipative) dashpot -= at.dissipative[i] * state.v[i];
+    if (traits.books_external) external += at.external[i] * state.v[i];
   }
   for (const ActiveContact& contact : active_.list()) {
     double& lost = contact.at.has_dry_friction() ? in_joints : sliding;

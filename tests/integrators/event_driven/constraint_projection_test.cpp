@@ -70,7 +70,8 @@ TEST(ConstraintProjection, WithoutConstraintsNothingChanges) {
 TEST(ConstraintProjection, AClosedContactIsBroughtToItsSurface) {
   System system;
   system.add(Particle{.mass = 2.0, .position = {0.0, 1e-7}, .velocity = {1.0, -1e-5}});
-  system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}}, Surface{.friction = 0.0});
+  system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}},
+             Surface{.friction = 0.0, .normal_restitution = 0.0});
   OneComponent sliding(system);
   ActiveContact& closed = sliding.motion.active().list().emplace_back();
   closed.pair = sliding.motion.model().pairs.front();

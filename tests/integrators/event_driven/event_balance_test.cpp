@@ -39,8 +39,8 @@ TEST(EventBalance, EventsInTimeThenAsBooked) {
 TEST(EventBalance, RecordsTheBodyAndTheObstacleOfAContact) {
   System system;
   const BodyId ball = system.add(Particle{.mass = 1.0});
-  const ObstacleId floor =
-      system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}}, Surface{.friction = 0.0});
+  const ObstacleId floor = system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}},
+                                      Surface{.friction = 0.0, .normal_restitution = 0.0});
   const Assembly assembly(system);
   const Detector detector(assembly);
   const State state = assembly.initial_state();

@@ -30,8 +30,8 @@ struct Flight {
         y(motion.size()) {
     motion.model().unknowns.gather(assembly.initial_state(), y);
     events.start();
-    events.begin_phase(0.0, y.data(), {.force = 10.0, .gap_noise = 1e-13, .speed_noise = 1e-12,
-                                       .guard_noise = 1e-11});
+    events.begin_phase(0.0, y.data(),
+                       {.force = 10.0, .gap_noise = 1e-13, .speed_noise = 1e-12, .guard_noise = 1e-11});
     flow->start(0.0, y, 0.0);
   }
   /// Goes on up to the first event.
@@ -62,7 +62,8 @@ TEST(EventDetector, AGapThatCloses) {
   System system;
   system.add(Gravity{{0.0, -10.0}});
   system.add(Particle{.mass = 1.0, .position = {0.0, 0.2}, .velocity = {0.3, 0.0}});
-  system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}}, Surface{.friction = 0.0});
+  system.add(HalfPlane{.point = {0, 0}, .normal = {0, 1}},
+             Surface{.friction = 0.0, .normal_restitution = 0.0});
   Flight ball(system);
   const Event event = ball.first();
   EXPECT_EQ(event.guard, Guard::gap);
@@ -85,8 +86,8 @@ TEST(EventDetector, TheSwitchingPointOfACableAndItsSide) {
   // Behind it the guard is on the other side, and the next passage is the way back.
   flight.events.land(*flight.flow, event, flight.y);
   flight.events.pass(event);
-  flight.events.begin_phase(event.time, flight.y.data(), {.force = 10.0, .gap_noise = 1e-13,
-                                                          .speed_noise = 1e-12, .guard_noise = 1e-11});
+  flight.events.begin_phase(event.time, flight.y.data(),
+                            {.force = 10.0, .gap_noise = 1e-13, .speed_noise = 1e-12, .guard_noise = 1e-11});
   flight.flow->start(event.time, flight.y, 0.0);
   event = flight.first();
   EXPECT_EQ(event.guard, Guard::switching_point);
@@ -97,9 +98,8 @@ TEST(EventDetector, TheSwitchingPointOfACableAndItsSide) {
 TEST(EventDetector, ADiscontinuityEndsTheStep) {
   System system;
   const BodyId ball = system.add(Particle{.mass = 1.0});
-  system.add(AppliedForce{.on = ball,
-                          .force = [](double t) { return Vec<2>(t < 0.3 ? 1.0 : -1.0, 0.0); },
-                          .breaks = {0.3}});
+  system.add(AppliedForce{
+      .on = ball, .force = [](double t) { return Vec<2>(t < 0.3 ? 1.0 : -1.0, 0.0); }, .breaks = {0.3}});
   Flight flight(system);
   const Event event = flight.first();
   EXPECT_EQ(event.guard, Guard::discontinuity);
