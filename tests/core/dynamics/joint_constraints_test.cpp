@@ -346,9 +346,9 @@ TEST(JointConstraints, RowsKnowTheirJoint) {
   EXPECT_EQ(first.joint(1), pin);
   EXPECT_EQ(first.joint(2), pin);
   EXPECT_EQ(first.joint(3), drive);
-  ASSERT_EQ(first.joints(), 3u);
+  ASSERT_EQ(first.pattern().size(), 3u);
   const std::vector<Index> first_rows{0, 1, 3, 4};
-  for (std::size_t i = 0; i < first_rows.size(); ++i) EXPECT_EQ(first.first_row(i), first_rows[i]);
+  for (std::size_t i = 0; i < first_rows.size(); ++i) EXPECT_EQ(first.pattern().first_row(i), first_rows[i]);
   EXPECT_TRUE(first.depends_on_time());
   ASSERT_EQ(second.size(), 3u);
   EXPECT_EQ(second.joint(2), alone);
