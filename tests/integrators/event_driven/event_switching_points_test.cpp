@@ -14,7 +14,7 @@ constexpr double gravity = 9.81;
 
 // A mass dropped from the point where its cable is held: free fall over the free length L, then, with x the
 // stretch, x'' = g - k x/m with x(0) = 0 and x'(0) = sqrt(2 g L), until it is slack again.
-TEST(EventKinks, MassOnACableGoesTautAndSlackOnTime) {
+TEST(EventSwitchingPoints, MassOnACableGoesTautAndSlackOnTime) {
   constexpr double mass = 2.0, stiffness = 500.0, length = 1.5;
   System system;
   system.add(Gravity{{0.0, -gravity}});
@@ -31,21 +31,21 @@ TEST(EventKinks, MassOnACableGoesTautAndSlackOnTime) {
   // x = sag (1 - cos) + (speed/omega) sin = 0 again at omega t = 2 pi - 2 atan(sag omega/speed).
   const double stretched =
       (2.0 * std::numbers::pi - 2.0 * (std::numbers::pi / 2.0 - std::atan(sag * omega / speed))) / omega;
-  std::vector<double> kinks;
+  std::vector<double> passages;
   for (const EventRecord& event : simulation.events()) {
     if (event.kind != EventKind::switching_point) continue;
     EXPECT_EQ(event.element, cable);
-    kinks.push_back(event.time);
+    passages.push_back(event.time);
   }
-  ASSERT_GE(kinks.size(), 2U);
+  ASSERT_GE(passages.size(), 2U);
   // 1e-11 of every step, a dozen of them.
-  EXPECT_NEAR(kinks[0], taut, 1e-10);
-  EXPECT_NEAR(kinks[1], taut + stretched, 1e-9);
+  EXPECT_NEAR(passages[0], taut, 1e-10);
+  EXPECT_NEAR(passages[1], taut + stretched, 1e-9);
   EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-9);
 }
 
 // A force that is switched on and off: a particle's velocity is the time it was on.
-TEST(EventKinks, LawsBreakWhereToldAndStepsEndThere) {
+TEST(EventSwitchingPoints, StepsEndAtDiscontinuitiesOfLaws) {
   System system;
   const BodyId body = system.add(Particle{.mass = 1.0});
   system.add(
