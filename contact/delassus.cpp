@@ -8,57 +8,87 @@
 namespace carom {
 
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {
-  directions_.assign(directions.begin(), directions.end());
-  columns_.clear();
-  parts_.clear();
-  responses_.clear();
+  directions_ = directions;
   loads_.clear();
-  for (const ImpulseDirection& direction : directions_) add_column(direction, response);
-  columns_.push_back({parts_.size(), false});
+  lay_out(response);
+  for (std::size_t j = 0; j < size(); ++j) {
+    write_column(j);
+    bool moves = false;
+    for (std::size_t part = columns_[j].first_part; part < columns_[j + 1].first_part; ++part) {
+      const Part& at = parts_[part];
+      double* const x = responses_.data() + at.begin;
+      if (response.take_loads(at.body, x)) {
+        loads_.resize(responses_.size());
+        std::copy_n(x, at.v.size(), loads_.data() + at.begin);
+      }
+      moves = response.answer(at.body, x) || moves;
+    }
+    columns_[j].held = !moves;
+  }
 }
 
-/// Room for the bodies of one reach, once.
-void Delassus::add_part(const Constraint& constraint, Range reach) {
-  const auto begin = parts_.begin() + static_cast<std::ptrdiff_t>(columns_.back().begin);
-  const auto same = [&](const Part& part) { return part.v.begin == reach.begin; };
-  if (constraint.bodies > 1 && std::any_of(begin, parts_.end(), same)) return;
-  parts_.push_back({reach, responses_.size()});
-  responses_.resize(responses_.size() + reach.size(), 0.0);
+/// Room for all responses, zero. Columns of one constraint reach the same bodies.
+void Delassus::lay_out(BodyResponse& response) {
+  const std::size_t n = size();
+  columns_.resize(n + 1);
+  parts_.clear();
+  std::size_t numbers = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::size_t first = parts_.size();
+    columns_[j].first_part = first;
+    if (j == 0 || directions_[j].constraint != directions_[j - 1].constraint) {
+      add_parts(*directions_[j].constraint, response, numbers);
+      continue;
+    }
+    for (std::size_t part = columns_[j - 1].first_part; part < first; ++part) {
+      parts_.push_back(parts_[part]);
+      parts_.back().begin = numbers;
+      numbers += parts_.back().v.size();
+    }
+  }
+  columns_[n].first_part = parts_.size();
+  responses_.assign(numbers, 0.0);
 }
 
-void Delassus::add_column(const ImpulseDirection& direction, BodyResponse& response) {
+/// One part for each reach of the bodies of a constraint.
+void Delassus::add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers) {
+  const std::size_t first = parts_.size();
+  for (int b = 0; b < constraint.bodies; ++b) {
+    const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
+    const Range reach = response.reach(body);
+    const auto begin = parts_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto same = [&](const Part& part) { return part.v.begin == reach.begin; };
+    if (std::any_of(begin, parts_.end(), same)) continue;
+    parts_.push_back({reach, numbers, body});
+    numbers += reach.size();
+  }
+}
+
+/// The part of a column that a velocity is in; null if it is in none.
+const Delassus::Part* Delassus::part_of(std::size_t column, Index v) const {
+  for (std::size_t part = columns_[column].first_part; part < columns_[column + 1].first_part; ++part) {
+    if (v >= parts_[part].v.begin && v < parts_[part].v.end) return &parts_[part];
+  }
+  return nullptr;
+}
+
+/// A unit impulse along a column, over what it reaches.
+void Delassus::write_column(std::size_t j) {
+  const ImpulseDirection& direction = directions_[j];
   const Constraint& at = *direction.constraint;
-  Column& column = columns_.emplace_back(Column{parts_.size(), false});
   const double* number = at.row(direction.row);
   const double* tangent = at.row(at.tangent_row());
   for (int b = 0; b < at.bodies; ++b) {
     const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
-    const Range reach = response.reach(block.body);
-    add_part(at, reach);
-    std::size_t part = column.begin;
-    while (parts_[part].v.begin != reach.begin) ++part;
-    double* const x = responses_.data() + parts_[part].begin + (block.v - reach.begin);
-    for (int c = 0; c < block.columns; ++c, ++number, ++tangent) {
-      x[c] = *number;
-      if (direction.ratio != 0.0) x[c] += direction.ratio * *tangent;
+    const Part& part = *part_of(j, block.v);
+    double* const x = responses_.data() + part.begin + (block.v - part.v.begin);
+    for (int c = 0; c < block.columns; ++c) x[c] = number[c];
+    if (direction.ratio != 0.0) {
+      for (int c = 0; c < block.columns; ++c) x[c] += direction.ratio * tangent[c];
     }
+    number += block.columns;
+    tangent += block.columns;
   }
-  bool moves = false;
-  for (std::size_t part = column.begin; part < parts_.size(); ++part) {
-    const Range v = parts_[part].v;
-    Index body = at.blocks[0].body;
-    for (int b = 1; b < at.bodies; ++b) {
-      const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
-      if (block.v >= v.begin && block.v < v.end) body = block.body;
-    }
-    double* const x = responses_.data() + parts_[part].begin;
-    if (response.take_loads(body, x)) {
-      loads_.resize(responses_.size());
-      std::copy_n(x, v.size(), loads_.data() + parts_[part].begin);
-    }
-    moves = response.answer(body, x) || moves;
-  }
-  column.held = !moves;
 }
 
 double Delassus::product(const Constraint& at, int row, std::size_t j) const {
@@ -66,10 +96,8 @@ double Delassus::product(const Constraint& at, int row, std::size_t j) const {
   const double* h = at.row(row);
   for (int b = 0; b < at.bodies; ++b) {
     const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
-    for (std::size_t part = columns_[j].begin; part < columns_[j + 1].begin; ++part) {
-      const Range v = parts_[part].v;
-      if (block.v < v.begin || block.v >= v.end) continue;
-      const double* const response = responses_.data() + parts_[part].begin + (block.v - v.begin);
+    if (const Part* const part = part_of(j, block.v)) {
+      const double* const response = responses_.data() + part->begin + (block.v - part->v.begin);
       for (int c = 0; c < block.columns; ++c) sum += h[c] * response[c];
     }
     h += block.columns;
@@ -80,8 +108,8 @@ double Delassus::product(const Constraint& at, int row, std::size_t j) const {
 double Delassus::entry(std::size_t i, std::size_t j) const {
   if (loads_.empty()) return product(*directions_[i].constraint, directions_[i].row, j);
   double sum = 0.0;
-  for (std::size_t part = columns_[i].begin; part < columns_[i + 1].begin; ++part) {
-    for (std::size_t other = columns_[j].begin; other < columns_[j + 1].begin; ++other) {
+  for (std::size_t part = columns_[i].first_part; part < columns_[i + 1].first_part; ++part) {
+    for (std::size_t other = columns_[j].first_part; other < columns_[j + 1].first_part; ++other) {
       if (parts_[part].v.begin != parts_[other].v.begin) continue;
       const double* const load = loads_.data() + parts_[part].begin;
       sum = std::inner_product(load, load + parts_[part].v.size(), responses_.data() + parts_[other].begin,
@@ -109,7 +137,7 @@ void Delassus::write(double* matrix) const {
 }
 
 void Delassus::add_response(std::size_t column, double impulse, double* x) const {
-  for (std::size_t part = columns_[column].begin; part < columns_[column + 1].begin; ++part) {
+  for (std::size_t part = columns_[column].first_part; part < columns_[column + 1].first_part; ++part) {
     const double* const response = responses_.data() + parts_[part].begin;
     const Range v = parts_[part].v;
     for (Index i = 0; i < v.size(); ++i) x[v.begin + i] += response[i] * impulse;

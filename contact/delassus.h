@@ -26,7 +26,7 @@ struct ImpulseDirection {
 /// memory.
 class CAROM_API Delassus {
 public:
-  /// Takes the responses of the bodies to unit impulses along the columns.
+  /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
   void build(std::span<const ImpulseDirection> directions, BodyResponse& response);
 
   /// Number of rows.
@@ -46,20 +46,23 @@ public:
   void add_response(std::size_t column, double impulse, double* x) const;
 
 private:
-  // Response to a column: over one range for each of the mechanisms that its bodies belong to.
+  // Response to a column, over one range for each of the reaches of its bodies.
   struct Column {
-    std::size_t begin = 0;  // of its parts
+    std::size_t first_part = 0;
     bool held = false;
   };
   struct Part {
     Range v;
     std::size_t begin = 0;  // of its numbers
+    Index body = none;      // one of those that reach there
   };
-  void add_column(const ImpulseDirection& direction, BodyResponse& response);
-  void add_part(const Constraint& constraint, Range reach);
+  void lay_out(BodyResponse& response);
+  void add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers);
+  void write_column(std::size_t j);
+  [[nodiscard]] const Part* part_of(std::size_t column, Index v) const;
   [[nodiscard]] double product(const Constraint& at, int row, std::size_t j) const;
 
-  std::vector<ImpulseDirection> directions_;
+  std::span<const ImpulseDirection> directions_;
   std::vector<Column> columns_;  // and an end
   std::vector<Part> parts_;
   std::vector<double> responses_;

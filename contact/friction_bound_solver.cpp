@@ -129,55 +129,55 @@ void FrictionBoundSolver::find_null_space(const ContactProblem& problem) {
 }
 
 void FrictionBoundSolver::take_forces(const FrictionBoundProblem& problem, bool least) {
-  IslandProblem& cluster = problem.cluster;
+  IslandProblem& island = problem.problem;
   null_.clear();
   if (least) {
-    found_.assign(cluster.impulses().begin(), cluster.impulses().end());
-    find_null_space(cluster.problem());
+    found_.assign(island.impulses().begin(), island.impulses().end());
+    find_null_space(island.problem());
   }
   if (null_.empty()) {
-    problem.pressure.take(problem.multipliers(), problem.duration, problem.size);
+    problem.bounds.take(problem.multipliers(), problem.duration, problem.size);
     return;
   }
   least_ = found_;
   remove_parts(null_, least_);
-  allow(cluster.problem(), null_, least_);
-  cluster.set_impulses(least_);
-  problem.pressure.take(problem.multipliers(), problem.duration, problem.size);
-  cluster.set_impulses(found_);
+  allow(island.problem(), null_, least_);
+  island.set_impulses(least_);
+  problem.bounds.take(problem.multipliers(), problem.duration, problem.size);
+  island.set_impulses(found_);
 }
 
 bool FrictionBoundSolver::solve(const FrictionBoundProblem& problem, SolverChain& chain) {
-  if (problem.pressure.empty()) return problem.cluster.solve(chain).usable();
+  if (problem.bounds.empty()) return problem.problem.solve(chain).usable();
   // Of answers that are not unique one may follow another for ever.
-  return settle(problem, chain, patience, false) ||
-         (problem.cluster.report().usable() &&
-          settle(problem, chain, BoundIteration::most_repetitions, true));
+  return converge(problem, chain, patience, false) ||
+         (problem.problem.report().usable() &&
+          converge(problem, chain, BoundIteration::most_repetitions, true));
 }
 
-bool FrictionBoundSolver::settle(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
-                                 bool least) {
+bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
+                                   bool least) {
   BoundIteration iteration;
   for (int i = 0; i < repetitions; ++i) {
-    if (!problem.cluster.solve(chain).usable()) return false;
+    if (!problem.problem.solve(chain).usable()) return false;
     take_forces(problem, least);
     double change = 0.0;
     iteration.begin();
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       Constraint& contact = problem.contacts[c];
-      if (!problem.pressure.depends_on_joint_force(contact)) continue;
+      if (!problem.bounds.depends_on_joint_force(contact)) continue;
       const double before = contact.friction_bound;
-      change = std::max(change, problem.pressure.press(contact, problem.at));
+      change = std::max(change, problem.bounds.update(contact, problem.at));
       iteration.add(before, contact.friction_bound);
-      problem.cluster.update_bound(c);
+      problem.problem.update_bound(c);
     }
     if (iteration.settled(change)) return true;
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-      if (!problem.pressure.depends_on_joint_force(problem.contacts[c])) continue;
+      if (!problem.bounds.depends_on_joint_force(problem.contacts[c])) continue;
       problem.contacts[c].friction_bound = iteration.guess(bound++);
-      problem.cluster.update_bound(c);
+      problem.problem.update_bound(c);
     }
   }
   return false;

@@ -19,13 +19,13 @@ namespace carom {
 
 /// One problem of contacts with friction in joints. All members must outlive the calls.
 struct FrictionBoundProblem {
-  IslandProblem& cluster;
-  std::span<Constraint> contacts;  ///< those of the cluster
-  FrictionBounds& pressure;        ///< of friction in the joints
+  IslandProblem& problem;
+  std::span<Constraint> contacts;  ///< those of the problem
+  FrictionBounds& bounds;          ///< of friction in the joints
   JointView at;                    ///< where forces of joints are looked at
   double duration = 1.0;           ///< as for FrictionBounds::take() [s]
   double size = 0.0;               ///< likewise
-  /// Multipliers of all rows of the joints under the impulses that the cluster has.
+  /// Multipliers of all rows of the joints under the impulses that the problem has.
   std::function<const double*()> multipliers;
 };
 
@@ -41,8 +41,8 @@ public:
 private:
   void find_null_space(const ContactProblem& problem);
   void take_forces(const FrictionBoundProblem& problem, bool least);
-  [[nodiscard]] bool settle(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
-                            bool least);
+  [[nodiscard]] bool converge(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
+                              bool least);
 
   RankRevealingQr factors_;
   std::vector<double> null_;  // of W, orthonormal vectors one behind the other

@@ -54,15 +54,15 @@ void FrictionBounds::take(const double* multipliers, double duration, double siz
   for (std::size_t row = 0; row < rows_; ++row) largest_ = std::max(largest_, std::abs(multipliers[row]));
 }
 
-double FrictionBounds::press(Constraint& contact, const JointView& at) const {
+double FrictionBounds::update(Constraint& contact, const JointView& at) const {
   const Bearing* const bearing = find(contact);
   if (bearing == nullptr) return 0.0;
   const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers_ + bearing->row);
   const double force = std::hypot(reaction.force[0], reaction.force[1], reaction.force[2]);
-  const double pressed = duration_ * bearing->bound + bearing->coefficient * force;
-  const double scale = std::max({pressed, contact.friction_bound, bearing->coefficient * largest_});
-  const double change = scale > 0.0 ? std::abs(pressed - contact.friction_bound) / scale : 0.0;
-  contact.friction_bound = pressed;
+  const double bound = duration_ * bearing->bound + bearing->coefficient * force;
+  const double scale = std::max({bound, contact.friction_bound, bearing->coefficient * largest_});
+  const double change = scale > 0.0 ? std::abs(bound - contact.friction_bound) / scale : 0.0;
+  contact.friction_bound = bound;
   return change;
 }
 

@@ -31,13 +31,13 @@ public:
   /// The rows, among those of the component, whose multipliers bound that of a contact; empty if none do.
   [[nodiscard]] Range rows(const Constraint& contact) const;
   /// Takes note of the multipliers of all rows of the component's joints: forces, or impulses over a duration
-  /// [s] (0: of an impact; 1 for forces). They must outlive the calls of press().
+  /// [s] (0: of an impact; 1 for forces). They must outlive the calls of update().
   /// \param size of loads whose rounding is in the multipliers, as these
   void take(const double* multipliers, double duration, double size = 0.0);
   /// Sets `friction_bound` of friction in a joint. Returns the change against the number itself, or against
   /// that of the largest force in the component where it is small; does nothing and returns 0 for what is
   /// bound by a constant only.
-  double press(Constraint& contact, const JointView& at) const;
+  double update(Constraint& contact, const JointView& at) const;
 
 private:
   struct Bearing {

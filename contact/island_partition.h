@@ -53,6 +53,7 @@ public:
   template <class NodeOf>
   std::span<const Range> arrange_constraints(std::span<Constraint> constraints, Index nodes,
                                              NodeOf&& node_of) {
+    if (arrange_single(constraints, nodes, node_of)) return islands_;
     return arrange(constraints, nodes, [&](const Constraint& constraint, auto&& f) {
       for (int b = 0; b < constraint.bodies; ++b) {
         f(node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
@@ -69,6 +70,21 @@ public:
   [[nodiscard]] Index island_of(Index node) { return sets_.find(node); }
 
 private:
+  /// Constraints of one body each, in the order of their nodes: nothing is to be joined or moved.
+  template <class NodeOf>
+  bool arrange_single(std::span<const Constraint> constraints, Index nodes, NodeOf&& node_of) {
+    clear(nodes);
+    Index last = none;
+    for (Index i = 0; i < constraints.size(); ++i) {
+      const Index node = constraints[i].bodies == 1 ? node_of(constraints[i].body()) : none;
+      if (node == none || (last != none && node < last)) return false;
+      if (node != last) islands_.push_back({i, i});
+      islands_.back().end = i + 1;
+      last = node;
+    }
+    return true;
+  }
+
   UnionFind sets_;
   std::vector<Range> islands_;
 };

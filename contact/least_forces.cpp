@@ -68,9 +68,9 @@ void LeastForces::collect_lines(std::span<const ActiveContact> group, const std:
     }
     if (!contact.sticks()) continue;
     const std::size_t tangent = row++;
-    const double pressed = has_dry_friction ? contact.at.friction_bound : forces[normal];
+    const double bound = has_dry_friction ? contact.at.friction_bound : forces[normal];
     for (const double side : {-1.0, 1.0}) {
-      lines_at_.push_back(contact.friction * pressed + side * forces[tangent]);
+      lines_at_.push_back(contact.friction * bound + side * forces[tangent]);
       for (std::size_t k = 0; k < vectors; ++k) {
         const double* const vector = orthonormal_.data() + k * n;
         slopes_.push_back((has_dry_friction ? 0.0 : contact.friction * vector[normal]) +

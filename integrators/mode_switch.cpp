@@ -75,7 +75,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   State trial = state;
   Evaluation evaluation = make_evaluation(assembly);
   SolverChain chain;
-  IslandProblem cluster;
+  IslandProblem problem;
   IslandPartition partition;
   GapProjection projection;
   const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
@@ -100,13 +100,13 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
         return contact.normal_velocity(trial.v.data()) < 0.0;
       });
       if (!approaches) continue;
-      cluster.build(of_body, trial.v.data());
-      cluster.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
-      cluster.set_free_velocity(trial.v.data());
-      if (!cluster.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
-      cluster.map().add_velocities(trial.v.data());
+      problem.build(of_body, trial.v.data());
+      problem.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
+      problem.set_free_velocity(trial.v.data());
+      if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
+      problem.map().add_velocities(trial.v.data());
       for (std::size_t c = 0; c < of_body.size(); ++c) {
-        recorded.push_back(event_of(assembly, cluster, c, state.time, trial.v.data()));
+        recorded.push_back(event_of(assembly, problem, c, state.time, trial.v.data()));
       }
     }
     // All of them: out of one obstacle a body may come into another.

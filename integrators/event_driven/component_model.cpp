@@ -121,8 +121,8 @@ ComponentModel::ComponentModel(const Assembly& assembly_in, const Detector& dete
       tolerances(tolerances_of(*assembly, component, unknowns, options->absolute_tolerance)) {
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
   loads = load_traits(*assembly, component, joints.depends_on_time(), ground_moves);
-  discontinuities = discontinuities_of(*assembly, component,
-                                       ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
+  discontinuities = discontinuities_of(
+      *assembly, component, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
 }
 
 double ComponentModel::kinetic_energy(const double* velocities) const {

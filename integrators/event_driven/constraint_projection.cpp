@@ -103,7 +103,8 @@ std::vector<std::string> causes_of_projection(SmoothMotion& motion, const Motion
       takes_part =
           takes_part || (largest > 0.0 && std::abs(memory.multipliers[row]) >= considerable * largest);
     }
-    if (takes_part) names.push_back(model.assembly->system().name(joints.joint(joints.pattern().first_row(joint))));
+    if (takes_part)
+      names.push_back(model.assembly->system().name(joints.joint(joints.pattern().first_row(joint))));
   }
   if (!names.empty()) return names;
   for (const ActiveContact& contact : motion.active().list()) {

@@ -71,7 +71,7 @@ bool JointReactions::update_bounds_once(ActiveSet& active, MotionSample& at, Bou
   for (ActiveContact& contact : active.list()) {
     if (!bounds_.depends_on_joint_force(contact.at)) continue;
     const double before = contact.at.friction_bound;
-    change = std::max(change, bounds_.press(contact.at, at.joint_view()));
+    change = std::max(change, bounds_.update(contact.at, at.joint_view()));
     iteration.add(before, contact.at.friction_bound);
   }
   return true;
@@ -114,9 +114,9 @@ bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contact
   assert(is_at(at));
   // Little is captured, so that nothing is allocated.
   const auto multipliers = [this, &problem] { return impulses(problem).data(); };
-  return memory_->friction_bound.solve({.cluster = problem,
+  return memory_->friction_bound.solve({.problem = problem,
                                         .contacts = contacts,
-                                        .pressure = bounds_,
+                                        .bounds = bounds_,
                                         .at = at.joint_view(),
                                         .duration = 0.0,
                                         .multipliers = multipliers},

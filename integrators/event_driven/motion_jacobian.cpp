@@ -228,7 +228,7 @@ void MotionJacobian::differentiate_friction_bound(const MotionSample& sample, co
     force = value;
     Constraint moved = contact.at;
     bounds.take(forces.data(), 1.0);
-    bounds.press(moved, sample.joint_view());
+    bounds.update(moved, sample.joint_view());
     return moved.friction_bound;
   };
   for (Index row = rows.begin; row < rows.end; ++row) {

@@ -27,7 +27,7 @@ struct CAROM_API MotionSample {
 
   State state;                                ///< time and unknowns
   Evaluation evaluation;                      ///< positions and loads
-  GroundPlaces places;                      ///< at the time of the state
+  GroundPlaces places;                        ///< at the time of the state
   std::vector<double> dissipative, external;  ///< loads by cause, where elements book them [N, N m]
   std::vector<double> loads;                  ///< of all causes, without reactions [N, N m]
   std::vector<double> acceleration;           ///< with the reactions asked for

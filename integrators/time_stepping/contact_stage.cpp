@@ -1,6 +1,5 @@
-// Problem: which constraints take part in a step, and their impulses against the guess at the loads.
+// Problem: impulses of the constraints of a step against the guess at the loads.
 
-#include <carom/contact/impact_restitution.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
 
 #include <algorithm>
@@ -8,8 +7,7 @@
 
 namespace carom {
 
-ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), detector_(assembly), masses_(assembly), capture_speed_(options.capture_speed) {
+ContactStage::ContactStage(const Assembly& assembly) : assembly_(&assembly), masses_(assembly) {
   Index most_blocks = 1, most_runs = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -17,110 +15,6 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
   }
   block_problems_.resize(most_blocks);
   chains_.resize(most_runs);
-}
-
-void ContactStage::place_surfaces(const StepInput& in) {
-  if (!detector_.has_moving_ground()) return;
-  if (places_after_.time() == in.start.time) std::swap(places_, places_after_);
-  detector_.place(in.start.time, places_);
-  detector_.place(in.end_time, places_after_);
-  detector_.demand_continuous(places_, places_after_);
-}
-
-/// A gap was opened by the step before, which this one may be a small part of.
-void ContactStage::remember(const StepInput& in, double last_step) {
-  detector_.remember(in.companion.modes, std::max(in.step, last_step), lasting_);
-  if (!detector_.has_static_friction()) return;
-  sticking_.clear();
-  for (const auto& [key, mode] : in.companion.modes) {
-    if (mode == ContactMode::stick) sticking_.push_back(key);
-  }
-  std::sort(sticking_.begin(), sticking_.end());
-}
-
-void ContactStage::find(const StepInput& in, Index component, const StepTrial& trial,
-                        std::vector<Constraint>& out) {
-  const std::size_t first = out.size();
-  detector_.find(component, in.start.view(), trial.at_start, places_, &places_after_, 0.0, out, &lasting_);
-  detector_.find_joint_friction(component, in.start.view(), trial.at_start, out);
-  if (out.size() == first) return;
-  const std::span<Constraint> found(out.data() + first, out.size() - first);
-  if (detector_.has_static_friction()) {
-    for (Constraint& contact : found) {
-      if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
-      contact.friction = contact.law.sticking_friction();
-    }
-  }
-  // Friction in joints comes last.
-  if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
-}
-
-void ContactStage::find(const StepInput& in, const StepTrial& trial) {
-  remember(in, trial.history.step);
-  constraints_.clear();
-  members_.clear();
-  for (Index component = 0; component < assembly_->components().size(); ++component) {
-    find(in, component, trial, constraints_);
-    members_.push_back(component);
-  }
-  make_islands();
-}
-
-Index ContactStage::component_of(Index body) const {
-  const auto& all = assembly_->components();
-  const auto at = std::upper_bound(
-      all.begin(), all.end(), body,
-      [](Index wanted, const Component& component) { return wanted < component.bodies.end; });
-  return static_cast<Index>(at - all.begin());
-}
-
-/// Components stand alone but where a constraint joins them. Constraints come ordered by their first bodies.
-void ContactStage::make_islands() {
-  islands_.clear();
-  const auto joins = [&](const Constraint& constraint) {
-    for (int b = 1; b < constraint.bodies; ++b) {
-      if (component_of(constraint.blocks[static_cast<std::size_t>(b)].body) !=
-          component_of(constraint.body())) {
-        return true;
-      }
-    }
-    return false;
-  };
-  const auto count = static_cast<Index>(assembly_->components().size());
-  if (std::any_of(constraints_.begin(), constraints_.end(), joins)) {
-    const auto node = [&](Index body) { return component_of(body); };
-    partition_.arrange_constraints(std::span(constraints_), count, node);
-    std::stable_sort(members_.begin(), members_.end(),
-                     [&](Index a, Index b) { return partition_.island_of(a) < partition_.island_of(b); });
-  } else {
-    partition_.clear(count);
-  }
-  std::size_t next = 0;
-  for (std::size_t first = 0; first < members_.size();) {
-    const Index island = partition_.island_of(members_[first]);
-    std::size_t last = first + 1;
-    while (last < members_.size() && partition_.island_of(members_[last]) == island) ++last;
-    const std::size_t begin = next;
-    const auto within = [&](const Constraint& constraint) {
-      return partition_.island_of(component_of(constraint.body())) == island;
-    };
-    while (next < constraints_.size() && within(constraints_[next])) ++next;
-    islands_.push_back(
-        {{members_.data() + first, last - first}, {constraints_.data() + begin, next - begin}});
-    first = last;
-  }
-}
-
-void ContactStage::restore(const StepInput& in, const StepIsland& island, const StepTrial& trial) {
-  again_.clear();
-  for (const Index component : island.components) find(in, component, trial, again_);
-  if (island.components.size() > 1) {
-    std::stable_sort(again_.begin(), again_.end(),
-                     [](const Constraint& a, const Constraint& b) { return a.key < b.key; });
-    std::stable_sort(island.constraints.begin(), island.constraints.end(),
-                     [](const Constraint& a, const Constraint& b) { return a.key < b.key; });
-  }
-  std::copy(again_.begin(), again_.end(), island.constraints.begin());
 }
 
 void ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {

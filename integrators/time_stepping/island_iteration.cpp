@@ -208,7 +208,7 @@ void IslandIteration::fail_contraction(const StepIsland& island, const StepInput
 }
 
 JointContacts IslandIteration::contacts_of(const StepIsland& island) {
-  return {parts_->contacts.detector(), island.constraints, parts_->problem(), parts_->contacts.chain(),
+  return {parts_->constraints.detector(), island.constraints, parts_->problem(), parts_->contacts.chain(),
           method_.is_newton()};
 }
 

@@ -167,9 +167,9 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
   for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = trial.free[i] + arrays.dv_joints[i];
   if (struck_) allow_at_start(arrays.scratch.data());
   problem.set_free_velocity(arrays.scratch.data());
-  const FrictionBoundProblem bounded{.cluster = problem,
+  const FrictionBoundProblem bounded{.problem = problem,
                                      .contacts = contacts.constraints,
-                                     .pressure = bounds_,
+                                     .bounds = bounds_,
                                      .at = {trial.midpoint.view(), trial.at_midpoint.rotation.data()},
                                      .duration = in.step,
                                      .multipliers = [this, &problem] { return multipliers(&problem); }};

@@ -31,8 +31,8 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 

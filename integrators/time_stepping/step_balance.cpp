@@ -34,10 +34,11 @@ void StepBalance::begin(const StepInput& in) {
 bool StepBalance::book_couplings(const StepInput& in, Index component, const StepTrial& trial) {
   const Component& all = assembly_->components()[component];
   StoredEnergies& stored = result_.stored;
-  for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += trial.energies.values[i];
+  for (std::size_t i = 0; i < stored_energy_count; ++i)
+    stored.values[i] += trial.account.potentials.values[i];
   double total = 0.0, dissipative = 0.0, external = 0.0;
   for (Index part = 0; part < all.blocks.size(); ++part) {
-    const BlockWorks& works = trial.works[part];
+    const BlockWorks& works = trial.account.works[part];
     stored[StoredEnergy::kinetic] += works.kinetic;
     total += works.total;
     dissipative += works.dissipative;
@@ -202,9 +203,9 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
 void StepBalance::book_projection(const GapProjection::Result& result, const StoredEnergies& before,
                                   const StepTrial& trial) {
   result_.report.projected = std::max(result_.report.projected, result.shift);
-  energy_position_projection_ += before.potential() - trial.energies.potential();
+  energy_position_projection_ += before.potential() - trial.account.potentials.potential();
   for (std::size_t i = 0; i < stored_energy_count; ++i) {
-    result_.stored.values[i] += trial.energies.values[i] - before.values[i];
+    result_.stored.values[i] += trial.account.potentials.values[i] - before.values[i];
   }
 }
 

@@ -27,64 +27,69 @@ StepController::StepController(const Assembly& assembly, const TimeStepping& opt
 
 void StepController::step(TimeStepper& stepper, State& state, Companion& companion, double limit,
                           StepReport& report) {
-  // Of the length that the error allows, for the error of its estimate; and bounds of one change.
-  constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
-  constexpr double order = 3.0;  // of the error of one step
-  const StepControl& control = *options_.control;
-
   const double wanted = companion.next_step > 0.0 ? companion.next_step : options_.step;
   const double room = limit - state.time;
   // Neither a sliver before the limit nor a step beyond it.
   double step = wanted >= room ? room : std::min(wanted, 0.5 * room);
-  int rejected = 0;
-  for (;;) {
+  for (int rejected = 0;; ++rejected) {
     if (!(state.time + 0.5 * step > state.time)) fail_short(state.time, step);
-    const bool cut = step < wanted && rejected == 0;
-    const double end = step == room ? limit : state.time + step;
-    double asked = 0.0;
-    bool compared = false;
-    double found = 0.0;
-    try {
-      compared = try_step(stepper, state, companion, step, end);
-      if (compared) found = error(step);
-    } catch (const SolverError&) {
-      // A shorter step may succeed; at the smallest the error is the caller's.
-      if (step <= control.smallest) throw;
-      asked = most_shrinking * step;
+    const Attempt attempt =
+        this->attempt(stepper, state, companion, step, step == room ? limit : state.time + step);
+    if (attempt.accepted) {
+      std::swap(state, halves_.state);
+      std::swap(companion, halves_.companion);
+      // A step cut for the limit's sake says nothing against the length before.
+      const bool cut = step < wanted && rejected == 0;
+      const double next = cut ? std::max(attempt.next, wanted) : attempt.next;
+      companion.next_step = std::clamp(next, options_.control->smallest, options_.control->largest);
+      companion.statistics.rejected_steps += rejected;
+      if (!attempt.compared) ++companion.statistics.steps_across_impacts;
+      merge(report);
+      report.step = step;
+      report.control = {attempt.error, rejected, !attempt.compared, companion.next_step};
+      return;
     }
-    if (asked == 0.0) {
-      const double factor =
-          found > 0.0 ? caution * std::pow(control.tolerance / found, 1.0 / order) : most_growth;
-      if (!compared || found <= control.tolerance) {
-        // What was cut for the limit's sake says nothing against the length before.
-        double next = compared ? step * std::clamp(factor, most_shrinking, most_growth) : step;
-        if (cut) next = std::max(next, wanted);
-        next = std::clamp(next, control.smallest, control.largest);
-        std::swap(state, halves_.state);
-        std::swap(companion, halves_.companion);
-        companion.next_step = next;
-        companion.statistics.rejected_steps += rejected;
-        if (!compared) ++companion.statistics.steps_across_impacts;
-        merge(report);
-        report.step = step;
-        report.control = {found, rejected, !compared, next};
-        return;
-      }
-      asked = step * std::clamp(factor, most_shrinking, caution);
-      if (step <= control.smallest) {
-        SolverFailure failure;
-        failure.time = state.time;
-        failure.step = step;
-        failure.residual = found;
-        throw SolverError("time stepping at t = " + to_text(state.time) + " s: error " + to_text(found) +
-                              " m at the smallest step, " + to_text(step) +
-                              " s; allowed: " + to_text(control.tolerance) + " m",
-                          std::move(failure));
-      }
-    }
-    step = std::max(asked, std::min(control.smallest, step));
-    ++rejected;
+    if (attempt.compared && step <= options_.control->smallest)
+      fail_smallest(state.time, step, attempt.error);
+    step = std::max(attempt.next, std::min(options_.control->smallest, step));
   }
+}
+
+/// Makes a step, judges it, and finds the length to go on with.
+StepController::Attempt StepController::attempt(TimeStepper& stepper, const State& state,
+                                                const Companion& companion, double step, double end) {
+  // Of the length that the error allows, for the error of its estimate; and bounds of one change.
+  constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
+  constexpr double order = 3.0;  // of the error of one step
+  Attempt made;
+  try {
+    made.compared = try_step(stepper, state, companion, step, end);
+  } catch (const SolverError&) {
+    // A shorter step may succeed; at the smallest the error is the caller's.
+    if (step <= options_.control->smallest) throw;
+    made.next = most_shrinking * step;
+    return made;
+  }
+  const double tolerance = options_.control->tolerance;
+  if (made.compared) made.error = error(step);
+  const double factor =
+      made.error > 0.0 ? caution * std::pow(tolerance / made.error, 1.0 / order) : most_growth;
+  made.accepted = !made.compared || made.error <= tolerance;
+  made.next = !made.compared  ? step
+              : made.accepted ? step * std::clamp(factor, most_shrinking, most_growth)
+                              : step * std::clamp(factor, most_shrinking, caution);
+  return made;
+}
+
+void StepController::fail_smallest(double time, double step, double error) const {
+  SolverFailure failure;
+  failure.time = time;
+  failure.step = step;
+  failure.residual = error;
+  throw SolverError("time stepping at t = " + to_text(time) + " s: error " + to_text(error) +
+                        " m at the smallest step, " + to_text(step) +
+                        " s; allowed: " + to_text(options_.control->tolerance) + " m",
+                    std::move(failure));
 }
 
 void StepController::fail_short(double time, double step) {

@@ -25,11 +25,21 @@ public:
   void step(TimeStepper& stepper, State& state, Companion& companion, double limit, StepReport& report);
 
 private:
+  /// A step that was tried.
+  struct Attempt {
+    bool accepted = false;
+    bool compared = false;  // whether its error could be estimated
+    double error = 0.0;     // then [m]
+    double next = 0.0;      // length to go on with [s]
+  };
+  [[nodiscard]] Attempt attempt(TimeStepper& stepper, const State& state, const Companion& companion,
+                                double step, double end);
   bool try_step(TimeStepper& stepper, const State& state, const Companion& companion, double step,
                 double end);
   [[nodiscard]] double error(double step) const;
   void merge(StepReport& report);
   [[noreturn]] static void fail_short(double time, double step);
+  [[noreturn]] void fail_smallest(double time, double step, double error) const;
 
   struct Run {
     State state;

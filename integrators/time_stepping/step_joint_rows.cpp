@@ -1,7 +1,7 @@
 // Problem: rows of joints for every place of a step, past singular positions too.
 
-#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_errors.h>
+#include <carom/integrators/time_stepping/step_joint_rows.h>
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +124,8 @@ void StepJointRows::solve(std::vector<double>& r) {
   }
 }
 
-bool StepJointRows::correct_velocities(const StepInput& in, StepTrial& trial, std::vector<double>& residuals) {
+bool StepJointRows::correct_velocities(const StepInput& in, StepTrial& trial,
+                                       std::vector<double>& residuals) {
   update(end_, view_of(trial.end, trial.at_end), in);
   end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());
   if (!mixed_.factor(end_, midpoint_)) return false;

@@ -7,6 +7,7 @@
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -23,8 +24,9 @@ struct StepParts {
       : assembly(&model),
         options(chosen),
         rule(chosen.force_rule),
-        contacts(model, chosen),
-        trial(model, step_needs(model, contacts.detector(), rule.is_mean())),
+        constraints(model, chosen),
+        contacts(model),
+        trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),
         joints(model) {}
 
@@ -34,7 +36,7 @@ struct StepParts {
   }
   /// Errors of one.
   [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
-    return {in, component, contacts.detector(), options, trial};
+    return {in, component, constraints.detector(), options, trial};
   }
   /// The problem where bodies of an island answer together; null where nothing touches.
   [[nodiscard]] IslandProblem* problem() {
@@ -50,6 +52,7 @@ struct StepParts {
   const Assembly* assembly;
   TimeStepping options;
   StepRule rule;
+  StepConstraints constraints;
   ContactStage contacts;
   StepTrial trial;
   SweepSchedule schedule;

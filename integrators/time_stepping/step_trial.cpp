@@ -62,7 +62,7 @@ StepTrial::StepTrial(const Assembly& assembly, const StepNeeds& model)
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
   }
-  works.resize(most_blocks);
+  account.works.resize(most_blocks);
 }
 
 void StepTrial::begin(const StepInput& in, LoadHistory& from) {

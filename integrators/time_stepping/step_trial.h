@@ -34,6 +34,12 @@ struct BlockWorks {
   double kinetic = 0.0, total = 0.0, dissipative = 0.0, external = 0.0;
 };
 
+/// Works and energies of the last iterate of a component.
+struct TrialAccount {
+  std::vector<BlockWorks> works;  ///< by block
+  StoredEnergies potentials;      ///< by cause
+};
+
 /// Quantities of which the model of a run needs some: they save what nobody asks for.
 struct StepNeeds {
   bool dissipative = false;      ///< an element books dissipative loads,
@@ -80,8 +86,7 @@ struct CAROM_API StepTrial {
   std::vector<float> rounding;               ///< what rounding cuts off v_{j+1}
   std::vector<double> dv_impulses;     ///< changes of velocity by impulses; empty until anything touches
   std::vector<double> free;            ///< velocities without them, likewise
-  std::vector<BlockWorks> works;       ///< by block of the component at hand
-  StoredEnergies energies;             ///< potentials of the component at hand, by cause
+  TrialAccount account;                ///< of the component at hand
   LoadHistory history;                 ///< of the companion, during a step
   std::vector<std::uint8_t> recorded;  ///< by block: its part of the last change, where that is pending
   bool swept = false;                  ///< `end` is an iterate of the component at hand

@@ -59,7 +59,7 @@ void SweepSchedule::improve(const SweepStages& stages) const {
 
 void SweepSchedule::finish_constant(const SweepStages& stages) const {
   for_blocks(stages, [&](const Block& block, Index part) {
-    stages.trial.works[part] = stages.rule.works(stages.in, stages.component, block, stages.trial);
+    stages.trial.account.works[part] = stages.rule.works(stages.in, stages.component, block, stages.trial);
   });
 }
 
@@ -84,15 +84,16 @@ void SweepSchedule::evaluate(const SweepStages& stages, LoadsKnown asked, bool w
   };
   const Loads loads = by_cause ? trial.loads_end.by_cause() : trial.loads_end.in_one();
   const BlockTasks tasks{first, last};
-  if (by_cause) trial.energies = {};
+  if (by_cause) trial.account.potentials = {};
   if (stages.rule.is_mean()) {
     trial.with_step(stages.in, component, [&](const StepContext& at) {
       evaluate_mean_loads(*assembly_, component, at, loads, workers_, tasks);
     });
-    if (by_cause) add_potentials(*assembly_, component, trial.end.view(), trial.at_end, trial.energies);
+    if (by_cause)
+      add_potentials(*assembly_, component, trial.end.view(), trial.at_end, trial.account.potentials);
   } else if (by_cause) {
     evaluate_loads_and_potentials(*assembly_, component, trial.end.view(), trial.at_end, loads,
-                                  trial.energies, workers_, tasks);
+                                  trial.account.potentials, workers_, tasks);
   } else {
     evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, loads, workers_, tasks);
   }
@@ -125,9 +126,10 @@ void SweepSchedule::fuse(const SweepStages& stages, bool guessing) {
     stages.finish(block, part);
     changes_[part] = stages.change(block);
   };
-  trial.energies = {};
+  trial.account.potentials = {};
   evaluate_loads_twice(*assembly_, stages.component, trial.end.view(), trial.at_end, trial.loads_end.in_one(),
-                       {first, compare}, trial.loads_end.by_cause(), {again, last}, trial.energies, workers_);
+                       {first, compare}, trial.loads_end.by_cause(), {again, last}, trial.account.potentials,
+                       workers_);
 }
 
 int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, double tolerance) {

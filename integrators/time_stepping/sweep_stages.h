@@ -40,7 +40,7 @@ struct SweepStages {
   /// Completes loads that were evaluated by cause, and takes note of their works.
   void finish(const Block& block, Index part) const {
     trial.loads_end.finish(block.v);
-    trial.works[part] = rule.works(in, component, block, trial);
+    trial.account.works[part] = rule.works(in, component, block, trial);
   }
 };
 

@@ -39,8 +39,8 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 
 StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
-  parts_.contacts.find(in, parts_.trial);  // gaps <= 0, joint limits, dry friction, at t_j
-  for (const StepIsland& island : parts_.contacts.islands()) advance(island, in);
+  parts_.constraints.find(in, parts_.trial);  // gaps <= 0, joint limits, dry friction, at t_j
+  for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
   return balance_.finish(in);  // works of what acted, records
 }
 
@@ -51,7 +51,7 @@ void TimeStepper::prepare(const StepInput& in) {
   parts_.contacts.forget_statistics();  // of a step that failed
   try {
     prescribed_.demand_continuous(in.start.time, in.end_time);
-    parts_.contacts.place_surfaces(in);
+    parts_.constraints.place_surfaces(in);
   } catch (const SolverError& error) {
     fail_motion(error, in);
   }
@@ -95,7 +95,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   for (std::size_t tried = 0; tried < count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % count);
     iteration_.use(iteration);
-    if (tried > 0) parts_.contacts.restore(in, island, parts_.trial);
+    if (tried > 0) parts_.constraints.restore(in, island, parts_.trial);
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;
     try {
@@ -138,9 +138,9 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
   for (const Index component : island.components) {
     const SweepStages at = parts_.stages(in, component);
     if (parts_.has_constant_loads(island)) {
-      parts_.trial.energies = {};
+      parts_.trial.account.potentials = {};
       add_potentials(*parts_.assembly, component, parts_.trial.end.view(), parts_.trial.at_end,
-                     parts_.trial.energies);
+                     parts_.trial.account.potentials);
       parts_.schedule.finish_constant(at);
     } else if (known == LoadsKnown::total) {
       parts_.schedule.evaluate(at, LoadsKnown::by_cause, false);
@@ -176,17 +176,17 @@ void TimeStepper::project_positions(const StepIsland& island, const StepInput& i
     JointConstraints none_there;
     JointConstraints& joints = stage != nullptr ? stage->rows().at_end() : none_there;
     const GapProjection::Result result = projection_.project(
-        assembly, component, parts_.contacts.detector(), parts_.contacts.places_at_end(),
+        assembly, component, parts_.constraints.detector(), parts_.constraints.places_at_end(),
         {island.constraints}, parts_.contacts.chain(), parts_.trial.end, parts_.trial.at_end, joints);
     if (result.left != nullptr) parts_.errors(in, component).fail_projection(*result.left);
     if (!result.moved) continue;
     if (stage != nullptr) balance_.book_velocity_projection(stage->project_velocities(parts_.trial));
-    const StoredEnergies before = parts_.trial.energies;
+    const StoredEnergies before = parts_.trial.account.potentials;
     if (parts_.rule.is_mean()) {
       // The mean loads are those that acted.
-      parts_.trial.energies = {};
+      parts_.trial.account.potentials = {};
       add_potentials(assembly, component, parts_.trial.end.view(), parts_.trial.at_end,
-                     parts_.trial.energies);
+                     parts_.trial.account.potentials);
     } else {
       parts_.schedule.evaluate(parts_.stages(in, component), LoadsKnown::by_cause, false);
     }

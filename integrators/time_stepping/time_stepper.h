@@ -43,7 +43,7 @@ public:
   void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
 
   /// Names of contacts.
-  [[nodiscard]] const Detector& detector() const { return parts_.contacts.detector(); }
+  [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
 private:
   [[nodiscard]] StepResult& make_step(const StepInput& in);

@@ -36,14 +36,6 @@ const std::set<std::string> interfaces_of_kinds = {"BodyKind", "ForceKind", "Joi
 // The two wide classes of the API.
 const std::set<std::string> wide_classes = {"System", "Simulation"};
 
-// TEMPORARY: classes that are being rebuilt; to be emptied.
-const std::set<std::string> classes_being_rebuilt = {"TimeStepper", "ContactStage", "StepTrial",   "Detector",
-                                                     "EventDriver", "ClockGroup",   "SmoothMotion"};
-// TEMPORARY: functions and files of those rooms.
-const std::set<std::string> functions_being_rebuilt = {"StepController::step"};
-const std::set<std::string> files_being_rebuilt = {"contact/detection/detector.cpp",
-                                                   "integrators/time_stepping/time_stepper.cpp"};
-
 std::string read(const fs::path& file) {
   std::ifstream stream(file);
   EXPECT_TRUE(stream) << file;
@@ -52,11 +44,6 @@ std::string read(const fs::path& file) {
 
 std::size_t lines_of(std::string_view content) {
   return static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n'));
-}
-
-/// True if a name is that of an excepted class or of something inside it.
-bool belongs_to(const std::string& name, const std::set<std::string>& classes) {
-  return classes.contains(name.substr(0, name.find("::")));
 }
 
 /// Functions that count: a kind need not answer for the width of its interface.
@@ -78,7 +65,6 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
   const SourceSizes sizes = source_sizes(content);
   for (const ClassSize& of : sizes.classes) {
     if (wide_classes.contains(of.name) || interfaces_of_kinds.contains(of.name)) continue;
-    if (belongs_to(of.name, classes_being_rebuilt)) continue;
     const int functions = counted_functions(of);
     if (functions > most_functions) {
       refuse(of.name, of.line, "functions", static_cast<std::size_t>(functions), most_functions);
@@ -88,11 +74,10 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
     }
   }
   for (const FunctionSize& of : sizes.functions) {
-    if (of.lines <= most_function_lines || belongs_to(of.name, classes_being_rebuilt)) continue;
-    if (functions_being_rebuilt.contains(of.name)) continue;
+    if (of.lines <= most_function_lines) continue;
     refuse(of.name, of.line, "lines", of.lines, most_function_lines);
   }
-  if (lines_of(content) > most_file_lines && !files_being_rebuilt.contains(path)) {
+  if (lines_of(content) > most_file_lines) {
     refuse("the file", 1, "lines", lines_of(content), most_file_lines);
   }
   return found;

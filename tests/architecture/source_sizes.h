@@ -86,7 +86,7 @@ private:
     } else if (c == '"' || c == '\'') {
       add(std::string(1, c));
       std::size_t end = at_ + 1;
-      while (end < code_.size() && code_[end] != c) end += code_[end] == '\\' ? 2 : 1;
+      while (end < code_.size() && code_[end] != c) end += code_[end] == '\\' ? 2U : 1U;
       skip_to(end + 1);
     } else if (is_word(c)) {
       std::size_t end = at_;
@@ -276,7 +276,7 @@ private:
       is_static = is_static || is("static");
       if (is("operator")) {
         const std::size_t name = at_;
-        at_ += is("(", 1) ? 3 : 2;  // operator() has its brackets in its name
+        at_ += is("(", 1) ? 3U : 2U;  // operator() has its brackets in its name
         while (at_ < tokens_.size() && !is("(")) ++at_;
         return read_function(owner, begin, name);
       }

@@ -66,7 +66,7 @@ check_copy() {
   if grep -rqE '<(spdlog|sundials|cvode|arkode|nvector|nlohmann)' "$1/include"; then
     fail "installed headers show a private dependency"
   fi
-  for header in core/assembly.h contact/contact_cluster.h integrators/time_stepping/time_stepper.h; do
+  for header in core/assembly.h contact/island_problem.h integrators/time_stepping/time_stepper.h; do
     [[ -e $source_dir/$header ]] || fail "$header is no header any more: name another private one"
     [[ ! -e $1/include/carom/$header ]] || fail "$header is private but installed"
   done

@@ -1,10 +1,12 @@
 // Sets that are joined two by two: against labels that are spread over all numbers, and reuse.
 
+#include "tests/random.h"
+
 #include <carom/core/numerics/union_find.h>
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <algorithm>
 #include <vector>
 
 namespace {
@@ -26,15 +28,15 @@ TEST(UnionFind, NamesSetsByTheirLeastNumber) {
 }
 
 TEST(UnionFind, AgreesWithLabels) {
-  std::mt19937 random(1);
+  carom_test::Random random(1);
   UnionFind sets;
   for (int round = 0; round < 200; ++round) {
-    const Index size = 1 + random() % 40;
+    const Index size = 1 + random.below(40);
     sets.start(size);
     std::vector<Index> label(size);
     for (Index i = 0; i < size; ++i) label[i] = i;
-    for (Index joins = random() % (2 * size); joins > 0; --joins) {
-      const auto a = static_cast<Index>(random() % size), b = static_cast<Index>(random() % size);
+    for (Index joins = random.below(2 * size); joins > 0; --joins) {
+      const Index a = random.below(size), b = random.below(size);
       sets.join(a, b);
       const Index from = std::max(label[a], label[b]), to = std::min(label[a], label[b]);
       for (Index& of : label) of = of == from ? to : of;

@@ -1,0 +1,67 @@
+#pragma once
+
+/// \file
+/// Constraints of a step: contacts with gap <= 0 at its start, those of the step before that turning has
+/// opened, limits and friction of joints (Johansson 1999, section 4); and the islands that they make of
+/// components.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/island_partition.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Components that constraints join in a step: the unit of its coupling iteration.
+struct StepIsland {
+  std::span<const Index> components;  ///< ascending
+  std::span<Constraint> constraints;  ///< that act on them
+};
+
+/// Finds constraints and islands. Keeps memory.
+class CAROM_API StepConstraints {
+public:
+  /// Throws ModelError for a contact without a law.
+  StepConstraints(const Assembly& assembly, const TimeStepping& options);
+
+  /// Its detector.
+  [[nodiscard]] const Detector& detector() const { return detector_; }
+  /// Ground shapes that move, at the end of the step.
+  [[nodiscard]] const GroundPlaces& places_at_end() const { return places_after_; }
+  /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
+  void place_surfaces(const StepInput& in);
+
+  /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
+  /// (StepTrial::at_start) must be up to date where asked for.
+  void find(const StepInput& in, const StepTrial& trial);
+  /// The islands, in the order of their first components. Valid until the next find().
+  [[nodiscard]] std::span<const StepIsland> islands() const { return islands_; }
+  /// Finds the constraints of an island as they were at the start, for another iteration.
+  void restore(const StepInput& in, const StepIsland& island, const StepTrial& trial);
+
+private:
+  void remember(const StepInput& in, double last_step);
+  void find(const StepInput& in, Index component, const StepTrial& trial, std::vector<Constraint>& out);
+  [[nodiscard]] bool joins_components(const Constraint& constraint) const;
+  void make_islands();
+  [[nodiscard]] Index component_of(Index body) const;
+
+  const Assembly* assembly_;
+  Detector detector_;
+  double capture_speed_;
+  GroundPlaces places_, places_after_;   // at the start; at the end
+  LastingContacts lasting_;              // contacts of the last step that turning may have opened
+  std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
+  std::vector<Constraint> constraints_, again_;
+  std::vector<Index> members_;  // components, island by island
+  std::vector<StepIsland> islands_;
+  IslandPartition partition_;
+};
+
+}  // namespace carom
