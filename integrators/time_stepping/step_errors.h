@@ -22,10 +22,10 @@ namespace carom {
 CAROM_API void check_options(const TimeStepping& options);
 
 /// Throws an error of a prescribed motion again, with the time of the step.
-[[noreturn]] void fail_motion(const SolverError& error, const StepInput& in);
+[[noreturn]] CAROM_API void fail_motion(const SolverError& error, const StepInput& in);
 
 /// The error with the name of a file of its contact problem, if it has one and a directory is given.
-[[nodiscard]] SolverError with_file(const SolverError& error, const TimeStepping& options);
+[[nodiscard]] CAROM_API SolverError with_file(const SolverError& error, const TimeStepping& options);
 
 /// Says why a step of one component failed.
 class CAROM_API StepErrors {

@@ -49,7 +49,7 @@ struct StepNeeds {
   bool midpoint = false;         ///< an element, or a joint, is asked halfway
 };
 /// Reads them off a model. \param mean whether elements give mean loads
-[[nodiscard]] StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean);
+[[nodiscard]] CAROM_API StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean);
 
 /// The trial of one step at a time. Keeps its memory.
 struct CAROM_API StepTrial {
