@@ -7,46 +7,147 @@
 
 namespace carom {
 
+namespace {
+
+/// Responses of one body of S velocities.
+template <int S>
+void answer_alone(std::span<const ImpulseDirection> directions, const double* mass, const double* inertia,
+                  double* x) {
+  for (const ImpulseDirection& direction : directions) {
+    const Constraint& at = *direction.constraint;
+    const double* const number = at.row(direction.row);
+    const double* const tangent = at.row(1);
+    for (int c = 0; c < S; ++c) {
+      const double along = direction.ratio != 0.0 ? number[c] + direction.ratio * tangent[c] : number[c];
+      x[c] = along / (c < 2 ? *mass : *inertia);
+    }
+    x += S;
+  }
+}
+
+/// Products of rows and columns of one body of S velocities. \param lower of the lower triangle, mirrored
+template <int S>
+void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
+              double* matrix) {
+  const std::size_t n = directions.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* const row = directions[i].constraint->row(directions[i].row);
+    const double* response = responses;
+    for (std::size_t j = 0; j < (lower ? i + 1 : n); ++j, response += S) {
+      double sum = 0.0;
+      for (int c = 0; c < S; ++c) sum += row[c] * response[c];
+      matrix[i * n + j] = sum;
+      if (lower) matrix[j * n + i] = sum;
+    }
+  }
+}
+
+}  // namespace
+
+/// One body that answers for itself, with two or three velocities: the usual case, in tight loops. False if
+/// it is not that.
+bool Delassus::build_of_one_body(const BodyResponse& response) {
+  velocities_of_one_ = 0;
+  if (directions_.empty()) return false;
+  const Constraint::Block& block = directions_.front().constraint->blocks[0];
+  for (const ImpulseDirection& direction : directions_) {
+    const Constraint& at = *direction.constraint;
+    if (at.bodies != 1 || at.blocks[0].body != block.body || at.has_dry_friction()) return false;
+  }
+  const BodyMasses masses = response.alone(block.body);
+  if (masses.mass == nullptr || block.columns > 3) return false;
+  const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
+  if (block.columns == 3 && !turns) return false;
+  velocities_of_one_ = block.columns;
+  common_ = {block.v, block.v + static_cast<Index>(block.columns)};
+  responses_.resize(directions_.size() * common_.size());
+  if (turns) {
+    answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
+  } else {
+    answer_alone<2>(directions_, masses.mass, nullptr, responses_.data());
+  }
+  return true;
+}
+
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {
   directions_ = directions;
   loads_.clear();
-  lay_out(response);
-  for (std::size_t j = 0; j < size(); ++j) {
-    write_column(j);
-    bool moves = false;
-    for (std::size_t part = columns_[j].first_part; part < columns_[j + 1].first_part; ++part) {
-      const Part& at = parts_[part];
-      double* const x = responses_.data() + at.begin;
-      if (response.take_loads(at.body, x)) {
-        loads_.resize(responses_.size());
-        std::copy_n(x, at.v.size(), loads_.data() + at.begin);
-      }
-      moves = response.answer(at.body, x) || moves;
-    }
-    columns_[j].held = !moves;
+  const std::size_t n = size();
+  if (build_of_one_body(response)) return;
+  if (held_.size() < n) held_.resize(n);
+  if (find_common_reach(response)) {
+    const std::size_t stride = common_.size();
+    responses_.assign(n * stride, 0.0);
+    for (std::size_t j = 0; j < n; ++j) write_column(j);
+    if (n > 0) answer(directions_[0].constraint->body(), common_, 0, n, held_.data(), response);
+    return;
   }
+  lay_out(response);
+  for (std::size_t j = 0; j < n; ++j) {
+    write_column(j);
+    held_[j] = 1;
+    for (const Part& part : parts(j)) {
+      char held = 0;
+      answer(part.body, part.v, part.begin, 1, &held, response);
+      if (held == 0) held_[j] = 0;
+    }
+  }
+}
+
+void Delassus::answer(Index body, Range v, std::size_t begin, std::size_t columns, char* held,
+                      BodyResponse& response) {
+  double* const x = responses_.data() + begin;
+  for (std::size_t j = 0; j < columns; ++j) {
+    if (!response.take_loads(body, x + j * v.size())) break;
+    loads_.resize(responses_.size());
+    std::copy_n(x + j * v.size(), v.size(), loads_.data() + begin + j * v.size());
+  }
+  response.answer(body, x, columns, held);
+}
+
+/// True if all columns reach the same velocities.
+bool Delassus::find_common_reach(BodyResponse& response) {
+  common_ = {};
+  const Constraint* last = nullptr;
+  Index body = none;
+  for (const ImpulseDirection& direction : directions_) {
+    if (direction.constraint == last) continue;
+    last = direction.constraint;
+    for (int b = 0; b < last->bodies; ++b) {
+      const Index next = last->blocks[static_cast<std::size_t>(b)].body;
+      if (next == body) continue;
+      const Range reach = response.reach(next);
+      if (body == none) common_ = reach;
+      if (reach.begin != common_.begin) {
+        common_ = {};
+        return false;
+      }
+      body = next;
+    }
+  }
+  return true;
 }
 
 /// Room for all responses, zero. Columns of one constraint reach the same bodies.
 void Delassus::lay_out(BodyResponse& response) {
   const std::size_t n = size();
-  columns_.resize(n + 1);
+  first_part_.resize(n + 1);
   parts_.clear();
   std::size_t numbers = 0;
   for (std::size_t j = 0; j < n; ++j) {
     const std::size_t first = parts_.size();
-    columns_[j].first_part = first;
+    first_part_[j] = first;
     if (j == 0 || directions_[j].constraint != directions_[j - 1].constraint) {
       add_parts(*directions_[j].constraint, response, numbers);
       continue;
     }
-    for (std::size_t part = columns_[j - 1].first_part; part < first; ++part) {
+    for (std::size_t part = first_part_[j - 1]; part < first; ++part) {
       parts_.push_back(parts_[part]);
       parts_.back().begin = numbers;
       numbers += parts_.back().v.size();
     }
   }
-  columns_[n].first_part = parts_.size();
+  first_part_[n] = parts_.size();
   responses_.assign(numbers, 0.0);
 }
 
@@ -64,10 +165,14 @@ void Delassus::add_parts(const Constraint& constraint, BodyResponse& response, s
   }
 }
 
+std::span<const Delassus::Part> Delassus::parts(std::size_t column) const {
+  return {parts_.data() + first_part_[column], first_part_[column + 1] - first_part_[column]};
+}
+
 /// The part of a column that a velocity is in; null if it is in none.
 const Delassus::Part* Delassus::part_of(std::size_t column, Index v) const {
-  for (std::size_t part = columns_[column].first_part; part < columns_[column + 1].first_part; ++part) {
-    if (v >= parts_[part].v.begin && v < parts_[part].v.end) return &parts_[part];
+  for (const Part& part : parts(column)) {
+    if (v >= part.v.begin && v < part.v.end) return &part;
   }
   return nullptr;
 }
@@ -78,22 +183,53 @@ void Delassus::write_column(std::size_t j) {
   const Constraint& at = *direction.constraint;
   const double* number = at.row(direction.row);
   const double* tangent = at.row(at.tangent_row());
-  for (int b = 0; b < at.bodies; ++b) {
-    const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
-    const Part& part = *part_of(j, block.v);
-    double* const x = responses_.data() + part.begin + (block.v - part.v.begin);
-    for (int c = 0; c < block.columns; ++c) x[c] = number[c];
+  const Constraint::Block* block = at.blocks.data();
+  for (int b = 0; b < at.bodies; ++b, ++block) {
+    const Part* const part = common_.empty() ? part_of(j, block->v) : nullptr;
+    const std::size_t begin = part == nullptr ? j * common_.size() + (block->v - common_.begin)
+                                              : part->begin + (block->v - part->v.begin);
+    double* const x = responses_.data() + begin;
+    std::copy_n(number, block->columns, x);
     if (direction.ratio != 0.0) {
-      for (int c = 0; c < block.columns; ++c) x[c] += direction.ratio * tangent[c];
+      for (int c = 0; c < block->columns; ++c) x[c] += direction.ratio * tangent[c];
     }
-    number += block.columns;
-    tangent += block.columns;
+    number += block->columns;
+    tangent += block->columns;
   }
 }
 
-double Delassus::product(const Constraint& at, int row, std::size_t j) const {
+double Delassus::entry(std::size_t i, std::size_t j) const {
+  const std::size_t stride = common_.size();
+  if (stride == 0) return sparse_entry(i, j);
+  const double* const response = responses_.data() + j * stride;
+  if (!loads_.empty()) {
+    const double* const load = loads_.data() + i * stride;
+    return std::inner_product(load, load + stride, response, 0.0);
+  }
+  const Constraint& at = *directions_[i].constraint;
+  const double* h = at.row(directions_[i].row);
   double sum = 0.0;
-  const double* h = at.row(row);
+  const Constraint::Block* block = at.blocks.data();
+  for (int b = 0; b < at.bodies; ++b, ++block) {
+    const double* of_block = response + (block->v - common_.begin);
+    for (const double* const end = h + block->columns; h != end;) sum += *h++ * *of_block++;
+  }
+  return sum;
+}
+
+double Delassus::sparse_entry(std::size_t i, std::size_t j) const {
+  double sum = 0.0;
+  if (!loads_.empty()) {
+    for (const Part& part : parts(i)) {
+      const Part* const other = part_of(j, part.v.begin);
+      if (other == nullptr) continue;
+      const double* const load = loads_.data() + part.begin;
+      sum = std::inner_product(load, load + part.v.size(), responses_.data() + other->begin, sum);
+    }
+    return sum;
+  }
+  const Constraint& at = *directions_[i].constraint;
+  const double* h = at.row(directions_[i].row);
   for (int b = 0; b < at.bodies; ++b) {
     const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
     if (const Part* const part = part_of(j, block.v)) {
@@ -105,31 +241,24 @@ double Delassus::product(const Constraint& at, int row, std::size_t j) const {
   return sum;
 }
 
-double Delassus::entry(std::size_t i, std::size_t j) const {
-  if (loads_.empty()) return product(*directions_[i].constraint, directions_[i].row, j);
-  double sum = 0.0;
-  for (std::size_t part = columns_[i].first_part; part < columns_[i + 1].first_part; ++part) {
-    for (std::size_t other = columns_[j].first_part; other < columns_[j + 1].first_part; ++other) {
-      if (parts_[part].v.begin != parts_[other].v.begin) continue;
-      const double* const load = loads_.data() + parts_[part].begin;
-      sum = std::inner_product(load, load + parts_[part].v.size(), responses_.data() + parts_[other].begin,
-                               sum);
-    }
-  }
-  return sum;
-}
-
 void Delassus::write_symmetric(double* matrix) const {
+  if (velocities_of_one_ == 3) return multiply<3>(directions_, responses_.data(), true, matrix);
+  if (velocities_of_one_ == 2) return multiply<2>(directions_, responses_.data(), true, matrix);
   const std::size_t n = size();
   for (std::size_t row = 0; row < n; ++row) {
     for (std::size_t column = 0; column <= row; ++column) {
-      const double w = is_held(row) || is_held(column) ? 0.0 : entry(row, column);
-      matrix[row * n + column] = matrix[column * n + row] = w;
+      matrix[row * n + column] = matrix[column * n + row] = entry(row, column);
     }
+  }
+  for (std::size_t row = 0; row < n; ++row) {
+    if (held_[row] == 0) continue;
+    for (std::size_t other = 0; other < n; ++other) matrix[row * n + other] = matrix[other * n + row] = 0.0;
   }
 }
 
 void Delassus::write(double* matrix) const {
+  if (velocities_of_one_ == 3) return multiply<3>(directions_, responses_.data(), false, matrix);
+  if (velocities_of_one_ == 2) return multiply<2>(directions_, responses_.data(), false, matrix);
   const std::size_t n = size();
   for (std::size_t row = 0; row < n; ++row) {
     for (std::size_t column = 0; column < n; ++column) matrix[row * n + column] = entry(row, column);
@@ -137,15 +266,23 @@ void Delassus::write(double* matrix) const {
 }
 
 void Delassus::add_response(std::size_t column, double impulse, double* x) const {
-  for (std::size_t part = columns_[column].first_part; part < columns_[column + 1].first_part; ++part) {
-    const double* const response = responses_.data() + parts_[part].begin;
-    const Range v = parts_[part].v;
+  const auto add = [&](const double* response, Range v) {
     for (Index i = 0; i < v.size(); ++i) x[v.begin + i] += response[i] * impulse;
-  }
+  };
+  if (!common_.empty()) return add(responses_.data() + column * common_.size(), common_);
+  for (const Part& part : parts(column)) add(responses_.data() + part.begin, part.v);
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
-  for (std::size_t column = 0; column < size(); ++column) add_response(column, scale * impulses[column], x);
+  if (common_.empty()) {
+    for (std::size_t column = 0; column < size(); ++column) add_response(column, scale * impulses[column], x);
+    return;
+  }
+  const double* response = responses_.data();
+  for (std::size_t column = 0; column < size(); ++column) {
+    const double impulse = scale * impulses[column];
+    for (Index v = common_.begin; v < common_.end; ++v) x[v] += *response++ * impulse;
+  }
 }
 
 }  // namespace carom

@@ -22,8 +22,9 @@ struct ImpulseDirection {
   double ratio = 0.0;                      ///< of the first tangential row in the column
 };
 
-/// W with the responses that it is made of, row by row, each over the bodies that it reaches. Keeps its
-/// memory.
+/// W with the responses that it is made of, row by row: dense where all columns reach the same bodies (one
+/// body, or those that joints or a linearised step bind), else each over the bodies that it reaches. Keeps
+/// its memory.
 class CAROM_API Delassus {
 public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
@@ -33,8 +34,6 @@ public:
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
   /// Row i times the response to column j.
   [[nodiscard]] double entry(std::size_t i, std::size_t j) const;
-  /// True if an impulse along a column moves nothing: joints hold it fast.
-  [[nodiscard]] bool is_held(std::size_t j) const { return columns_[j].held; }
   /// Writes W, symmetric, row-major: the lower triangle, mirrored; rows and columns of what is held are zero.
   /// Without ratios only. \param matrix size() * size() numbers
   void write_symmetric(double* matrix) const;
@@ -46,27 +45,31 @@ public:
   void add_response(std::size_t column, double impulse, double* x) const;
 
 private:
-  // Response to a column, over one range for each of the reaches of its bodies.
-  struct Column {
-    std::size_t first_part = 0;
-    bool held = false;
-  };
+  // Response of one reach to a column.
   struct Part {
     Range v;
     std::size_t begin = 0;  // of its numbers
     Index body = none;      // one of those that reach there
   };
+  [[nodiscard]] bool build_of_one_body(const BodyResponse& response);
+  [[nodiscard]] bool find_common_reach(BodyResponse& response);
   void lay_out(BodyResponse& response);
   void add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers);
   void write_column(std::size_t j);
+  void answer(Index body, Range v, std::size_t begin, std::size_t columns, char* held,
+              BodyResponse& response);
+  [[nodiscard]] std::span<const Part> parts(std::size_t column) const;
   [[nodiscard]] const Part* part_of(std::size_t column, Index v) const;
-  [[nodiscard]] double product(const Constraint& at, int row, std::size_t j) const;
+  [[nodiscard]] double sparse_entry(std::size_t i, std::size_t j) const;
 
   std::span<const ImpulseDirection> directions_;
-  std::vector<Column> columns_;  // and an end
+  int velocities_of_one_ = 0;            // of the only body, which answers for itself; else 0
+  Range common_;                         // velocities that all columns reach, empty if there are none
+  std::vector<std::size_t> first_part_;  // by column, and an end; where there is no common reach
   std::vector<Part> parts_;
   std::vector<double> responses_;
   std::vector<double> loads_;  // columns as they act, by the same places; empty where they act as they are
+  std::vector<char> held_;     // by column
 };
 
 }  // namespace carom

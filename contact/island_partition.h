@@ -53,7 +53,7 @@ public:
   template <class NodeOf>
   std::span<const Range> arrange_constraints(std::span<Constraint> constraints, Index nodes,
                                              NodeOf&& node_of) {
-    if (arrange_single(constraints, nodes, node_of)) return islands_;
+    if (arrange_single(constraints, node_of)) return islands_;
     return arrange(constraints, nodes, [&](const Constraint& constraint, auto&& f) {
       for (int b = 0; b < constraint.bodies; ++b) {
         f(node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
@@ -66,14 +66,14 @@ public:
     sets_.start(nodes);
     islands_.clear();
   }
-  /// The island of a node, named by its first node.
+  /// The island of a node, named by its first node, after clear() or an arrange() that joined some.
   [[nodiscard]] Index island_of(Index node) { return sets_.find(node); }
 
 private:
   /// Constraints of one body each, in the order of their nodes: nothing is to be joined or moved.
   template <class NodeOf>
-  bool arrange_single(std::span<const Constraint> constraints, Index nodes, NodeOf&& node_of) {
-    clear(nodes);
+  bool arrange_single(std::span<const Constraint> constraints, NodeOf&& node_of) {
+    islands_.clear();
     Index last = none;
     for (Index i = 0; i < constraints.size(); ++i) {
       const Index node = constraints[i].bodies == 1 ? node_of(constraints[i].body()) : none;

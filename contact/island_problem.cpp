@@ -24,10 +24,10 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   // The same form as before is the hot path.
   const bool same_form =
       constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_);
-  directions_.clear();
   if (same_form) {
     problem_.sets()[1].coefficient = constraints[0].friction;
   } else {
+    directions_.clear();
     first_row_.clear();
     int rows = 0;
     for (const Constraint& constraint : constraints) {
@@ -41,15 +41,19 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     answer_.impulse.resize(count);
     slides_.assign(constraints.size(), 0.0);
   }
+  std::size_t row = 0;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     const Constraint& constraint = constraints[c];
-    for (int i = 0; i < constraint.rows; ++i) {
-      const std::size_t row = directions_.size();
-      directions_.push_back({&constraint, i});
+    for (int i = 0; i < constraint.rows; ++i, ++row) {
+      if (same_form) {
+        directions_[row].constraint = &constraint;
+      } else {
+        directions_.push_back({&constraint, i});
+        set_row(c, i);
+      }
       before_[row] = constraint.velocity(i, velocity_before);
       restitution_[row] = constraint.restitution(i);
       answer_.impulse[row] = 0.0;
-      if (!same_form) set_row(c, i);
     }
   }
   if (!same_form) problem_.group();

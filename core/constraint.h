@@ -67,7 +67,7 @@ enum class ConstraintType : std::uint8_t {
 struct Constraint {
   static constexpr int max_rows = 3;
   static constexpr int max_bodies = 3;
-  static constexpr int max_columns = 12;  ///< of two bodies in space; three in the plane have 9
+  static constexpr int max_columns = 9;  ///< of three bodies in the plane
 
   /// Columns of one body.
   struct Block {

@@ -31,18 +31,38 @@ bool answer_with(JointConstraints& joints, double* x) {
 
 bool BodyResponse::take_loads(Index, double*) { return false; }
 
+BodyMasses BodyResponse::alone(Index) const { return {}; }
+
+BodyMasses MassResponse::alone(Index body) const {
+  const BodySlot& slot = assembly_->layout()->bodies()[body];
+  return assembly_->body_kinds()[slot.kind]->masses(slot.slot);
+}
+
 Range MassResponse::reach(Index body) const {
   const BodySlot& slot = assembly_->layout()->bodies()[body];
   return {slot.v, slot.v + slot.v_size};
 }
 
-bool MassResponse::answer(Index body, double* x) {
-  const BodySlot& slot = assembly_->layout()->bodies()[body];
-  assembly_->body_kinds()[slot.kind]->apply_inverse_mass({slot.slot, slot.slot + 1}, x, x);
-  return true;
+void MassResponse::answer(Index body, double* x, std::size_t columns, char* held) {
+  const BodyMasses masses = alone(body);
+  const double* const end = x + columns * reach(body).size();
+  std::fill_n(held, columns, char{0});
+  if (masses.layout == BodyMasses::Layout::planar_bodies) {
+    for (; x != end; x += 3) {
+      x[0] /= *masses.mass;
+      x[1] /= *masses.mass;
+      x[2] /= *masses.inertia;
+    }
+  } else {
+    for (; x != end; ++x) *x /= *masses.mass;
+  }
 }
 
-bool JointResponse::answer(Index, double* x) { return answer_with(*joints_, x); }
+void JointResponse::answer(Index, double* x, std::size_t columns, char* held) {
+  for (std::size_t j = 0; j < columns; ++j, x += joints_->velocities().size()) {
+    held[j] = answer_with(*joints_, x) ? 0 : 1;
+  }
+}
 
 bool LinearisedResponse::take_loads(Index, double* x) {
   if (at_impact_ == nullptr) return false;
@@ -52,9 +72,9 @@ bool LinearisedResponse::take_loads(Index, double* x) {
   return true;
 }
 
-bool LinearisedResponse::answer(Index, double* x) {
-  step_->solve(x);
-  return true;
+void LinearisedResponse::answer(Index, double* x, std::size_t columns, char* held) {
+  std::fill_n(held, columns, char{0});
+  for (std::size_t j = 0; j < columns; ++j, x += velocities_.size()) step_->solve(x);
 }
 
 }  // namespace carom

@@ -10,6 +10,7 @@
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace carom {
@@ -22,11 +23,14 @@ public:
   /// Velocities that an impulse on a body may change: a range that holds those of the body. Ranges of two
   /// bodies are equal or have nothing in common.
   [[nodiscard]] virtual Range reach(Index body) const = 0;
-  /// Impulses become changes of velocity. False where nothing moves: joints hold it fast; then they are zero.
-  /// \param body one of those pushed \param x over its reach, beginning with the first velocity there
-  virtual bool answer(Index body, double* x) = 0;
+  /// Columns of impulses become changes of velocity. Where nothing moves, since joints hold it fast, they are
+  /// zero. \param body one of those pushed \param x columns over its reach, one behind the other, each
+  /// beginning with the first velocity there \param held out, by column: true where nothing moves
+  virtual void answer(Index body, double* x, std::size_t columns, char* held) = 0;
+  /// Masses of a body that answers for itself; null `mass` where others answer with it.
+  [[nodiscard]] virtual BodyMasses alone(Index body) const;
   /// Impulses become the loads that act, where more acts than they: with them what joints answer at once.
-  /// Then W = D^T A^-1 D over these loads D. True if they are other loads. Arguments as for answer().
+  /// Then W = D^T A^-1 D over these loads D. True if they are other loads. One column, as for answer().
   virtual bool take_loads(Index body, double* x);
 };
 
@@ -36,7 +40,8 @@ public:
   /// \param assembly must outlive it
   explicit MassResponse(const Assembly& assembly) : assembly_(&assembly) {}
   [[nodiscard]] Range reach(Index body) const override;
-  bool answer(Index body, double* x) override;
+  [[nodiscard]] BodyMasses alone(Index body) const override;
+  void answer(Index body, double* x, std::size_t columns, char* held) override;
 
 private:
   const Assembly* assembly_;
@@ -48,7 +53,7 @@ public:
   /// \param joints not empty, factored wherever it is asked; must outlive it
   explicit JointResponse(JointConstraints& joints) : joints_(&joints) {}
   [[nodiscard]] Range reach(Index) const override { return joints_->velocities(); }
-  bool answer(Index body, double* x) override;
+  void answer(Index body, double* x, std::size_t columns, char* held) override;
 
 private:
   JointConstraints* joints_;
@@ -62,7 +67,7 @@ public:
   LinearisedResponse(ImplicitSolver& step, Range velocities, JointConstraints* at_impact = nullptr)
       : step_(&step), velocities_(velocities), at_impact_(at_impact) {}
   [[nodiscard]] Range reach(Index) const override { return velocities_; }
-  bool answer(Index body, double* x) override;
+  void answer(Index body, double* x, std::size_t columns, char* held) override;
   bool take_loads(Index body, double* x) override;
 
 private:

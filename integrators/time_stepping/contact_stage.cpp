@@ -48,28 +48,38 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
 /// Problems come in the order of their first bodies. Where one has bodies of several blocks, blocks are not
 /// solved one by one.
 void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
-  const Range blocks = assembly_->components()[island.components.front()].blocks;
-  first_run_ = assembly_->components()[island.components.front()].runs.begin;
+  const Component& component = assembly_->components()[island.components.front()];
+  const Range blocks = component.blocks;
+  first_run_ = component.runs.begin;
+  const auto clear = [&](Range v) {
+    std::fill(trial.dv_impulses.begin() + v.begin, trial.dv_impulses.begin() + v.end, 0.0);
+  };
+  if (blocks.size() == 1) {
+    block_problems_[0] = {0, static_cast<Index>(in_use_)};
+    return clear(component.v);
+  }
   Index next = 0;
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    for (; next < in_use_ && problems_[next].constraints().front().body() < block.bodies.end; ++next) {
-      for (const Constraint& constraint : problems_[next].constraints()) {
-        for (int b = 0; b < constraint.bodies; ++b) {
-          const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-          by_block_ = by_block_ && body >= block.bodies.begin && body < block.bodies.end;
-        }
-      }
+    while (next < in_use_ && problems_[next].constraints().front().body() < block.bodies.end) {
+      by_block_ = by_block_ && lies_within(problems_[next++], block);
     }
     block_problems_[part] = {first, next};
-    if (next > first || !by_block_) {
-      std::fill(trial.dv_impulses.begin() + block.v.begin, trial.dv_impulses.begin() + block.v.end, 0.0);
+    if (next > first) clear(block.v);
+  }
+  if (!by_block_) clear(component.v);
+}
+
+/// True if all bodies of a problem are in a block.
+bool ContactStage::lies_within(const IslandProblem& problem, const Block& block) {
+  for (const Constraint& constraint : problem.constraints()) {
+    for (int b = 0; b < constraint.bodies; ++b) {
+      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
+      if (body < block.bodies.begin || body >= block.bodies.end) return false;
     }
   }
-  if (by_block_) return;
-  const Range v = assembly_->components()[island.components.front()].v;
-  std::fill(trial.dv_impulses.begin() + v.begin, trial.dv_impulses.begin() + v.end, 0.0);
+  return true;
 }
 
 bool ContactStage::touches(Index part) const {

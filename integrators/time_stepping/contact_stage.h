@@ -53,6 +53,7 @@ public:
 private:
   void add_problem(const StepInput& in, std::span<Constraint> constraints);
   void share_out(const StepIsland& island, StepTrial& trial);
+  [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
   [[nodiscard]] bool solve(const StepInput& in, const StepRule& rule, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 

@@ -9,7 +9,11 @@
 namespace carom {
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), detector_(assembly), capture_speed_(options.capture_speed) {}
+    : assembly_(&assembly), detector_(assembly), capture_speed_(options.capture_speed) {
+  const auto count = static_cast<Index>(assembly.components().size());
+  first_.resize(count + 1);
+  for (Index component = 0; component < count; ++component) members_.push_back(component);
+}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
@@ -50,12 +54,22 @@ void StepConstraints::find(const StepInput& in, Index component, const StepTrial
 void StepConstraints::find(const StepInput& in, const StepTrial& trial) {
   remember(in, trial.history.step);
   constraints_.clear();
-  members_.clear();
-  for (Index component = 0; component < assembly_->components().size(); ++component) {
+  const auto count = static_cast<Index>(members_.size());
+  for (Index component = 0; component < count; ++component) {
+    first_[component] = static_cast<Index>(constraints_.size());
     find(in, component, trial, constraints_);
-    members_.push_back(component);
   }
-  make_islands();
+  first_[count] = static_cast<Index>(constraints_.size());
+  if (std::any_of(constraints_.begin(), constraints_.end(),
+                  [this](const Constraint& constraint) { return joins_components(constraint); })) {
+    return join_components();
+  }
+  islands_.clear();
+  for (Index component = 0; component < count; ++component) {
+    islands_.push_back(
+        {{members_.data() + component, 1},
+         {constraints_.data() + first_[component], first_[component + 1] - first_[component]}});
+  }
 }
 
 Index StepConstraints::component_of(Index body) const {
@@ -74,31 +88,27 @@ bool StepConstraints::joins_components(const Constraint& constraint) const {
   return false;
 }
 
-/// Components stand alone but where a constraint joins them. Constraints come ordered by their first bodies.
-void StepConstraints::make_islands() {
+/// Islands of several components; the others stand alone.
+void StepConstraints::join_components() {
+  const auto count = static_cast<Index>(members_.size());
+  partition_.clear(count);
+  partition_.arrange_constraints(std::span(constraints_), count,
+                                 [this](Index body) { return component_of(body); });
+  joined_ = members_;
+  std::stable_sort(joined_.begin(), joined_.end(),
+                   [this](Index a, Index b) { return partition_.island_of(a) < partition_.island_of(b); });
   islands_.clear();
-  const auto count = static_cast<Index>(assembly_->components().size());
-  if (std::any_of(constraints_.begin(), constraints_.end(),
-                  [this](const Constraint& constraint) { return joins_components(constraint); })) {
-    const auto node = [&](Index body) { return component_of(body); };
-    partition_.arrange_constraints(std::span(constraints_), count, node);
-    std::stable_sort(members_.begin(), members_.end(),
-                     [&](Index a, Index b) { return partition_.island_of(a) < partition_.island_of(b); });
-  } else {
-    partition_.clear(count);
-  }
   std::size_t next = 0;
-  for (std::size_t first = 0; first < members_.size();) {
-    const Index island = partition_.island_of(members_[first]);
+  for (std::size_t first = 0; first < joined_.size();) {
+    const Index island = partition_.island_of(joined_[first]);
     std::size_t last = first + 1;
-    while (last < members_.size() && partition_.island_of(members_[last]) == island) ++last;
+    while (last < joined_.size() && partition_.island_of(joined_[last]) == island) ++last;
     const std::size_t begin = next;
     const auto within = [&](const Constraint& constraint) {
       return partition_.island_of(component_of(constraint.body())) == island;
     };
     while (next < constraints_.size() && within(constraints_[next])) ++next;
-    islands_.push_back(
-        {{members_.data() + first, last - first}, {constraints_.data() + begin, next - begin}});
+    islands_.push_back({{joined_.data() + first, last - first}, {constraints_.data() + begin, next - begin}});
     first = last;
   }
 }

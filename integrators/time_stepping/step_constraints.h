@@ -49,7 +49,7 @@ private:
   void remember(const StepInput& in, double last_step);
   void find(const StepInput& in, Index component, const StepTrial& trial, std::vector<Constraint>& out);
   [[nodiscard]] bool joins_components(const Constraint& constraint) const;
-  void make_islands();
+  void join_components();
   [[nodiscard]] Index component_of(Index body) const;
 
   const Assembly* assembly_;
@@ -59,7 +59,8 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   std::vector<Constraint> constraints_, again_;
-  std::vector<Index> members_;  // components, island by island
+  std::vector<Index> first_;             // constraint by component, and an end
+  std::vector<Index> members_, joined_;  // components, island by island: standing alone; joined
   std::vector<StepIsland> islands_;
   IslandPartition partition_;
 };
