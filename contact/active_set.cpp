@@ -25,8 +25,8 @@ void ActiveSet::bind(const Assembly& assembly, JointConstraints& joints) {
   joints_ = joints.empty() ? nullptr : &joints;
 }
 
-void ActiveSet::update_and_factor(const Detector& detector, const StateView& state,
-                                  const Evaluation& evaluation, const GroundPlaces& places) {
+void ActiveSet::update(const Detector& detector, const StateView& state, const Evaluation& evaluation,
+                       const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
     detector.contact(contact.pair, state, evaluation, places, contact.at);
     contact.friction = contact.friction_at(contact.at, state.v);
@@ -70,8 +70,13 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
     MassResponse response(assembly);
     delassus_.build(directions_, response);
   }
+}
+
+/// Solves the equations of the group for `unknown_`.
+bool ActiveSet::solve() {
   factors_.reset(rows_.size());
   delassus_.write(factors_.matrix());
+  return factors_.solve(dependent, unknown_);
 }
 
 /// Friction in joints is known where it slips: a load. \param acceleration to add to
@@ -99,7 +104,7 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
     const Constraint& at = contacts_[rows_[i].contact].at;
     unknown_[i] = -at.acceleration(row_of(rows_[i], at), acceleration);
   }
-  const bool solved = factors_.solve(dependent, unknown_);
+  const bool solved = solve();
   const std::span<const ActiveContact> group(contacts_.data() + first, last - first);
   if (least_ && factors_.rank() < n) least_forces_.find(contacts_, group, rows_, factors_, unknown_);
   for (std::size_t k = 0; k < factors_.rank(); ++k) {
@@ -144,8 +149,8 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
                             double* of_velocity) {
   bool any = false;
   for_groups([&](std::size_t first, std::size_t last) {
+    state_equations(assembly, first, last, false);
     for (const bool position : {true, false}) {
-      state_equations(assembly, first, last, false);
       double* const out = position ? of_position : of_velocity;
       unknown_.resize(rows_.size());
       for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -156,7 +161,7 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
         if (!(position && rows_[i].tangent)) unknown_[i] -= at.times(row, out);
         any = any || unknown_[i] != 0.0;
       }
-      if (factors_.solve(dependent, unknown_)) delassus_.add_response(unknown_, out);
+      if (solve()) delassus_.add_response(unknown_, out);
     }
   });
   return any;

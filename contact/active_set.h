@@ -39,8 +39,8 @@ public:
   [[nodiscard]] const std::vector<ActiveContact>& list() const { return contacts_; }
 
   /// Brings `at` and the coefficients of sliding contacts to a state.
-  void update_and_factor(const Detector& detector, const StateView& state, const Evaluation& evaluation,
-                         const GroundPlaces& places);
+  void update(const Detector& detector, const StateView& state, const Evaluation& evaluation,
+              const GroundPlaces& places);
   /// Finds the forces and adds what they do to the accelerations. \param acceleration of all bodies, in:
   /// a_free False where no forces keep the constraints; the contacts' forces are then not finite.
   bool add_reactions(const Assembly& assembly, double* acceleration);
@@ -64,6 +64,7 @@ private:
   [[nodiscard]] Index mechanism(const ActiveContact& contact) const;
   [[nodiscard]] static int row_of(const Row& row, const Constraint& at);
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
+  [[nodiscard]] bool solve();
   void add_dry_friction(std::size_t first, std::size_t last, double* acceleration);
   bool react(std::size_t first, std::size_t last, double* acceleration);
 

@@ -16,7 +16,7 @@ void answer_alone(std::span<const ImpulseDirection> directions, const double* ma
   for (const ImpulseDirection& direction : directions) {
     const Constraint& at = *direction.constraint;
     const double* const number = at.row(direction.row);
-    const double* const tangent = at.row(1);
+    const double* const tangent = at.row(at.tangent_row());
     for (int c = 0; c < S; ++c) {
       const double along = direction.ratio != 0.0 ? number[c] + direction.ratio * tangent[c] : number[c];
       x[c] = along / (c < 2 ? *mass : *inertia);
@@ -44,36 +44,33 @@ void multiply(std::span<const ImpulseDirection> directions, const double* respon
 
 }  // namespace
 
-/// One body that answers for itself, with two or three velocities: the usual case, in tight loops. False if
-/// it is not that.
-bool Delassus::build_of_one_body(const BodyResponse& response) {
-  velocities_of_one_ = 0;
-  if (directions_.empty()) return false;
+/// Responses of one body that answers for itself, the usual case, in a tight loop. Returns the number of its
+/// velocities, 0 if there is no such body.
+int Delassus::build_of_one_body(const BodyResponse& response) {
+  if (directions_.empty()) return 0;
   const Constraint::Block& block = directions_.front().constraint->blocks[0];
   for (const ImpulseDirection& direction : directions_) {
     const Constraint& at = *direction.constraint;
-    if (at.bodies != 1 || at.blocks[0].body != block.body || at.has_dry_friction()) return false;
+    if (at.bodies != 1 || at.blocks[0].body != block.body) return 0;
   }
   const BodyMasses masses = response.alone(block.body);
-  if (masses.mass == nullptr || block.columns > 3) return false;
-  const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
-  if (block.columns == 3 && !turns) return false;
-  velocities_of_one_ = block.columns;
+  if (masses.mass == nullptr || masses.layout == BodyMasses::Layout::spatial_points) return 0;
   common_ = {block.v, block.v + static_cast<Index>(block.columns)};
-  responses_.resize(directions_.size() * common_.size());
-  if (turns) {
-    answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
-  } else {
+  responses_.resize(size() * common_.size());
+  if (masses.layout == BodyMasses::Layout::planar_points) {
     answer_alone<2>(directions_, masses.mass, nullptr, responses_.data());
+  } else {
+    answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
   }
-  return true;
+  return block.columns;
 }
 
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {
   directions_ = directions;
   loads_.clear();
   const std::size_t n = size();
-  if (build_of_one_body(response)) return;
+  velocities_of_one_ = build_of_one_body(response);
+  if (velocities_of_one_ != 0) return;
   if (held_.size() < n) held_.resize(n);
   if (find_common_reach(response)) {
     const std::size_t stride = common_.size();
@@ -265,23 +262,17 @@ void Delassus::write(double* matrix) const {
   }
 }
 
-void Delassus::add_response(std::size_t column, double impulse, double* x) const {
-  const auto add = [&](const double* response, Range v) {
-    for (Index i = 0; i < v.size(); ++i) x[v.begin + i] += response[i] * impulse;
-  };
-  if (!common_.empty()) return add(responses_.data() + column * common_.size(), common_);
-  for (const Part& part : parts(column)) add(responses_.data() + part.begin, part.v);
-}
-
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
-  if (common_.empty()) {
-    for (std::size_t column = 0; column < size(); ++column) add_response(column, scale * impulses[column], x);
-    return;
-  }
-  const double* response = responses_.data();
+  const auto add = [&](const double* response, double impulse, Range v) {
+    for (Index i = v.begin; i < v.end; ++i) x[i] += *response++ * impulse;
+  };
   for (std::size_t column = 0; column < size(); ++column) {
     const double impulse = scale * impulses[column];
-    for (Index v = common_.begin; v < common_.end; ++v) x[v] += *response++ * impulse;
+    if (!common_.empty()) {
+      add(responses_.data() + column * common_.size(), impulse, common_);
+      continue;
+    }
+    for (const Part& part : parts(column)) add(responses_.data() + part.begin, impulse, part.v);
   }
 }
 

@@ -32,8 +32,6 @@ public:
 
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
-  /// Row i times the response to column j.
-  [[nodiscard]] double entry(std::size_t i, std::size_t j) const;
   /// Writes W, symmetric, row-major: the lower triangle, mirrored; rows and columns of what is held are zero.
   /// Without ratios only. \param matrix size() * size() numbers
   void write_symmetric(double* matrix) const;
@@ -41,8 +39,6 @@ public:
   void write(double* matrix) const;
   /// x += scale B D^T P. \param x velocities of all bodies
   void add_response(std::span<const double> impulses, double* x, double scale = 1.0) const;
-  /// The same of one column.
-  void add_response(std::size_t column, double impulse, double* x) const;
 
 private:
   // Response of one reach to a column.
@@ -51,7 +47,7 @@ private:
     std::size_t begin = 0;  // of its numbers
     Index body = none;      // one of those that reach there
   };
-  [[nodiscard]] bool build_of_one_body(const BodyResponse& response);
+  [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);
   void lay_out(BodyResponse& response);
   void add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers);
@@ -60,6 +56,7 @@ private:
               BodyResponse& response);
   [[nodiscard]] std::span<const Part> parts(std::size_t column) const;
   [[nodiscard]] const Part* part_of(std::size_t column, Index v) const;
+  [[nodiscard]] double entry(std::size_t i, std::size_t j) const;
   [[nodiscard]] double sparse_entry(std::size_t i, std::size_t j) const;
 
   std::span<const ImpulseDirection> directions_;

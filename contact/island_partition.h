@@ -15,53 +15,35 @@
 
 namespace carom {
 
-/// Finds islands among constraints, or among what stands for them. Keeps its memory.
+/// Finds islands among constraints. Keeps its memory.
 class CAROM_API IslandPartition {
 public:
-  /// Arranges a list so that the members of each island stand together, islands ordered by their first node,
+  /// Arranges constraints so that those of each island stand together, islands ordered by their first node,
   /// the members of each as they came; a list that is so already is left alone.
-  /// \param nodes how many there are \param nodes_of nodes_of(item, f) calls f(node) for the nodes (bodies,
-  /// mechanisms, components) that an item joins, at least one
-  template <class Item, class NodesOf>
-  std::span<const Range> arrange(std::span<Item> items, Index nodes, NodesOf&& nodes_of) {
-    sets_.start(nodes);
-    islands_.clear();
-    for (const Item& item : items) {
-      Index first = none;
-      nodes_of(item, [&](Index node) {
-        if (first == none) first = node;
-        if (node != first) sets_.join(first, node);
-      });
+  /// \param nodes how many there are \param node_of node_of(body) names what answers together with a body:
+  /// the body, its mechanism, its component
+  template <class NodeOf>
+  std::span<const Range> arrange(std::span<Constraint> constraints, Index nodes, NodeOf&& node_of) {
+    if (arrange_single(constraints, node_of)) return islands_;
+    clear(nodes);
+    for (const Constraint& constraint : constraints) {
+      for (int b = 1; b < constraint.bodies; ++b) {
+        sets_.join(node_of(constraint.body()), node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
+      }
     }
-    const auto island_of = [&](const Item& item) {
-      Index first = none;
-      nodes_of(item, [&](Index node) { first = first == none ? sets_.find(node) : first; });
-      return first;
-    };
-    const auto before = [&](const Item& a, const Item& b) { return island_of(a) < island_of(b); };
-    if (!std::is_sorted(items.begin(), items.end(), before)) {
-      std::stable_sort(items.begin(), items.end(), before);
+    const auto island = [&](const Constraint& constraint) { return island_of(node_of(constraint.body())); };
+    const auto before = [&](const Constraint& a, const Constraint& b) { return island(a) < island(b); };
+    if (!std::is_sorted(constraints.begin(), constraints.end(), before)) {
+      std::stable_sort(constraints.begin(), constraints.end(), before);
     }
-    for (Index i = 0; i < items.size(); ++i) {
-      if (i == 0 || island_of(items[i]) != island_of(items[i - 1])) islands_.push_back({i, i});
+    for (Index i = 0; i < constraints.size(); ++i) {
+      if (i == 0 || island(constraints[i]) != island(constraints[i - 1])) islands_.push_back({i, i});
       islands_.back().end = i + 1;
     }
     return islands_;
   }
 
-  /// Likewise of constraints. \param node_of node_of(body) names what answers together with a body
-  template <class NodeOf>
-  std::span<const Range> arrange_constraints(std::span<Constraint> constraints, Index nodes,
-                                             NodeOf&& node_of) {
-    if (arrange_single(constraints, node_of)) return islands_;
-    return arrange(constraints, nodes, [&](const Constraint& constraint, auto&& f) {
-      for (int b = 0; b < constraint.bodies; ++b) {
-        f(node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
-      }
-    });
-  }
-
-  /// Parts all nodes; no items.
+  /// Parts all nodes; no constraints.
   void clear(Index nodes) {
     sets_.start(nodes);
     islands_.clear();

@@ -1,7 +1,9 @@
 #include <carom/core/arranged_joints.h>
+#include <carom/core/errors.h>
 #include <carom/core/numerics/union_find.h>
 
 #include <algorithm>
+#include <string>
 
 namespace carom {
 
@@ -31,6 +33,11 @@ ArrangedJoints::ArrangedJoints(const System& system, Layout& layout, const std::
       ends.clear();
       kind.ends(slot, ends);
       std::erase(ends, ground);
+      if (ends.empty() || ends.size() > std::size_t{JointRow::max_bodies}) {
+        throw ModelError(system.name(JointId{entries[k].serials[slot], system.token()}) +
+                         ": number of bodies is " + std::to_string(ends.size()) + "; allowed: 1 to " +
+                         std::to_string(JointRow::max_bodies));
+      }
       keys.push_back({component_of_body[ends[0].serial], slot});
       const Index first = layout.index(ends[0]);
       for (const BodyId end : ends) {

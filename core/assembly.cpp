@@ -2,7 +2,6 @@
 #include <carom/core/numerics/union_find.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace carom {
 

@@ -7,7 +7,6 @@
 
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace carom {
@@ -70,7 +69,8 @@ void get(CheckpointReader& in, FeatureKey& key) {
   in.get(owner);
   in.get(serial);
   in.get(feature);
-  if (owner > 3) in.damaged("a contact has an unknown owner");
+  if (owner > static_cast<std::uint64_t>(FeatureKey::Owner::joint))
+    in.damaged("a contact has an unknown owner");
   key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
 }
 

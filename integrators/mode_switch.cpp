@@ -87,13 +87,13 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
     contacts.clear();
-    detector.find(component, trial.view(), evaluation, 0.0, contacts);
+    detector.find(component, trial.view(), evaluation, places, nullptr, 0.0, contacts);
     JointConstraints joints(assembly, component);
     joints.update_and_factor({trial.view(), evaluation.rotation.data()});
     MassResponse masses(assembly);
     JointResponse with_joints(joints);
-    const auto islands = partition.arrange_constraints(std::span(contacts), bodies,
-                                                       [&](Index body) { return assembly.mechanism(body); });
+    const auto islands =
+        partition.arrange(std::span(contacts), bodies, [&](Index body) { return assembly.mechanism(body); });
     for (const Range island : islands) {
       const std::span<const Constraint> of_body(contacts.data() + island.begin, island.size());
       const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Constraint& contact) {

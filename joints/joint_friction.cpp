@@ -2,8 +2,6 @@
 #include <carom/joints/driver.h>
 #include <carom/joints/joint_friction.h>
 
-#include <cmath>
-
 namespace carom {
 
 void JointFrictionKind::add(const JointFriction& part, const PartCheck& check) {

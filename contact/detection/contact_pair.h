@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What may touch, wherever it is.
+/// Pairs of features that may touch, wherever they are.
 
 #include <carom/core/ids.h>
 

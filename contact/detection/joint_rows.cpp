@@ -1,4 +1,5 @@
 #include <carom/contact/detection/joint_rows.h>
+#include <carom/core/errors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +8,15 @@ namespace carom {
 
 JointRows::JointRows(const Assembly& assembly)
     : assembly_(&assembly), of_component_(assembly.components().size()) {
-  collect_limits();
+  collect(&OfComponent::limits, [this](Row row) {
+    for (row.limit = 0; row.limit < row.kind->limits(); ++row.limit) {
+      if (row.kind->has_limit(row.slot, row.limit)) rows_.push_back(row);
+    }
+  });
   first_friction_ = static_cast<Index>(rows_.size());
-  collect_friction();
+  collect(&OfComponent::friction, [this](const Row& row) {
+    if (row.kind->has_dry_friction()) rows_.push_back(row);
+  });
 }
 
 template <class F>
@@ -31,47 +38,39 @@ void JointRows::for_joints(Index component, F&& f) const {
   }
 }
 
-void JointRows::collect_limits() {
+/// Collects the rows of all components, one range each.
+template <class F>
+void JointRows::collect(Range OfComponent::*rows, F&& add) {
   for (Index component = 0; component < of_component_.size(); ++component) {
-    Range& range = of_component_[component].limits;
-    range.begin = static_cast<Index>(rows_.size());
-    for_joints(component, [&](Row row) {
-      for (row.limit = 0; row.limit < row.kind->limits(); ++row.limit) {
-        if (row.kind->has_limit(row.slot, row.limit)) rows_.push_back(row);
-      }
-    });
-    range.end = static_cast<Index>(rows_.size());
-  }
-}
-
-void JointRows::collect_friction() {
-  for (Index component = 0; component < of_component_.size(); ++component) {
-    Range& range = of_component_[component].friction;
-    range.begin = static_cast<Index>(rows_.size());
-    for_joints(component, [&](const Row& row) {
-      if (row.kind->has_dry_friction()) rows_.push_back(row);
-    });
-    range.end = static_cast<Index>(rows_.size());
+    const auto first = static_cast<Index>(rows_.size());
+    for_joints(component, add);
+    of_component_[component].*rows = {first, static_cast<Index>(rows_.size())};
   }
 }
 
 void JointRows::find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
   const Range limits = of_component_[component].limits;
+  const JointView at{query.state, query.evaluation.rotation.data()};
+  JointLimit limit;
   for (Index i = limits.begin; i < limits.end; ++i) {
-    Constraint at;
-    constraint(i, query.state, query.evaluation, at);
-    if (!(at.gap <= query.margin)) {
-      if (query.lasting == nullptr || !query.lasting->lasts(at.key, at.gap, std::abs(at.drift[0]))) continue;
-      at.allowed_approach = at.gap / query.lasting->step();
+    rows_[i].kind->limit(at, rows_[i].slot, rows_[i].limit, limit);
+    const double gap = limit.row.gap;
+    const bool touches = gap <= query.margin;
+    if (!touches && (query.lasting == nullptr ||
+                     !query.lasting->lasts(key_of(rows_[i]), gap, std::abs(limit.row.drift)))) {
+      continue;
     }
-    out.push_back(at);
+    Constraint& constraint = out.emplace_back();
+    fill_limit(i, limit, constraint);
+    if (!touches) constraint.allowed_approach = gap / query.lasting->step();
   }
 }
 
 void JointRows::find_friction(Index component, const StateView& state, const Evaluation& evaluation,
                               std::vector<Constraint>& out) const {
   const Range friction = of_component_[component].friction;
-  for (Index i = friction.begin; i < friction.end; ++i) constraint(i, state, evaluation, out.emplace_back());
+  const JointView at{state, evaluation.rotation.data()};
+  for (Index i = friction.begin; i < friction.end; ++i) fill_friction(i, at, out.emplace_back());
 }
 
 void JointRows::append(Range rows, std::vector<ContactPair>& out) const {
@@ -92,30 +91,40 @@ void JointRows::constraint(Index number, const StateView& state, const Evaluatio
                            Constraint& out) const {
   const Row& row = rows_[number];
   const JointView at{state, evaluation.rotation.data()};
-  const bool is_friction = row.limit == none;
-  const FeatureKey key{FeatureKey::Owner::joint, row.serial, is_friction ? 0 : row.limit};
   out = {};
-  out.key = {key, key};
-  out.source = number;
-  out.law.tangential_restitution = 0.0;
-  if (!is_friction) return fill_limit(row, at, out);
-  const JointDryFriction friction = row.kind->dry_friction(row.slot);
-  out.type = ConstraintType::joint_friction;
-  out.friction_bound = friction.bound;
-  out.friction = out.law.friction = 1.0;
-  out.law.static_friction = friction.static_factor;
-  out.law.normal_restitution = 0.0;
-  update_friction(at, out);
-}
-
-void JointRows::fill_limit(const Row& row, const JointView& at, Constraint& out) const {
+  if (row.limit == none) return fill_friction(number, at, out);
   JointLimit limit;
   row.kind->limit(at, row.slot, row.limit, limit);
+  fill_limit(number, limit, out);
+}
+
+ConstraintKey JointRows::key_of(const Row& row) {
+  const FeatureKey key{FeatureKey::Owner::joint, row.serial, row.limit == none ? 0 : row.limit};
+  return {key, key};
+}
+
+void JointRows::fill_limit(Index number, const JointLimit& limit, Constraint& out) const {
+  out.key = key_of(rows_[number]);
   out.type = ConstraintType::limit;
+  out.source = number;
   out.gap = limit.row.gap;
   out.law.friction = 0.0;
   out.law.normal_restitution = limit.restitution;
-  take(limit.row, row.bodies, out);
+  out.law.tangential_restitution = 0.0;
+  take(limit.row, rows_[number].bodies, out);
+}
+
+void JointRows::fill_friction(Index number, const JointView& at, Constraint& out) const {
+  const Row& row = rows_[number];
+  const JointDryFriction friction = row.kind->dry_friction(row.slot);
+  out.key = key_of(row);
+  out.type = ConstraintType::joint_friction;
+  out.source = number;
+  out.friction_bound = friction.bound;
+  out.friction = out.law.friction = 1.0;
+  out.law.static_friction = friction.static_factor;
+  out.law.normal_restitution = out.law.tangential_restitution = 0.0;
+  update_friction(at, out);
 }
 
 void JointRows::update_friction(const JointView& at, Constraint& constraint) const {
@@ -136,6 +145,10 @@ void JointRows::take(const JointRow& from, const JointBodies& bodies, Constraint
     const JointRow::Block& block = from.blocks[static_cast<std::size_t>(b)];
     const auto owner = std::find_if(bodies.begin(), bodies.end(),
                                     [&](Index body) { return body != none && slots[body].v == block.v; });
+    if (owner == bodies.end()) {
+      throw ModelError(assembly_->system().name(JointId{out.key.a.serial, assembly_->system().token()}) +
+                       ": a row has a body that is not among the ends; allowed: bodies that it binds");
+    }
     out.add_body(*owner, block.v, block.columns);
     place = std::copy_n(block.jacobian.begin(), block.columns, place);
   }

@@ -65,10 +65,12 @@ private:
   // Calls f(a row without a limit) for joints of one component that may have limits or friction.
   template <class F>
   void for_joints(Index component, F&& f) const;
-  void collect_limits();
-  void collect_friction();
+  template <class F>
+  void collect(Range OfComponent::*rows, F&& add);
   void append(Range rows, std::vector<ContactPair>& out) const;
-  void fill_limit(const Row& row, const JointView& at, Constraint& out) const;
+  [[nodiscard]] static ConstraintKey key_of(const Row& row);
+  void fill_limit(Index number, const JointLimit& limit, Constraint& out) const;
+  void fill_friction(Index number, const JointView& at, Constraint& out) const;
   // Makes a row of a joint that of a constraint.
   void take(const JointRow& from, const JointBodies& bodies, Constraint& out) const;
 

@@ -11,7 +11,6 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
-#include <span>
 #include <vector>
 
 namespace carom {

@@ -8,7 +8,6 @@
 #include <Eigen/SparseLU>
 
 #include <algorithm>
-#include <utility>
 
 namespace carom {
 

@@ -64,33 +64,37 @@ std::vector<JointId> partners(JointConstraints& joints, std::size_t row) {
   throw ModelError(message);
 }
 
+/// Throws the error of friction bound by forces of a joint that are not unique.
+[[noreturn]] void fail_unique_pressure(const System& system, JointId friction, double coefficient,
+                                       JointId bearing, const std::vector<JointId>& redundant) {
+  std::string message = system.name(friction) + ": coefficient is " + to_text(coefficient) +
+                        ", and forces of " + system.name(bearing) + " are not unique: redundant are";
+  for (const JointId joint : redundant) {
+    message += (joint == redundant.front() ? " " : ", ") + system.name(joint);
+  }
+  throw ModelError(message + "; allowed: a constant bound, or joints none of which follows from others");
+}
+
 /// Demands that forces of joints which bound friction are unique.
 void demand_unique_pressure(const Assembly& assembly, Index component, JointConstraints& joints) {
-  const System& system = assembly.system();
-  std::vector<std::size_t> dependent;
+  std::vector<std::vector<JointId>> redundant;  // joints that a dependent row follows from, and its own
   for (std::size_t row = 0; row < joints.size(); ++row) {
-    if (joints.factors().pivot(row) < dependent_pivot) dependent.push_back(row);
+    if (joints.factors().pivot(row) >= dependent_pivot) continue;
+    redundant.push_back(partners(joints, row));
+    redundant.back().push_back(joints.joint(row));
   }
-  if (dependent.empty()) return;
+  if (redundant.empty()) return;
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
     if (!kind.has_dry_friction()) continue;
     const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
-      if (kind.dry_friction(slot).coefficient == 0.0) continue;
+      const double coefficient = kind.dry_friction(slot).coefficient;
+      if (coefficient == 0.0) continue;
       const JointId bearing = kind.on_joint(slot);
-      for (const std::size_t row : dependent) {
-        std::vector<JointId> taking_part = partners(joints, row);
-        taking_part.push_back(joints.joint(row));
-        if (std::find(taking_part.begin(), taking_part.end(), bearing) == taking_part.end()) continue;
-        std::string message = system.name(assembly.joint_id(k, slot)) + ": coefficient is " +
-                              to_text(kind.dry_friction(slot).coefficient) + ", and forces of " +
-                              system.name(bearing) + " are not unique: redundant are";
-        for (const JointId joint : taking_part) {
-          message += (joint == taking_part.front() ? " " : ", ") + system.name(joint);
-        }
-        throw ModelError(message +
-                         "; allowed: a constant bound, or joints none of which follows from others");
+      for (const std::vector<JointId>& all : redundant) {
+        if (std::find(all.begin(), all.end(), bearing) == all.end()) continue;
+        fail_unique_pressure(assembly.system(), assembly.joint_id(k, slot), coefficient, bearing, all);
       }
     }
   }

@@ -84,16 +84,26 @@ void JointConstraints::residuals(JointLevel level, const double* x, double* out)
                        });
 }
 
+namespace {
+
+/// Calls add(velocity, number of G^T l there).
+template <class F>
+void for_transposed(const JointPattern& pattern, const double* jacobian, const double* multipliers, F&& add) {
+  pattern.for_blocks(jacobian,
+                     [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                       for (Index c = 0; c < columns; ++c) {
+                         double sum = 0.0;
+                         for (Index i = 0; i < rows; ++i)
+                           sum += number[i * stride + c] * multipliers[row + i];
+                         add(v + c, sum);
+                       }
+                     });
+}
+
+}  // namespace
+
 void JointConstraints::add_transposed(const double* multipliers, double* x) const {
-  pattern_->for_blocks(jacobian_.data(),
-                       [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
-                         for (Index c = 0; c < columns; ++c) {
-                           double sum = 0.0;
-                           for (Index i = 0; i < rows; ++i)
-                             sum += number[i * stride + c] * multipliers[row + i];
-                           x[v + c] += sum;
-                         }
-                       });
+  for_transposed(*pattern_, jacobian_.data(), multipliers, [&](Index v, double sum) { x[v] += sum; });
 }
 
 void JointConstraints::solve(double* r) {
@@ -103,15 +113,8 @@ void JointConstraints::solve(double* r) {
 
 void JointConstraints::add_response(const double* multipliers, double* x) const {
   const double* const inverse = inverse_mass_.data();
-  pattern_->for_blocks(jacobian_.data(),
-                       [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
-                         for (Index c = 0; c < columns; ++c) {
-                           double sum = 0.0;
-                           for (Index i = 0; i < rows; ++i)
-                             sum += number[i * stride + c] * multipliers[row + i];
-                           x[v + c] += inverse[v - v_.begin + c] * sum;
-                         }
-                       });
+  for_transposed(*pattern_, jacobian_.data(), multipliers,
+                 [&](Index v, double sum) { x[v] += inverse[v - v_.begin] * sum; });
 }
 
 void JointConstraints::apply_inverse_mass(double* x) const {

@@ -53,14 +53,13 @@ void Lemke::scale(const Lcp& problem) {
   }
   const double q_scale = power_of_two_near(largest_magnitude(scaled_.q));
   for (double& value : scaled_.q) value /= q_scale;
-  scaled_.covering = scaled_.row_scale;
 }
 
 void Lemke::start() {
   tableau_.resize(n_ * (n_ + 1));
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t j = 0; j < n_; ++j) entry(i, j) = scaled_.m[i * n_ + j];
-    entry(i, n_) = scaled_.covering[i];
+    entry(i, n_) = scaled_.row_scale[i];
   }
   value_ = scaled_.q;
   basic_.resize(n_);
@@ -118,7 +117,7 @@ std::size_t Lemke::first_row() const {
   std::size_t best = none;
   double least = 0.0;
   for (std::size_t i = 0; i < n_; ++i) {
-    const double ratio = value_[i] / scaled_.covering[i];
+    const double ratio = value_[i] / scaled_.row_scale[i];
     if (ratio < 0.0 && ratio <= least) {
       least = ratio;
       best = i;
@@ -156,7 +155,7 @@ void Lemke::rebuild_tableau() {
     for (std::size_t i = 0; i < n_; ++i) {
       out[i * stride] = variable < n_       ? (variable == i ? 1.0 : 0.0)
                         : variable < 2 * n_ ? -scaled_.m[i * n_ + variable - n_]
-                                            : -scaled_.covering[i];
+                                            : -scaled_.row_scale[i];
     }
   };
   system_.resize(n_ * n_);

@@ -57,9 +57,10 @@ private:
     return tableau_[row * (n_ + 1) + column];
   }
 
-  // The problem with rows and columns scaled by powers of two.
+  // The problem with rows and columns scaled by powers of two; the scales of rows are the covering vector of
+  // ones, scaled.
   struct Scaled {
-    std::vector<double> m, q, covering;
+    std::vector<double> m, q;
     std::vector<double> row_scale, column_scale;
   };
 

@@ -1,6 +1,5 @@
 #include <carom/core/numerics/union_find.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace carom {

@@ -30,7 +30,7 @@ struct Event {
   double sign = 1.0;      ///< of the guard of an element before
 };
 
-/// What a clock group does.
+/// State of a clock group.
 struct Phase {
   enum Kind : std::uint8_t {
     at_event,  ///< its time is that of `event`, which is not resolved yet

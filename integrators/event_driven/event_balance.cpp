@@ -96,7 +96,7 @@ void EventBalance::book_joints(const SolvedImpact& impact, const ComponentModel&
                                JointReactions& joints, const MotionSample& at) {
   if (joints.rows().empty()) return;
   const std::span<const double> multipliers = joints.impulses(impact.problem);
-  // What is prescribed moves on: G v = -rate before and after.
+  // Prescribed coordinates move on: G v = -rate before and after.
   for (std::size_t i = 0; i < multipliers.size(); ++i) {
     flows[EnergyFlow::external] -= multipliers[i] * joints.rows().rate(i);
   }

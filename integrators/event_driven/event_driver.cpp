@@ -183,7 +183,7 @@ void EventDriver::report_contacts(StepReport& report) const {
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;
     for (std::size_t i = 0; i < 3; ++i) {
-      entry.work[i] = 0.5 * event.impulse[i] * (event.velocity_before[i] + event.velocity_after[i]);
+      entry.work[i] = impulse_work(event.impulse[i], event.velocity_before[i], event.velocity_after[i]);
     }
     entry.mode = event.mode;
     entry.impact = true;

@@ -2,8 +2,6 @@
 
 #include <carom/integrators/event_driven/group_output.h>
 
-#include <algorithm>
-
 namespace carom {
 
 void GroupOutput::start(std::span<const double> y) {

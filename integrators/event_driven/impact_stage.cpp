@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 
@@ -164,7 +163,7 @@ void ImpactStage::close_captured(EventInstant& at) {
 /// Closes captured contacts; where `stopping` those that slide slower than `slow` are stopped with them.
 /// False if some do not close.
 bool ImpactStage::close_captured(bool stopping, double slow, EventInstant& at) {
-  std::vector<ActiveContact>& list = memory_->captured.list();
+  std::vector<ActiveContact>& list = memory_->captured;
   list.clear();
   for (const Constraint& contact : memory_->touching) {
     if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > options_->capture_speed)

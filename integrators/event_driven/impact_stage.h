@@ -22,7 +22,7 @@ namespace carom {
 struct ImpactMemory {
   IslandProblem problem;
   std::vector<Constraint> touching;  ///< constraints of the problem
-  ActiveSet captured;
+  std::vector<ActiveContact> captured;
 };
 
 /// The impacts of one clock group.

@@ -10,11 +10,6 @@ namespace carom {
 
 namespace {
 
-/// Restitution along a row of a contact.
-double restitution(const Constraint& contact, int row) {
-  return row == 0 ? contact.law.normal_restitution : contact.law.tangential_restitution;
-}
-
 /// Gives all contacts the least of their coefficients of tangential restitution. False if they had one.
 bool share_restitution(std::vector<Constraint>& contacts) {
   double least = std::numeric_limits<double>::infinity(), largest = 0.0;
@@ -97,9 +92,9 @@ std::size_t ImpactWithoutCollision::most_dissipative_solution(double speed_noise
       for (int row = 0; row < contact.rows; ++row) {
         const auto place = static_cast<std::size_t>(problem_.first_row(c) + row);
         const double before = problem_.before()[place];
-        const double after = solutions_.velocity(s)[place] - restitution(contact, row) * before;
+        const double after = solutions_.velocity(s)[place] - contact.restitution(row) * before;
         change = std::max(change, std::abs(after - before));
-        loss -= 0.5 * solutions_.impulse(s)[place] * (before + after);
+        loss -= impulse_work(solutions_.impulse(s)[place], before, after);
       }
     }
     if (!(change > speed_noise) || !(loss > most)) continue;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 
@@ -32,7 +31,8 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
     }
     slides_[i].open = candidate.releases;
   }
-  zero_.assign(now.acceleration.size(), 0.0);
+  zero_.resize(now.acceleration.size());  // never written
+  acceleration_.resize(now.acceleration.size());
   Decision decision = Decision::failed;
   for (int round = 0; round < most_rounds; ++round) {
     decision = solve(motion, now, candidates, chain);
@@ -40,6 +40,13 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
     if (!revise(candidates)) return decision;
   }
   return decision;
+}
+
+/// Accelerations without contact, of the component.
+void ModeDecision::take_accelerations(const SmoothMotion& motion, const MotionSample& now) {
+  const Range v = motion.model().ranges().v;
+  std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
+            acceleration_.begin() + v.begin);
 }
 
 Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
@@ -60,7 +67,7 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
                                               : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
   if (contacts_.empty()) {
-    acceleration_ = now.acceleration;
+    take_accelerations(motion, now);
     return Decision::made;
   }
   JointReactions& joints = motion.joints();
@@ -89,7 +96,7 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
     take_present(candidates);
     decision = Decision::several;
   }
-  acceleration_ = now.acceleration;
+  take_accelerations(motion, now);
   problem_.map().add_velocities(acceleration_.data());
   return decision;
 }
@@ -269,7 +276,7 @@ bool ModeDecision::converge_friction_bounds(SmoothMotion& motion, MotionSample& 
   BoundIteration iteration;
   for (int turn = 0; turn < BoundIteration::most_repetitions; ++turn) {
     if (!problem_.solve(chain).usable()) return false;
-    acceleration_ = now.acceleration;
+    take_accelerations(motion, now);
     problem_.map().add_velocities(acceleration_.data());
     read_modes(candidates, problem_.impulses());
     complete_modes(motion, now, candidates);

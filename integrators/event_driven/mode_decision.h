@@ -59,6 +59,7 @@ private:
     bool open = false;      // taken as open
     bool reverted = false;  // was taken to start slipping or slip and did not
   };
+  void take_accelerations(const SmoothMotion& motion, const MotionSample& now);
   Decision solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                  SolverChain& chain);
   bool revise(std::span<Candidate> candidates);

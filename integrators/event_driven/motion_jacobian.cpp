@@ -126,7 +126,7 @@ void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vecto
     std::array<JointRowDerivative::Numbers, most> stiffness{};
     std::size_t count = 0;
     for (Index r = joints.pattern().first_row(joint); r < joints.pattern().first_row(joint + 1); ++r) {
-      // What follows from other rows has no force; the motion does not need it.
+      // A row that follows from others has no force; the motion does not need it.
       if (!(joints.factors().pivot(r) > dependent_pivot)) continue;
       const JointRowDerivative& change = changes[r - joints.pattern().first_row(joint)];
       const JointRow row = joints.row(r);

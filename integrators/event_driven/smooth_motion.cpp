@@ -50,7 +50,7 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   joints_.react(out);
   out.has_forces = true;
   if (forces == Forces::without_contact || active_.list().empty()) return;
-  active_.update_and_factor(*model_.detector, state, out.evaluation, out.places);
+  active_.update(*model_.detector, state, out.evaluation, out.places);
   out.has_forces = joints_.add_contact_forces(active_, out);
 }
 

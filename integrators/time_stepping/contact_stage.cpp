@@ -33,7 +33,7 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   } else {
     const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
     const auto alone = [](Index body) { return body; };
-    for (const Range problem : partition_.arrange_constraints(island.constraints, bodies, alone)) {
+    for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
       add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
       problems_[in_use_ - 1].respond(masses_);
     }
@@ -62,8 +62,8 @@ void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    while (next < in_use_ && problems_[next].constraints().front().body() < block.bodies.end) {
-      by_block_ = by_block_ && lies_within(problems_[next++], block);
+    for (; next < in_use_ && problems_[next].constraints().front().body() < block.bodies.end; ++next) {
+      by_block_ = by_block_ && lies_within(problems_[next], block);
     }
     block_problems_[part] = {first, next};
     if (next > first) clear(block.v);

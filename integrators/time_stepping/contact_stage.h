@@ -8,8 +8,8 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
-#include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 

@@ -76,9 +76,9 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
     find(component, detector, places, which, 2.0 * result.shift, state, evaluation);
     // Bodies that joints bind move together.
     const Index jointed = first_jointed(assembly, component);
-    const auto islands = partition_.arrange_constraints(
-        std::span(contacts_), static_cast<Index>(assembly.layout()->bodies().size()),
-        [&](Index body) { return assembly.is_jointed(body) ? jointed : body; });
+    const auto islands =
+        partition_.arrange(std::span(contacts_), static_cast<Index>(assembly.layout()->bodies().size()),
+                           [&](Index body) { return assembly.is_jointed(body) ? jointed : body; });
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;

@@ -48,6 +48,10 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const Index front = island.components.front();
   JointStage* const joints = parts_->joints.of(front);
+  for (const Index component : island.components) {
+    if (island.components.size() == 1 || parts_->joints.of(component) == nullptr) continue;
+    parts_->errors(in, component).fail_joined(island.constraints);
+  }
   parts_->contacts.state_problems(in, island, method_.is_newton() || joints != nullptr, parts_->trial);
   parts_->trial.swept = false;
   for (const Index component : island.components) {
@@ -145,8 +149,8 @@ void IslandIteration::sweep_joints(const StepInput& in, Index component, JointSt
   parts_->errors(in, component).fail_contact(*contacts.problem);
 }
 
-/// What follows from the iterate before its loads: rotations, internal variables, the state halfway where
-/// it is looked at.
+/// Quantities of the iterate that its loads need: rotations, internal variables, the state halfway where an
+/// element is asked there.
 void IslandIteration::follow(const StepInput& in, Index component) {
   const Assembly& assembly = *parts_->assembly;
   const bool rotations = parts_->trial.needs.load_rotations;

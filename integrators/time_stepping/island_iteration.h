@@ -29,8 +29,6 @@ public:
   /// Solves the equations of an island. Returns what is known of the loads of the last iterate. Throws
   /// SolverError, with the trial as it failed.
   [[nodiscard]] LoadsKnown solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
-  /// The problem of an island where bodies answer together, for its joints.
-  [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
 
   /// Sweeps that the components of this step needed.
   [[nodiscard]] const std::vector<int>& sweeps() const { return sweeps_; }
@@ -46,6 +44,7 @@ private:
     LoadsKnown known = LoadsKnown::total;  // of the loads that it led to
     bool converged_one_early = false;      // of two the first was enough
   };
+  [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,

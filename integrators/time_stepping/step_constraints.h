@@ -6,23 +6,17 @@
 /// components.
 
 #include <carom/contact/detection/detector.h>
-#include <carom/contact/island_partition.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
 #include <span>
 #include <vector>
 
 namespace carom {
-
-/// Components that constraints join in a step: the unit of its coupling iteration.
-struct StepIsland {
-  std::span<const Index> components;  ///< ascending
-  std::span<Constraint> constraints;  ///< that act on them
-};
 
 /// Finds constraints and islands. Keeps memory.
 class CAROM_API StepConstraints {
@@ -41,16 +35,13 @@ public:
   /// (StepTrial::at_start) must be up to date where asked for.
   void find(const StepInput& in, const StepTrial& trial);
   /// The islands, in the order of their first components. Valid until the next find().
-  [[nodiscard]] std::span<const StepIsland> islands() const { return islands_; }
-  /// Finds the constraints of an island as they were at the start, for another iteration.
+  [[nodiscard]] std::span<const StepIsland> islands() const { return islands_.list(); }
+  /// Finds the constraints of an island of one component as they were at the start, for another iteration.
   void restore(const StepInput& in, const StepIsland& island, const StepTrial& trial);
 
 private:
   void remember(const StepInput& in, double last_step);
   void find(const StepInput& in, Index component, const StepTrial& trial, std::vector<Constraint>& out);
-  [[nodiscard]] bool joins_components(const Constraint& constraint) const;
-  void join_components();
-  [[nodiscard]] Index component_of(Index body) const;
 
   const Assembly* assembly_;
   Detector detector_;
@@ -59,10 +50,7 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   std::vector<Constraint> constraints_, again_;
-  std::vector<Index> first_;             // constraint by component, and an end
-  std::vector<Index> members_, joined_;  // components, island by island: standing alone; joined
-  std::vector<StepIsland> islands_;
-  IslandPartition partition_;
+  StepIslands islands_;
 };
 
 }  // namespace carom

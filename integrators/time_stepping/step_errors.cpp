@@ -198,6 +198,16 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   throw SolverError(message, std::move(failure));
 }
 
+void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
+  SolverFailure failure = this->failure();
+  for (const Constraint& constraint : constraints) {
+    if (constraint.bodies > 1) failure.parts.push_back(detector_.name(constraint.key));
+  }
+  const std::string message = place(in_) + listed(failure.parts) +
+                              " joins bodies with joints; allowed: between bodies without joints";
+  throw SolverError(message, std::move(failure));
+}
+
 void StepErrors::fail_account() const {
   demand_finite_loads(trial_.end.view());
   const ElementId cause =

@@ -41,6 +41,8 @@ public:
                                      const JointStage* joints, std::span<const IslandProblem> problems) const;
   /// A contact problem is not solved.
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;
+  /// Constraints join components with joints, which are not solved together.
+  [[noreturn]] void fail_joined(std::span<const Constraint> constraints) const;
   /// An energy is not finite.
   [[noreturn]] void fail_account() const;
   /// The internal variables of an element cannot be advanced.

@@ -16,7 +16,7 @@
 namespace carom {
 
 /// Loads by cause, arrays over all velocities [N, N m].
-struct LoadsAtEnd {
+struct CAROM_API LoadsAtEnd {
   std::vector<double> total;        ///< sum; where causes are evaluated its conservative part, until finish()
   std::vector<double> dissipative;  ///< empty if no element books any
   std::vector<double> external;     ///< likewise

@@ -64,11 +64,13 @@ void TimeStepper::prepare(const StepInput& in) {
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
   FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
   const bool automatic = parts_.options.iteration == Iteration::automatic;
+  // Islands of several components are swept, whatever the iteration.
+  const bool swept = island.components.size() > 1 || (automatic && parts_.has_constant_loads(island));
+  if (swept || !automatic) iteration_.use(swept ? Iteration::fixed_point : parts_.options.iteration);
   if (parts_.has_constant_loads(island)) {
-    if (automatic) iteration_.use(Iteration::fixed_point);
     advance_under_constant_loads(island, in);
     static_cast<void>(judge.judge(0.0, 0.0));
-  } else if (automatic) {
+  } else if (automatic && !swept) {
     iterate_automatically(island, in, judge);
   } else {
     book(island, in, iteration_.solve(island, in, judge));
@@ -83,17 +85,15 @@ void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
   report.contraction = std::max(report.contraction, judge.contraction());
 }
 
-/// One iteration after the other, each stronger than the one before; behind the last the first is as good as
-/// another. The error of the fixed-point iteration says most.
+/// One iteration after the other over one component, each stronger than the one before; behind the last the
+/// first is as good as another. The error of the fixed-point iteration says most.
 void TimeStepper::iterate_automatically(const StepIsland& island, const StepInput& in,
                                         FixedPointJudge& judge) {
-  const Index first_component = island.components.front();
-  const auto first = static_cast<std::size_t>(in.companion.iterations.first(first_component));
+  const Index component = island.components.front();
+  const auto first = static_cast<std::size_t>(in.companion.iterations.first(component));
   std::optional<SolverError> failed;
-  // Islands of several components are swept.
-  const std::size_t count = island.components.size() == 1 ? iteration_count : 1;
-  for (std::size_t tried = 0; tried < count; ++tried) {
-    const auto iteration = static_cast<Iteration>((first + tried) % count);
+  for (std::size_t tried = 0; tried < iteration_count; ++tried) {
+    const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
     iteration_.use(iteration);
     if (tried > 0) parts_.constraints.restore(in, island, parts_.trial);
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
@@ -105,9 +105,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
       if (!failed || iteration == Iteration::fixed_point) failed = error;
     }
     if (known) {
-      for (const Index component : island.components) {
-        memory_.iterations.record(in.companion.iterations, component, iteration);
-      }
+      memory_.iterations.record(in.companion.iterations, component, iteration);
       balance_.report().fallbacks += static_cast<int>(tried);
       return book(island, in, *known);
     }

@@ -41,11 +41,11 @@ struct Closed {
       closed.pair = pair;
       closed.mode = mode;
     }
-    update_and_factor();
+    update();
   }
-  void update_and_factor() {
+  void update() {
     evaluate_positions(assembly, 0, state.view(), evaluation);
-    contacts.update_and_factor(detector, state.view(), evaluation, places);
+    contacts.update(detector, state.view(), evaluation, places);
   }
   /// Accelerations with the reactions to given ones without.
   std::vector<double> react(std::vector<double> free) {
@@ -147,7 +147,7 @@ TEST(ActiveSet, ABrickThatSticksOnASlope) {
 TEST(ActiveSet, ASlipperyBrickOnASlope) {
   Closed closed(brick(0.0, 0.5), ContactMode::slip_positive);
   for (ActiveContact& contact : closed.contacts.list()) contact.frictionless = true;
-  closed.update_and_factor();
+  closed.update();
   const std::vector<double> a = closed.react({0.0, -g, 0.0});
   EXPECT_NEAR(a[0], -g * std::sin(0.5) * std::cos(0.5), 1e-13);
   EXPECT_EQ(closed[0].tangential, 0.0);
@@ -297,7 +297,7 @@ TEST(ActiveSet, CorrectionsRestoreGapsAndVelocities) {
       closed.state.q[c] += random.uniform(-1e-6, 1e-6);
       closed.state.v[c] += random.uniform(-1.0, 1.0);
     }
-    closed.update_and_factor();
+    closed.update();
     std::vector<double> of_position(3, 0.0), of_velocity(3, 0.0);
     EXPECT_TRUE(closed.contacts.corrections(closed.assembly, closed.state.v.data(), of_position.data(),
                                             of_velocity.data()));
@@ -305,7 +305,7 @@ TEST(ActiveSet, CorrectionsRestoreGapsAndVelocities) {
       closed.state.q[c] += of_position[c];
       closed.state.v[c] += of_velocity[c];
     }
-    closed.update_and_factor();
+    closed.update();
     for (const ActiveContact& contact : closed.contacts.list()) {
       EXPECT_NEAR(contact.at.gap, 0.0, 1e-11);  // (1e-6)^2 times lengths
       // Rows have moved with the positions.
@@ -325,7 +325,7 @@ TEST(ActiveSet, CorrectionsAreTheSmallestInTheSenseOfTheMasses) {
   closed.state.q[1] = half_width * std::sin(0.3) + half_height * std::cos(0.3) + 1e-3;
   closed.state.v = {0.3, -0.2, 0.7};
   closed.contacts.list().pop_back();
-  closed.update_and_factor();
+  closed.update();
   const Constraint at = closed[0].at;
   ASSERT_NEAR(at.gap, 1e-3, 1e-15);
   std::vector<double> of_position(3, 0.0), of_velocity(3, 0.0);

@@ -26,7 +26,7 @@ constexpr auto alone = [](Index body) { return body; };
 TEST(IslandPartition, LeavesWhatIsInOrderAlone) {
   std::vector<Constraint> list{between({0}), between({0}), between({2}), between({5}), between({5})};
   IslandPartition partition;
-  const auto islands = partition.arrange_constraints(std::span(list), 6, alone);
+  const auto islands = partition.arrange(std::span(list), 6, alone);
   ASSERT_EQ(islands.size(), 3u);
   expect_range(islands[0], 0, 2);
   expect_range(islands[1], 2, 3);
@@ -39,7 +39,7 @@ TEST(IslandPartition, JoinsOverSharedBodies) {
                                between({1, 0})};
   for (std::size_t i = 0; i < list.size(); ++i) list[i].source = static_cast<Index>(i);
   IslandPartition partition;
-  const auto islands = partition.arrange_constraints(std::span(list), 9, alone);
+  const auto islands = partition.arrange(std::span(list), 9, alone);
   ASSERT_EQ(islands.size(), 3u);
   std::vector<Index> order;
   for (const Constraint& constraint : list) order.push_back(constraint.source);
@@ -51,7 +51,7 @@ TEST(IslandPartition, JoinsOverSharedBodies) {
 TEST(IslandPartition, NodesMayStandForSeveralBodies) {
   std::vector<Constraint> list{between({0}), between({1}), between({2}), between({3})};
   IslandPartition partition;
-  const auto islands = partition.arrange_constraints(std::span(list), 4, [](Index body) { return body % 2; });
+  const auto islands = partition.arrange(std::span(list), 4, [](Index body) { return body % 2; });
   ASSERT_EQ(islands.size(), 2u);
   EXPECT_EQ(list[1].body(), 2u);
   EXPECT_EQ(list[2].body(), 1u);
@@ -59,7 +59,7 @@ TEST(IslandPartition, NodesMayStandForSeveralBodies) {
 
 TEST(IslandPartition, NothingHasNoIslands) {
   std::vector<Constraint> list;
-  EXPECT_TRUE(IslandPartition().arrange_constraints(std::span(list), 3, alone).empty());
+  EXPECT_TRUE(IslandPartition().arrange(std::span(list), 3, alone).empty());
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ TEST(ConstraintProjection, APendulumReturnsToItsRod) {
   EXPECT_NEAR(std::hypot(pendulum.y[0], pendulum.y[1]), 1.0, 1e-11);
   EXPECT_NEAR(pendulum.y[2], 0.0, 1e-11);
   EXPECT_NEAR(pendulum.y[3], 3.0, 1e-11);
-  EXPECT_NEAR(result.velocity_energy, 0.5 * 2.0 * 0.01 * 0.01, 1e-12);
-  EXPECT_NEAR(result.lost, 0.5 * 2.0 * 0.01 * 0.01, 1e-9);
+  EXPECT_NEAR(result.velocity_energy, 0.5 * 2.0 * 0.01 * 0.01, 1e-15);
+  EXPECT_NEAR(result.lost, 0.5 * 2.0 * 0.01 * 0.01, 1e-15);
   EXPECT_NEAR(result.shift, 1e-6, 1e-11);
   // On the constraints nothing is taken out.
   EXPECT_NEAR(pendulum.project().lost, 0.0, 1e-12);

@@ -40,6 +40,11 @@ TEST(GuardSamples, TheOldestMakeRoom) {
   EXPECT_EQ(sampler.made, 100);
   EXPECT_EQ(samples.at(0.0, sampler).margins[0], 0.0);
   EXPECT_EQ(sampler.made, 101);
+  // The first that was made room for took the place of the oldest: 64 are kept.
+  EXPECT_EQ(samples.at(37.0, sampler).margins[0], 370.0);
+  EXPECT_EQ(sampler.made, 101);
+  EXPECT_EQ(samples.at(36.0, sampler).margins[0], 360.0);
+  EXPECT_EQ(sampler.made, 102);
 }
 
 }  // namespace

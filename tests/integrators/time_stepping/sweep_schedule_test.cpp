@@ -3,6 +3,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
+#include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/sweep_schedule.h>
 
 #include <gtest/gtest.h>

@@ -1,0 +1,47 @@
+#pragma once
+
+/// \file
+/// Islands of a step: components that constraints join while these are active. They are found anew in every
+/// step and are the unit of its coupling iteration.
+
+#include <carom/contact/island_partition.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Components that constraints join, and these.
+struct StepIsland {
+  std::span<const Index> components;  ///< ascending
+  std::span<Constraint> constraints;  ///< that act on them
+};
+
+/// Finds islands. Keeps memory.
+class CAROM_API StepIslands {
+public:
+  /// \param assembly must outlive it
+  explicit StepIslands(const Assembly& assembly);
+
+  /// Finds the islands: every component belongs to one. \param constraints in the order of the components of
+  /// their first bodies; those of an island are brought together, as they came
+  void find(std::span<Constraint> constraints);
+  /// The islands, in the order of their first components. Valid until the next find(), as long as the
+  /// constraints stay where they are.
+  [[nodiscard]] std::span<const StepIsland> list() const { return islands_; }
+
+private:
+  [[nodiscard]] Index component_of(Index body) const;
+  [[nodiscard]] bool joins_components(const Constraint& constraint) const;
+  void join(std::span<Constraint> constraints);
+
+  const Assembly* assembly_;
+  std::vector<Index> alone_, joined_;  // components in their order; island by island
+  std::vector<StepIsland> islands_;
+  IslandPartition partition_;
+};
+
+}  // namespace carom

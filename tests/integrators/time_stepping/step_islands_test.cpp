@@ -1,0 +1,215 @@
+// Components that constraints join for some steps only: which they are, and that they are solved as one.
+
+#include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/integrators/time_stepping/island_iteration.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+/// A contact along x: its first body is on the right. One body: against the ground.
+Constraint contact(const Assembly& assembly, std::initializer_list<Index> bodies, double restitution = 0.5) {
+  Constraint made;
+  made.rows = 1;
+  made.type = ConstraintType::limit;
+  made.law.normal_restitution = restitution;
+  double sign = 1.0;
+  for (const Index body : bodies) {
+    const BodySlot& slot = assembly.layout()->bodies()[body];
+    made.row(0)[made.columns()] = sign;
+    made.add_body(body, slot.v, static_cast<int>(slot.v_size));
+    sign = -1.0;
+  }
+  return made;
+}
+
+/// Four particles.
+Assembly particles() {
+  System system;
+  for (int i = 0; i < 4; ++i) system.add(Particle{.mass = 1.0, .position = {1.0 * i, 0.0}});
+  return Assembly(std::move(system));
+}
+
+std::vector<Index> components(const StepIsland& island) {
+  return {island.components.begin(), island.components.end()};
+}
+
+TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
+  const Assembly assembly = particles();
+  StepIslands islands(assembly);
+  std::vector<Constraint> list{contact(assembly, {0}), contact(assembly, {1, 3}), contact(assembly, {2}),
+                               contact(assembly, {3})};
+  islands.find(list);
+  ASSERT_EQ(islands.list().size(), 3u);
+  EXPECT_EQ(components(islands.list()[0]), (std::vector<Index>{0}));
+  EXPECT_EQ(components(islands.list()[1]), (std::vector<Index>{1, 3}));
+  EXPECT_EQ(components(islands.list()[2]), (std::vector<Index>{2}));
+  ASSERT_EQ(islands.list()[1].constraints.size(), 2u);
+  EXPECT_EQ(islands.list()[1].constraints[0].bodies, 2);
+  EXPECT_EQ(islands.list()[1].constraints[1].body(), 3u);
+  EXPECT_EQ(islands.list()[2].constraints[0].body(), 2u);
+  // Without the constraint in the next step everybody stands alone again; a chain joins all.
+  list = {contact(assembly, {0}), contact(assembly, {3})};
+  islands.find(list);
+  ASSERT_EQ(islands.list().size(), 4u);
+  for (Index i = 0; i < 4; ++i) {
+    EXPECT_EQ(components(islands.list()[i]), (std::vector<Index>{i}));
+    EXPECT_EQ(islands.list()[i].constraints.size(), i == 0 || i == 3 ? 1u : 0u);
+  }
+  list = {contact(assembly, {0, 1}), contact(assembly, {1, 2}), contact(assembly, {2, 3})};
+  islands.find(list);
+  ASSERT_EQ(islands.list().size(), 1u);
+  EXPECT_EQ(islands.list()[0].constraints.size(), 3u);
+}
+
+/// Two pairs of particles on springs, the left one running into the right one; a spring without stiffness
+/// between them makes them one component from the start.
+System two_pairs(bool one_component) {
+  System system;
+  std::vector<BodyId> all;
+  const std::vector<double> speeds{2.0, 2.0, -1.0, -1.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    all.push_back(system.add(Particle{.mass = 1.0 + 0.5 * static_cast<double>(i),
+                                      .position = {static_cast<double>(i), 0.0},
+                                      .velocity = {speeds[i], 0.0}}));
+  }
+  for (const std::size_t i : {0u, 2u}) {
+    system.add(SpringDamper{.from = all[i], .to = all[i + 1], .stiffness = 2000.0, .damping = 3.0});
+  }
+  if (one_component) system.add(SpringDamper{.from = all[1], .to = all[2], .stiffness = 0.0, .damping = 0.0});
+  return system;
+}
+
+/// One step of an island that is made by hand, from the start of a system.
+struct HandMadeStep {
+  explicit HandMadeStep(System system)
+      : assembly(std::move(system)),
+        parts(assembly, options),
+        iteration(parts, nullptr),
+        state(assembly.initial_state()) {
+    const std::size_t size = state.v.size();
+    companion.rounding.assign(size, 0.0F);
+    companion.loads.total.assign(size, 0.0);
+    companion.loads.dissipative.assign(size, 0.0);
+    Evaluation evaluation = make_evaluation(assembly);
+    LoadsAtEnd loads{companion.loads.total, companion.loads.dissipative, {}};
+    for (Index c = 0; c < assembly.components().size(); ++c) {
+      evaluate_loads(assembly, c, state.view(), evaluation, loads.by_cause());
+      loads.finish(assembly.components()[c].v);
+    }
+    companion.loads.total = loads.total;
+    companion.loads.dissipative = loads.dissipative;
+    for (Index c = 0; c < assembly.components().size(); ++c) members.push_back(c);
+    parts.trial.begin(in, companion.history);
+    iteration.use(Iteration::fixed_point);
+  }
+  const std::vector<double>& solve(std::vector<Constraint>& constraints) {
+    FixedPointJudge judge(1e-15, 200);
+    static_cast<void>(iteration.solve({members, constraints}, in, judge));
+    return parts.trial.end.v;
+  }
+
+  Assembly assembly;
+  TimeStepping options{.step = 1e-3};
+  StepParts parts;
+  IslandIteration iteration;
+  State state;
+  Companion companion;
+  StepInput in{assembly, state, companion, 1e-3, 1e-3};
+  std::vector<Index> members;
+};
+
+TEST(StepIslands, SeveralComponentsAreSolvedAsOne) {
+  HandMadeStep joined(two_pairs(false)), whole(two_pairs(true));
+  ASSERT_EQ(joined.assembly.components().size(), 2u);
+  ASSERT_EQ(whole.assembly.components().size(), 1u);
+  std::vector<Constraint> between{contact(joined.assembly, {2, 1})};
+  std::vector<Constraint> within{contact(whole.assembly, {2, 1})};
+  const std::vector<double>& v = joined.solve(between);
+  const std::vector<double>& expected = whole.solve(within);
+  // Sums of two numbers in the same order, iterated until nothing changes.
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    EXPECT_NEAR(v[i], expected[i], 1e-14);
+    EXPECT_NEAR(joined.parts.trial.end.q[i], whole.parts.trial.end.q[i], 1e-14);
+  }
+  // Newton's law of impact, and momentum: the impulse acts between the two.
+  EXPECT_NEAR(v[4] - v[2], 0.5 * (2.0 + 1.0), 1e-13);
+  EXPECT_NEAR(1.0 * v[0] + 1.5 * v[2] + 2.0 * v[4] + 2.5 * v[6], 1.0 * 2.0 + 1.5 * 2.0 - 2.0 - 2.5 * 1.5,
+              1e-13);
+}
+
+TEST(StepIslands, WithoutTheConstraintComponentsDoNotSeeEachOther) {
+  HandMadeStep step(two_pairs(false));
+  std::vector<Constraint> none;
+  const std::vector<double> apart = step.solve(none);
+  EXPECT_NEAR(1.0 * apart[0] + 1.5 * apart[2], 1.0 * 2.0 + 1.5 * 2.0, 1e-13);
+}
+
+/// Joints of different components are not solved together: that is said, not done wrongly.
+TEST(StepIslands, ComponentsWithJointsAreRefused) {
+  System system;
+  for (const double x : {0.0, 2.0}) {
+    const BodyId bar = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = 0.1}, .position = {x, -0.5}});
+    system.add(Revolute{.from = {ground, {x, 0.0}}, .to = {bar, {0.0, 0.5}}},
+               x == 0.0 ? "left pin" : "right pin");
+  }
+  system.add(Stop{.joint = system.joint("left pin"), .lower = -1.0}, "left limit");
+  HandMadeStep step(std::move(system));
+  std::vector<Constraint> between{contact(step.assembly, {1, 0})};
+  between[0].key.a =
+      between[0].key.b = {FeatureKey::Owner::joint, step.assembly.system().joint("left limit").serial, 0};
+  try {
+    step.solve(between);
+    FAIL() << "two mechanisms were solved as one";
+  } catch (const SolverError& error) {
+    EXPECT_NE(std::string(error.what()).find("left limit"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("bodies without joints"), std::string::npos) << error.what();
+  }
+}
+
+/// A chain of several blocks.
+System chain(int links) {
+  System system;
+  BodyId last = ground;
+  for (int i = 0; i < links; ++i) {
+    const BodyId next =
+        system.add(Particle{.mass = 0.1, .position = {0.1 * i, 0.0}, .velocity = {i == 0 ? 3.0 : -1.0, 0.0}});
+    if (i > 0) system.add(SpringDamper{.from = last, .to = next, .stiffness = 50.0});
+    last = next;
+  }
+  return system;
+}
+
+/// A constraint across blocks makes them staged.
+TEST(StepIslands, ConstraintsAcrossBlocksAreStaged) {
+  constexpr int links = 3000;
+  HandMadeStep step(chain(links));
+  ASSERT_GT(step.assembly.components()[0].blocks.size(), 2u);
+  const auto state = [&](std::vector<Constraint>& list) {
+    step.parts.contacts.state_problems(step.in, {step.members, list}, false, step.parts.trial);
+  };
+  std::vector<Constraint> within{contact(step.assembly, {1, 0}), contact(step.assembly, {links - 1})};
+  state(within);
+  EXPECT_TRUE(step.parts.contacts.by_block());
+  EXPECT_EQ(step.parts.contacts.problems().size(), 2u);
+  EXPECT_FALSE(step.parts.contacts.touches(1));
+  std::vector<Constraint> across{contact(step.assembly, {0, links - 1}), contact(step.assembly, {7})};
+  state(across);
+  EXPECT_FALSE(step.parts.contacts.by_block());
+  EXPECT_TRUE(step.parts.contacts.touches(1));
+  // The last link, at -1 m/s, is hit by nothing; the first, at 3 m/s to the right of it, parts from it: the
+  // other way round they meet at 4 m/s.
+  across = {contact(step.assembly, {links - 1, 0}), contact(step.assembly, {7})};
+  const std::vector<double>& v = step.solve(across);
+  EXPECT_NEAR(v[2 * (links - 1)] - v[0], 0.5 * 4.0, 1e-13);
+}
+
+}  // namespace
