@@ -171,7 +171,7 @@ bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverCh
       iteration.add(before, contact.friction_bound);
       problem.problem.update_bound(c);
     }
-    if (iteration.settled(change)) return true;
+    if (iteration.converged(change)) return true;
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {

@@ -64,7 +64,7 @@ public:
   /// Length that weights a change of velocity coordinate `i`: 1 for translations, the radius of
   /// gyration [m] for rotations.
   [[nodiscard]] virtual double length_scale(Index slot, Index i) const = 0;
-  /// True if the body can touch obstacles with its centre (a particle with `contact`).
+  /// True if the body can touch shapes on ground with its centre (a particle with `contact`).
   [[nodiscard]] virtual bool has_contact_point(Index slot) const = 0;
   /// Material of that contact point.
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;

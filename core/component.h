@@ -7,8 +7,8 @@
 
 namespace carom {
 
-/// A connected component: bodies connected by force elements or joints. Ground, obstacles and fields do not
-/// connect bodies.
+/// A connected component: bodies connected by force elements or joints. Ground, shapes on it and fields do
+/// not connect bodies.
 struct Component {
   Range bodies;  ///< in the order of assembly
   Range q;       ///< coordinates

@@ -20,7 +20,7 @@ inline constexpr std::size_t stored_energy_count = 4;
 /// Flows of energy into or out of the stored energies, by cause. All except `external` and `intervention` are
 /// losses: positive where energy is lost.
 enum class EnergyFlow : std::uint8_t {
-  external,                  ///< work of prescribed loads, drivers and moving obstacles (a gain)
+  external,                  ///< work of prescribed loads, drivers and moving shapes on ground (a gain)
   intervention,              ///< brought in by edits of the model or of the state (a gain)
   dashpot,                   ///< lost in dashpots
   impact_normal,             ///< lost in the normal direction of impacts

@@ -256,7 +256,7 @@ public:
       }
     }
   }
-  void breaks(Index element, std::vector<double>& out) const override {
+  void discontinuity_times(Index element, std::vector<double>& out) const override {
     if constexpr (has_breaks) {
       out.insert(out.end(), parts_[element].breaks.begin(), parts_[element].breaks.end());
     }

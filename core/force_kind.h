@@ -170,7 +170,7 @@ public:
   virtual void guard_motion(const EvaluationContext& /*at*/, const double* /*acceleration*/,
                             Range /*elements*/, GuardMotion* /*out*/) const {}
   /// Appends the times [s], ascending, at which the law of an element jumps or has a kink.
-  virtual void breaks(Index /*element*/, std::vector<double>& /*out*/) const {}
+  virtual void discontinuity_times(Index /*element*/, std::vector<double>& /*out*/) const {}
   /// True if loads may depend on the time, other than by positions, velocities and internal variables.
   [[nodiscard]] virtual bool depends_on_time() const { return true; }
 

@@ -20,7 +20,7 @@ template <int N, class F>
   using Vector = Eigen::Matrix<double, N, 1>;
   constexpr int most_steps = 50;
   // Changes of this part of the variables are their rounding.
-  constexpr double settled = 1e-15;
+  constexpr double negligible = 1e-15;
   constexpr double difference = 1e-7;  // relative, for one-sided differences
 
   const double half = 0.5 * step;
@@ -50,7 +50,7 @@ template <int N, class F>
     const double moved = change.template lpNorm<Eigen::Infinity>();
     // Rounding of the rates may keep the change above that of the variables: then it stops shrinking.
     constexpr double nearly = 1e-9;
-    if (moved <= settled * size || (i > 1 && moved >= last && moved <= nearly * size)) return true;
+    if (moved <= negligible * size || (i > 1 && moved >= last && moved <= nearly * size)) return true;
     last = moved;
   }
   return false;

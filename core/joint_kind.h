@@ -143,7 +143,7 @@ public:
   /// The coordinate that a joint prescribes and its rate at a time [s].
   [[nodiscard]] virtual LawPoint prescribed(Index /*joint*/, double time) const { return {.time = time}; }
   /// Appends the times at which the rate of a joint's law of time jumps, or a function of it has a kink [s].
-  virtual void breaks(Index /*joint*/, std::vector<double>& /*out*/) const {}
+  virtual void discontinuity_times(Index /*joint*/, std::vector<double>& /*out*/) const {}
 
   /// True if joints of this kind have a coordinate, on which drivers, motors and stops act.
   [[nodiscard]] virtual bool has_coordinate() const { return false; }

@@ -17,13 +17,13 @@ struct Course {
 };
 
 /// Evaluates functions of time; rates that are not given are computed from the others by TimeDifference.
-/// \param breaks times that no difference may reach across [s]
+/// \param discontinuities times that no difference may reach across [s]
 template <class Value>
 Course<Value> course(const std::function<Value(double)>& value, const std::function<Value(double)>& rate,
                      const std::function<Value(double)>& second, double time,
-                     const std::vector<double>& breaks) {
+                     const std::vector<double>& discontinuities) {
   const auto derivative = [&](int order, const std::function<Value(double)>& of) {
-    return TimeDifference(time, order, breaks)(of);
+    return TimeDifference(time, order, discontinuities)(of);
   };
   return {value(time), rate ? rate(time) : derivative(1, value),
           second ? second(time)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside obstacles.
+/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside shapes on ground.
 /// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
 /// 7).
 

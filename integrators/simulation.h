@@ -45,8 +45,8 @@ public:
   /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
   /// joints they are corrected (joint_closure.h); report().projected has the largest displacement, and
   /// report().findings what System::check() found, which log() gets as warnings at the first step. Throws
-  /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in obstacles
-  /// than EventDriven::gap_tolerance; so do edit() and set_state().
+  /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in shapes on
+  /// ground than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -84,10 +84,10 @@ public:
   /// computed from the state, in time stepping a contact sticks if its speed is exactly zero.
   void set_state(const State& state);
   /// Continues in another mode, or with other options, from the same state. At a change from time stepping to
-  /// the event-driven mode, bodies may have penetrated obstacles: an impact is solved for contacts that
-  /// approach there, then bodies are moved out by the smallest displacement in the mass norm; energies are
-  /// booked as `mode_switch`, and report().projected has the largest displacement. Throws as the constructor,
-  /// and SolverError if bodies cannot be moved out; the mode then does not change.
+  /// the event-driven mode, bodies may have penetrated shapes on ground: an impact is solved for contacts
+  /// that approach there, then bodies are moved out by the smallest displacement in the mass norm; energies
+  /// are booked as `mode_switch`, and report().projected has the largest displacement. Throws as the
+  /// constructor, and SolverError if bodies cannot be moved out; the mode then does not change.
   void switch_to(Mode mode);
 
   /// Counts the degrees of freedom that joints leave at the present state, and names redundant joints.
@@ -121,8 +121,8 @@ public:
   /// of a key made by default "no contact". Throws ModelError for a key of parts that this model never had.
   [[nodiscard]] std::string name(const ConstraintKey& key) const;
   /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
-  /// 'rope' between ground and particle 'ball'"; the driver or obstacle whose law of time jumps. Throws
-  /// ModelError for parts of another model.
+  /// 'rope' between ground and particle 'ball'"; the driver or shape on ground whose law of time jumps.
+  /// Throws ModelError for parts of another model.
   [[nodiscard]] std::string name(const EventRecord& event) const;
 
   /// Log of warnings and notes; nothing is written until it has a sink.

@@ -69,7 +69,7 @@ void DriverKind::derivatives(const JointView& at, Index joint, JointRowDerivativ
   table.kinds[place.kind]->coordinate_derivatives(at, place.slot, *out);
 }
 
-void DriverKind::breaks(Index joint, std::vector<double>& out) const {
+void DriverKind::discontinuity_times(Index joint, std::vector<double>& out) const {
   const std::vector<double>& breaks = parts_[joint].part.breaks;
   out.insert(out.end(), breaks.begin(), breaks.end());
 }
@@ -104,7 +104,7 @@ void MotorKind::evaluate(const EvaluationContext& at, Range elements, const Load
   }
 }
 
-void MotorKind::breaks(Index element, std::vector<double>& out) const {
+void MotorKind::discontinuity_times(Index element, std::vector<double>& out) const {
   const std::vector<double>& breaks = parts_[element].part.breaks;
   out.insert(out.end(), breaks.begin(), breaks.end());
 }

@@ -53,7 +53,7 @@ public:
   [[nodiscard]] bool depends_on_time() const override { return true; }
   [[nodiscard]] bool prescribes(Index) const override { return true; }
   [[nodiscard]] LawPoint prescribed(Index joint, double time) const override;
-  void breaks(Index joint, std::vector<double>& out) const override;
+  void discontinuity_times(Index joint, std::vector<double>& out) const override;
   /// The force of a driver is given as the moment of its reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
                                        const double* multipliers) const override;
@@ -83,7 +83,7 @@ public:
   [[nodiscard]] bool books_dissipative() const override { return false; }
   void evaluate(const EvaluationContext& at, Range elements, const Loads& loads) const override;
   [[nodiscard]] double potential(const EvaluationContext&, Range) const override { return 0.0; }
-  void breaks(Index element, std::vector<double>& out) const override;
+  void discontinuity_times(Index element, std::vector<double>& out) const override;
   void fingerprint(Fingerprint& print) const override;
 };
 

@@ -31,7 +31,7 @@ private:
 };
 
 /// Lemke's method on the copositive form. Not applicable for discs. Ends at a ray only where contacts jam
-/// with unequal restitution or driven obstacles, or with contacts that slip in a known direction
+/// with unequal restitution or surfaces that move, or with contacts that slip in a known direction
 /// (proportional rows: the matrix need not be copositive; docs/method.md section 3); without friction a ray
 /// proves that there is no solution, since W is then copositive-plus.
 class CAROM_API LemkeSolver final : public ContactSolver {

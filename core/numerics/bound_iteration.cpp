@@ -26,7 +26,7 @@ void BoundIteration::add(double before, double after) {
   after_.push_back(after);
 }
 
-bool BoundIteration::settled(double change) {
+bool BoundIteration::converged(double change) {
   const bool stalls = change <= nearly_enough && change >= 0.5 * last_change_;
   last_change_ = change;
   return change <= enough || stalls;

@@ -25,7 +25,7 @@ public:
   /// Takes a bound before and after it. The same bounds in the same order in every repetition.
   void add(double before, double after);
   /// True if there is no need to go on. \param change the largest, relative
-  [[nodiscard]] bool settled(double change);
+  [[nodiscard]] bool converged(double change);
   /// True if the next repetition is to start from guess().
   [[nodiscard]] bool accelerates();
   /// The bounds to start from, >= 0, in the order of add().

@@ -6,16 +6,16 @@
 
 namespace carom {
 
-TimeDifference::TimeDifference(double time, int order, std::span<const double> breaks) {
+TimeDifference::TimeDifference(double time, int order, std::span<const double> discontinuities) {
   // Powers of two, so that times of any usual size stay exact.
   constexpr double first_step = 0x1p-12, second_step = 0x1p-10;
   // The last time keeps clear of the end, where functions already say what comes after it.
   constexpr double reach = 6.5;
 
   const double infinity = std::numeric_limits<double>::infinity();
-  const auto next = std::upper_bound(breaks.begin(), breaks.end(), time);
-  const double begin = next == breaks.begin() ? -infinity : *(next - 1);
-  const double end = next == breaks.end() ? infinity : *next;
+  const auto next = std::upper_bound(discontinuities.begin(), discontinuities.end(), time);
+  const double begin = next == discontinuities.begin() ? -infinity : *(next - 1);
+  const double end = next == discontinuities.end() ? infinity : *next;
   const double step = std::min(order == 1 ? first_step : second_step, (end - begin) / reach);
   const double start = std::max(std::min(time - 3.0 * step, end - reach * step), begin);
   for (std::size_t i = 0; i < count; ++i) times_[i] = start + static_cast<double>(i) * step;

@@ -46,7 +46,7 @@ public:
   ClockGroup(const ClockGroup&) = delete;
   ClockGroup& operator=(const ClockGroup&) = delete;
 
-  /// Throws ModelError where a contact is deeper in an obstacle than gap_tolerance: no start.
+  /// Throws ModelError where a contact is deeper in a shape on ground than gap_tolerance: no start.
   void demand_start(const State& state);
   /// Starts at a state; throws as demand_start(). \param present modes of contacts before, if known, by key
   void start(const State& state, const ContactModes& present);

@@ -1,4 +1,4 @@
-// Problem: facts of a component's bodies, elements, joints and obstacles, looked up once.
+// Problem: facts of a component's bodies, elements, joints and shapes on ground, looked up once.
 
 #include <carom/integrators/event_driven/component_model.h>
 
@@ -50,7 +50,8 @@ LoadTraits load_traits(const Assembly& assembly, Index component, bool driven, b
   return traits;
 }
 
-/// Discontinuities of the joints and force elements of a component, and of obstacles, in ascending order.
+/// Discontinuities of the joints and force elements of a component, and of shapes on ground, in ascending
+/// order.
 std::vector<Discontinuity> discontinuities_of(const Assembly& assembly, Index component,
                                               const std::vector<Discontinuity>& of_obstacles) {
   std::vector<Discontinuity> all;
@@ -59,7 +60,7 @@ std::vector<Discontinuity> discontinuities_of(const Assembly& assembly, Index co
     const Range joints = assembly.joints(component, kind);
     for (Index joint = joints.begin; joint < joints.end; ++joint) {
       times.clear();
-      assembly.joint_kinds()[kind]->breaks(joint, times);
+      assembly.joint_kinds()[kind]->discontinuity_times(joint, times);
       for (const double time : times) {
         all.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
       }
@@ -69,7 +70,7 @@ std::vector<Discontinuity> discontinuities_of(const Assembly& assembly, Index co
     const Range elements = assembly.elements(component, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       times.clear();
-      assembly.force_kinds()[kind]->breaks(element, times);
+      assembly.force_kinds()[kind]->discontinuity_times(element, times);
       for (const double time : times) {
         all.push_back({.time = time, .element = assembly.element_id(kind, element)});
       }

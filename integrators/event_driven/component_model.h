@@ -20,7 +20,7 @@ namespace carom {
 struct LoadTraits {
   bool books_dissipative = false;  ///< some elements book losses
   bool books_external = false;     ///< some elements book external work
-  bool depends_on_time = false;    ///< loads, joints or obstacles do
+  bool depends_on_time = false;    ///< loads, joints or shapes on ground do
   bool only_fields = true;         ///< nothing but uniform fields acts
 };
 
@@ -40,7 +40,7 @@ struct CAROM_API ComponentModel {
   /// together.
   std::vector<ContactPair> pairs;
   std::vector<Range> mechanisms;  ///< ranges of pairs of bodies that answer an impulse together
-  /// Times at which laws of the component's elements and drivers and of obstacles jump, ascending.
+  /// Times at which laws of the component's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;
   std::vector<double> tolerances;  ///< absolute, of each unknown
 

@@ -29,12 +29,12 @@ public:
   /// \param stop asked within the work, may be null; must outlive this
   EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop = nullptr);
 
-  /// Throws ModelError naming the contact where a body is too deep in an obstacle for a start, SolverError
-  /// for more evaluations than the options allow.
+  /// Throws ModelError naming the contact where a body is too deep in a shape on ground for a start,
+  /// SolverError for more evaluations than the options allow.
   void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
-  /// ModelError where bodies are too deep in obstacles at a start.
+  /// ModelError where bodies are too deep in shapes on ground at a start.
   void advance(State& state, Companion& companion, double target, StepReport& report,
                std::vector<EventRecord>& events);
   /// Reaction of a joint at a state last advanced to, or changed to since.

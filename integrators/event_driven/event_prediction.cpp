@@ -122,7 +122,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
   Event found = before;
   for (std::size_t i = 0; i < end.gaps.size(); ++i) {
     if (step.is_active[i] != 0 || passed_over.gaps[i] != 0) continue;
-    // The flow does not know the motion of obstacles.
+    // The flow does not know the motion of shapes on ground.
     const bool moving = step.motion.model().detector->moves(step.motion.model().pairs[i]);
     FallRule rule;
     rule.raise = step.scales.gap_noise - step.ends.gap_level(i);

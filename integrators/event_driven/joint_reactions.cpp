@@ -52,7 +52,7 @@ bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
     double change = 0.0;
     iteration.begin();
     if (!update_bounds_once(active, at, iteration, change)) return false;
-    if (iteration.settled(change)) return true;
+    if (iteration.converged(change)) return true;
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
     for (ActiveContact& contact : active.list()) {

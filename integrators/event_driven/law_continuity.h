@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Continuity of what is prescribed, joints and obstacles, over an advance.
+/// Continuity of what is prescribed, joints and shapes on ground, over an advance.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>

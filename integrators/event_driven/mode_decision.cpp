@@ -58,7 +58,7 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
     if (slides_[i].open) continue;
     Constraint& contact = contacts_.emplace_back(candidates[i].at);
     taking_part_.push_back(i);
-    // In accelerations minus the drift stands for the velocity of the obstacle.
+    // In accelerations minus the drift stands for the velocity of the shape on ground.
     for (std::size_t row = 0; row < Constraint::max_rows; ++row) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
@@ -285,7 +285,7 @@ bool ModeDecision::converge_friction_bounds(SmoothMotion& motion, MotionSample& 
     iteration.begin();
     if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, iteration, change))
       return false;
-    const bool converged = iteration.settled(change);
+    const bool converged = iteration.converged(change);
     const bool guesses = !converged && iteration.accelerates();
     std::size_t bound = 0, at = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {

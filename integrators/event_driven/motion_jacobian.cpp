@@ -160,7 +160,7 @@ void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vecto
   }
 }
 
-/// By central differences: the shapes of obstacles and laws of friction know no derivatives.
+/// By central differences: shapes on ground and laws of friction know no derivatives.
 MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, const ActiveContact& contact) {
   ContactChange change;
   change.count = columns_of(contact.at, change.columns);

@@ -4,7 +4,7 @@
 /// The smooth motion of one component under fixed contact modes, as a problem for a flow:
 ///
 ///     dq/dt = v,   M dv/dt = f + reactions of joints and closed contacts,   dz/dt by the elements,
-///     and the works of dashpots, friction, prescribed loads and moving obstacles.
+///     and the works of dashpots, friction, prescribed loads and moving shapes on ground.
 
 #include <carom/contact/active_set.h>
 #include <carom/contact/detection/detector.h>

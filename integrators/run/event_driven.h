@@ -23,9 +23,9 @@ struct EventDriven {
   /// Output interval: step() stops and observers are called at its multiples, > 0 [s]. It does not change the
   /// motion: every component has its own steps, and output states are computed within them.
   double interval = 1e-2;
-  /// Longest step where loads or obstacles depend on time, > 0 [s]. Changes between the stages of a step are
-  /// not detected: it must be shorter than the shortest pulse of a load, and than the period of a prescribed
-  /// motion.
+  /// Longest step where loads or shapes on ground depend on time, > 0 [s]. Changes between the stages of a
+  /// step are not detected: it must be shorter than the shortest pulse of a load, and than the period of a
+  /// prescribed motion.
   double longest_step = 0.1;
 
   /// Surfaces at most this far apart at the start are in contact; deeper penetration is refused, > 0 [m].

@@ -59,7 +59,7 @@ struct EventSolution {
 };
 
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
-/// driver or obstacle. Simulation::name() names the part. Directions: normal first, then tangential.
+/// driver or shape on ground. Simulation::name() names the part. Directions: normal first, then tangential.
 struct EventRecord : EventParts, EventSolution {
   double time = 0.0;                        ///< [s]
   EventKind kind = EventKind::impact;       ///< what happened

@@ -75,9 +75,9 @@ struct StepReport : IterationReport {
   /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
-  double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
-  double projected = 0.0;     ///< largest displacement by which a body was moved out of obstacles [m]
-  ControlReport control;      ///< of step control
+  double lasting_gain = 0.0;            ///< part of it in lasting contact (docs/energy.md) [J]
+  double projected = 0.0;               ///< largest displacement by which a body was moved out of shapes [m]
+  ControlReport control;                ///< of step control
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
   /// Impulses of all joints, including their reactions to contact; by component, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.

@@ -95,7 +95,7 @@ TEST(Driver, RatesThatAreNotGivenAreDifferencesWithinBreaks) {
     EXPECT_NEAR(model.rows(driver)[0].rate, -rate, 1e-9) << time;
   }
   std::vector<double> breaks;
-  model.kind(driver).breaks(model.slot(driver), breaks);
+  model.kind(driver).discontinuity_times(model.slot(driver), breaks);
   EXPECT_EQ(breaks, std::vector{1.0});
 }
 

@@ -36,7 +36,7 @@ std::vector<double> guards_of(const System& system) {
 std::vector<double> breaks_of(const System& system, ElementId element) {
   const auto place = system.force_kinds().place(element.serial);
   std::vector<double> times;
-  system.force_kinds().entries()[place.entry].kind->breaks(place.slot, times);
+  system.force_kinds().entries()[place.entry].kind->discontinuity_times(place.slot, times);
   return times;
 }
 

@@ -41,7 +41,7 @@ System press(double friction, double restitution, double angle) {
   return system;
 }
 
-TEST(EventJams, ADiscThatIsSqueezed) {
+TEST(EventUnboundedForces, ADiscThatIsSqueezed) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     for (const double friction : {0.0, 0.5}) {
       SCOPED_TRACE(testing::Message() << restitution << ", " << friction);
@@ -66,7 +66,7 @@ TEST(EventJams, ADiscThatIsSqueezed) {
   }
 }
 
-TEST(EventJams, WhatIsToldAsData) {
+TEST(EventUnboundedForces, AreRecordedAsData) {
   Simulation simulation(press(0.5, 0.0, 0.1), EventDriven{});
   try {
     simulation.run_until(2.0);
@@ -80,7 +80,7 @@ TEST(EventJams, WhatIsToldAsData) {
   }
 }
 
-TEST(EventJams, WithoutFrictionAWedgeIsLeft) {
+TEST(EventUnboundedForces, WithoutFrictionAWedgeIsLeft) {
   Simulation simulation(press(0.0, 0.0, 0.1), EventDriven{});
   simulation.run_until(1.5);
   // Driven out sideways, away from where the press is nearer to the floor.
@@ -101,7 +101,7 @@ System between(double height) {
   return system;
 }
 
-TEST(EventJams, AStartThatContradictsItself) {
+TEST(EventUnboundedForces, AtAStartThatContradictsItself) {
   EXPECT_MODEL_ERROR(Simulation(between(0.375), EventDriven{}), "rigid body 'disc'", "half-plane 'lid'",
                      "is -0.025", "allowed: not below -gap_tolerance", "1e-09 m");
   // It fits.
@@ -119,7 +119,7 @@ TEST(EventJams, AStartThatContradictsItself) {
 }
 
 // Options that allow less than the last ones did.
-TEST(EventJams, ASmallerToleranceOfGaps) {
+TEST(EventUnboundedForces, ASmallerToleranceOfGaps) {
   Simulation simulation(between(0.4 - 1e-6), EventDriven{.gap_tolerance = 1e-5});
   const auto before = bits_of(simulation);
   EXPECT_MODEL_ERROR(simulation.switch_to(EventDriven{}), "half-plane 'lid'", "gap_tolerance", "allowed");
@@ -128,7 +128,7 @@ TEST(EventJams, ASmallerToleranceOfGaps) {
 }
 
 // A state that is set has no modes: what stuck is decided anew, by the speeds and forces that it has.
-TEST(EventJams, ModesOfAStateThatIsSet) {
+TEST(EventUnboundedForces, ModesOfAStateThatIsSet) {
   // A block on a slope between mu_k and mu_s: at rest it sticks, once it slides it goes on.
   const double slope = std::atan(0.4);
   System system;
