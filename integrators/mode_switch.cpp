@@ -8,13 +8,15 @@
 #include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
+#include <utility>
 
 namespace carom {
 
 namespace {
 
-/// Names all obstacles that leave no room between them, the deepest contact first.
+/// Names all shapes on ground that leave no room between them, the deepest contact first.
 [[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
   std::vector<Constraint> contacts(result.together.begin(), result.together.end());
   std::stable_sort(contacts.begin(), contacts.end(),
@@ -68,6 +70,36 @@ EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std:
   return event;
 }
 
+/// Appends contacts of a component that a displacement has opened: they are closed no more, though they were
+/// in the step before. \param evaluation brought to `after`
+void find_opened(const Assembly& assembly, Index component, const Detector& detector,
+                 const GroundPlaces& places, const State& before, const State& after,
+                 const GapProjection::Result& result, Evaluation& evaluation,
+                 std::vector<ConstraintKey>& opened) {
+  if (!result.moved) return;
+  constexpr double everything = std::numeric_limits<double>::infinity();
+  std::vector<Constraint> closed, now;
+  evaluate_positions(assembly, component, before.view(), evaluation);
+  detector.find(component, before.view(), evaluation, places, nullptr, everything, closed);
+  evaluate_positions(assembly, component, after.view(), evaluation);
+  detector.find(component, after.view(), evaluation, places, nullptr, everything, now);
+  // Both lists have all pairs, in one order.
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i].gap > std::max(closed[i].gap, 0.0) + 4.0 * result.depth) opened.push_back(now[i].key);
+  }
+}
+
+/// Books the energy of the change, and what solvers counted.
+void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size_t contacts,
+          Companion& companion) {
+  EnergyFlows flows;
+  flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
+  companion.ledger.book(flows, stored);
+  companion.contact_statistics += solved;
+  companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
+      static_cast<std::int64_t>(contacts);
+}
+
 }  // namespace
 
 void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
@@ -83,6 +115,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
   std::vector<EventRecord> recorded;
+  std::vector<ConstraintKey> opened;
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
@@ -109,21 +142,19 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
         recorded.push_back(event_of(assembly, problem, c, state.time, trial.v.data()));
       }
     }
-    // All of them: out of one obstacle a body may come into another.
+    // All of them: out of one shape a body may come into another.
     const GapProjection::Result result = projection.project(assembly, component, detector, places,
                                                             {.all = true}, chain, trial, evaluation, joints);
     if (result.left != nullptr) fail_wedged(detector, result, state.time);
     shift = std::max(shift, result.shift);
+    find_opened(assembly, component, detector, places, state, trial, result, evaluation, opened);
   }
   // Where bodies were moved their joints stand elsewhere.
   shift = std::max(shift, close_joints(assembly, trial).shift);
-  const StoredEnergies stored = stored_energies(assembly, trial.view(), evaluation);
-  EnergyFlows flows;
-  flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
-  companion.ledger.book(flows, stored);
-  companion.contact_statistics += chain.statistics();
-  companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
-      static_cast<std::int64_t>(recorded.size());
+  book(stored_energies(assembly, trial.view(), evaluation), chain.statistics(), recorded.size(), companion);
+  std::erase_if(companion.modes, [&](const auto& entry) {
+    return std::find(opened.begin(), opened.end(), entry.first) != opened.end();
+  });
   state = std::move(trial);
   report = {};
   report.time = state.time;

@@ -1,4 +1,4 @@
-// Problem: move bodies out of obstacles by the smallest displacement.
+// Problem: move bodies out of shapes on ground by the smallest displacement.
 
 #include <carom/integrators/time_stepping/gap_projection.h>
 
@@ -68,9 +68,11 @@ GapProjection::Result GapProjection::project(const Assembly& assembly, Index com
   const double depth = rounding_depth(assembly, component, state);
   const Component& range = assembly.components()[component];
   if (lengths_.size() != state.v.size()) lengths_ = assembly.length_scales();
-  unmoved_.assign(state.q.begin(), state.q.end());
-  displacement_.assign(state.v.size(), 0.0);
-  Result result;
+  unmoved_.resize(state.q.size());
+  displacement_.resize(state.v.size());
+  std::copy(state.q.begin() + range.q.begin, state.q.begin() + range.q.end, unmoved_.begin() + range.q.begin);
+  std::fill(displacement_.begin() + range.v.begin, displacement_.begin() + range.v.end, 0.0);
+  Result result{.depth = depth};
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
     find(component, detector, places, which, 2.0 * result.shift, state, evaluation);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Bodies that have sunk into obstacles are moved out by the smallest displacement in the sense of their
-/// masses:  minimise |d|_M  such that  g(q + d) >= 0  for the gaps g of the contacts of a body. At an
+/// Bodies that have sunk into shapes on ground are moved out by the smallest displacement in the sense of
+/// their masses:  minimise |d|_M  such that  g(q + d) >= 0  for the gaps g of the contacts of a body. At an
 /// estimate d the gaps are taken as linear; the multipliers y of the next estimate d' = M^-1 G^T y solve
 ///     W y + g(q + d) - G d >= 0,  y >= 0,  complementary,   W = G M^-1 G^T.
 /// Where joints bind the bodies, with rows J and gaps j, they move together: M^-1 leaves room for K of
@@ -30,6 +30,7 @@ public:
   struct Result {
     bool moved = false;                ///< a body was moved
     double shift = 0.0;                ///< largest displacement of a body, angles weighed by its size [m]
+    double depth = 0.0;                ///< gaps of this size are rounding [m]
     const Constraint* left = nullptr;  ///< deepest contact that could not be opened
     /// The contacts of its bodies that had to be open together, it among them. Valid, as `left`, until the
     /// next projection.
@@ -42,9 +43,8 @@ public:
   };
 
   /// Moves bodies until the gaps asked for are at most rounding below zero; those that keep a body from
-  /// falling back end there, still closed. Obstacles are at `places`. The position group of `evaluation` must
-  /// be up to date, and is so afterwards.
-  /// \param joints of the component; may be empty
+  /// falling back end there, still closed. Shapes on ground are at `places`. The position group of
+  /// `evaluation` must be up to date, and is so afterwards. \param joints of the component; may be empty
   Result project(const Assembly& assembly, Index component, const Detector& detector,
                  const GroundPlaces& places, const Which& which, SolverChain& chain, State& state,
                  Evaluation& evaluation, JointConstraints& joints);

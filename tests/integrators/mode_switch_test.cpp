@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/model_error.h"
 
@@ -36,6 +37,46 @@ TEST(ModeSwitch, InFlightNothingChangesButTheMode) {
   // Free fall: time stepping is exact in it, and so is the other mode, but for rounding.
   EXPECT_NEAR(simulation.state().position(ball)[1], 1.0 - 0.5 * gravity * 0.09, 1e-13);
   EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-12);
+}
+
+/// Rests on the floor, stands inside a wall that leans over it: moved out of the wall it is above the floor,
+/// and falls from there. (The floor was taken for closed, and the body put back into the wall.)
+TEST(ModeSwitch, ContactsThatMovingOutOpensAreOpen) {
+  for (const bool turns : {false, true}) {
+    const double radius = turns ? 0.1 : 0.0, depth = 2.7e-3;
+    const Vec<2> normal = Vec<2>(-1.0, 0.5).normalized();
+    System system;
+    system.add(Gravity{{0.0, -gravity}});
+    const Surface smooth{.friction = 0.0, .normal_restitution = 0.0};
+    system.add(HalfPlane{.normal = {0.0, 1.0}}, smooth, "floor");
+    system.add(HalfPlane{.normal = {-1.0, 0.5}}, smooth, "wall");
+    const Vec<2> start((normal[1] * radius - radius + depth) / -normal[0], radius);
+    BodyId body;
+    if (turns) {
+      body = system.add(RigidBody{.mass = disc(1.0, radius), .position = start});
+      system.add(Disc{.body = body, .radius = radius});
+    } else {
+      body = system.add(Particle{.mass = 1.0, .position = start});
+    }
+    Simulation simulation(std::move(system), TimeStepping{.step = 1e-2});
+    simulation.step();
+    ASSERT_EQ(simulation.report().contacts.size(), 2U);
+    simulation.switch_to(EventDriven{});
+    const auto wall_gap = [&] { return normal.dot(simulation.state().position(body)) - radius; };
+    const double height = simulation.state().position(body)[1] - radius;
+    EXPECT_NEAR(wall_gap(), 0.0, 1e-14);
+    EXPECT_NEAR(height, depth * normal[1], 1e-12);  // the shortest way out is along the normal
+    simulation.run_until(simulation.time() + 1e-9);
+    EXPECT_NEAR(simulation.state().position(body)[1] - radius, height, 1e-12);
+    simulation.run_until(simulation.time() + 1e-3);
+    EXPECT_GE(wall_gap(), -1e-12);
+    // Down along the wall, without friction.
+    const double along = Vec<2>(normal[1], -normal[0]).normalized()[1];
+    EXPECT_NEAR(height - (simulation.state().position(body)[1] - radius),
+                0.5 * gravity * along * along * 1e-6, 1e-10);
+    EXPECT_NEAR(simulation.energy().flow(EnergyFlow::projection), 0.0, 1e-12);
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-12);
+  }
 }
 
 TEST(ModeSwitch, ViolationThatApproachesIsResolvedByAnImpactAndMovedOut) {
