@@ -1,6 +1,6 @@
 #include <carom/bodies/rigid_body.h>
 
-#include <carom/core/numerics/compensated_sum.h>
+#include <carom/core/numerics/pair.h>
 
 #include <algorithm>
 #include <cmath>
@@ -90,13 +90,21 @@ void RigidBodyKind<2>::apply_mass(Range slots, const double* v, double* p) const
 }
 
 double RigidBodyKind<2>::kinetic_energy(Range slots, const double* v) const {
-  CompensatedSum sum;
-  for (Index slot = slots.begin; slot < slots.end; ++slot, v += 3) {
-    const Inertia& mass = masses_[slot];
-    sum.add(0.5 * mass.mass * (v[0] * v[0] + v[1] * v[1]));
-    sum.add(0.5 * mass.inertia * v[2] * v[2]);
+  PairSum moving, spinning;  // two bodies side by side
+  Index slot = slots.begin;
+  for (; slot + 1 < slots.end; slot += 2, v += 6) {
+    const Inertia &a = masses_[slot], &b = masses_[slot + 1];
+    const Pair x{v[0], v[3]}, y{v[1], v[4]}, spin{v[2], v[5]};
+    moving.add(0.5 * Pair{a.mass, b.mass} * (x * x + y * y));
+    spinning.add(0.5 * Pair{a.inertia, b.inertia} * spin * spin);
   }
-  return sum.value();
+  if (slot < slots.end) {
+    const Inertia& last = masses_[slot];
+    moving.add(Pair{0.5 * last.mass * (v[0] * v[0] + v[1] * v[1]), 0.0});
+    spinning.add(Pair{0.5 * last.inertia * v[2] * v[2], 0.0});
+  }
+  moving.add(spinning);
+  return moving.accurate_value();
 }
 
 void RigidBodyKind<2>::add_weight(Range slots, const double* g, double* load) const {
@@ -107,11 +115,15 @@ void RigidBodyKind<2>::add_weight(Range slots, const double* g, double* load) co
 }
 
 double RigidBodyKind<2>::weight_potential(Range slots, const double* g, const double* q) const {
-  CompensatedSum sum;
-  for (Index slot = slots.begin; slot < slots.end; ++slot, q += 3) {
-    sum.add(-masses_[slot].mass * (g[0] * q[0] + g[1] * q[1]));
-  }
-  return sum.value();
+  const auto potential = [&](Index i) {
+    const double* const at = q + 3 * i;
+    return -masses_[slots.begin + i].mass * (g[0] * at[0] + g[1] * at[1]);
+  };
+  PairSum sum;
+  Index i = 0;
+  for (; i + 1 < slots.size(); i += 2) sum.add(Pair{potential(i), potential(i + 1)});
+  if (i < slots.size()) sum.add(Pair{potential(i), 0.0});
+  return sum.accurate_value();
 }
 
 void RigidBodyKind<2>::fingerprint(Fingerprint& print) const {

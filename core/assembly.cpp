@@ -45,6 +45,17 @@ std::vector<BodyKey> ordered_bodies(const System& system) {
   return keys;
 }
 
+/// True if a component has one body only, on which nothing but fields acts.
+bool is_uncoupled(const Assembly& assembly, Index component) {
+  const Range bodies = assembly.components()[component].bodies;
+  if (bodies.size() > 1 || assembly.is_jointed(bodies.begin)) return false;
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    if (!assembly.force_kinds()[kind]->is_field() && !assembly.elements(component, kind).empty())
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Assembly::Assembly(System system) : system_(std::move(system)) {
@@ -58,6 +69,7 @@ Assembly::Assembly(System system) : system_(std::move(system)) {
   std::vector<InternalSlot> internals = elements_.place_internals(system_, components_);
   if (!internals.empty()) layout->place_internals(std::move(internals));
   layout_ = layout;
+  find_batches();
 }
 
 std::shared_ptr<Layout> Assembly::order_bodies(std::vector<Index>& component_of_body) {
@@ -74,10 +86,6 @@ std::shared_ptr<Layout> Assembly::order_bodies(std::vector<Index>& component_of_
     if (key.component != root) {
       root = key.component;
       components_.push_back({{body, body}, {q, q}, {v, v}, {}, {}, {}});
-      for (Index k = 0; k < kinds; ++k) {
-        const auto first = static_cast<Index>(order[k].size());
-        body_slots_.push_back({first, first});
-      }
     }
     BodySlot slot{key.serial,    q,    v,        kind.q_size(),
                   kind.v_size(), none, key.kind, static_cast<Index>(order[key.kind].size())};
@@ -93,11 +101,30 @@ std::shared_ptr<Layout> Assembly::order_bodies(std::vector<Index>& component_of_
     component.bodies.end = body + 1;
     component.q.end = q;
     component.v.end = v;
-    ++body_slots_[(components_.size() - 1) * kinds + key.kind].end;
+    if (body == 0 || slots[body - 1].kind != key.kind) kind_ends_.push_back(body);
+    kind_ends_.back() = body + 1;
     component_of_body[key.serial] = static_cast<Index>(components_.size() - 1);
   }
   for (Index k = 0; k < kinds; ++k) body_kinds_.push_back(registry.entries()[k].kind->arranged(order[k]));
   return std::make_shared<Layout>(system_.dimension(), system_.token(), slots);
+}
+
+Index Assembly::component_of(Index body) const {
+  const auto at = std::upper_bound(
+      components_.begin(), components_.end(), body,
+      [](Index wanted, const Component& component) { return wanted < component.bodies.end; });
+  return static_cast<Index>(at - components_.begin());
+}
+
+void Assembly::find_batches() {
+  const BodySlots& bodies = layout_->bodies();
+  Index kind = none;  // of the uncoupled bodies at hand
+  for (Index component = 0; component < components_.size(); ++component) {
+    const Index before = kind;
+    kind = is_uncoupled(*this, component) ? bodies[components_[component].bodies.begin].kind : none;
+    if (kind == none || kind != before) batches_.push_back({component, component});
+    batches_.back().end = component + 1;
+  }
 }
 
 std::vector<double> Assembly::masses() const {

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -32,6 +33,15 @@ public:
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
   /// Components, in the order of assembly.
   [[nodiscard]] const std::vector<Component>& components() const { return components_; }
+  /// The component of a body.
+  [[nodiscard]] Index component_of(Index body) const;
+  /// Ranges of components, in their order, whose bodies may be evaluated in one loop: uncoupled bodies of one
+  /// kind, on which fields alone act, that follow one another; each other component by itself.
+  [[nodiscard]] const std::vector<Range>& batches() const { return batches_; }
+  /// Bodies of consecutive components.
+  [[nodiscard]] Range bodies_of(Range components) const {
+    return {components_[components.begin].bodies.begin, components_[components.end - 1].bodies.end};
+  }
   /// Masses of the bodies, in the order of assembly [kg]. Made at each call.
   [[nodiscard]] std::vector<double> masses() const;
   /// Lengths that weight changes of the velocity coordinates (BodyKind::length_scale). Made at each
@@ -40,10 +50,6 @@ public:
 
   /// Kinds of bodies in the order of assembly, with the data of a run. The description is in system().
   [[nodiscard]] const std::vector<std::unique_ptr<BodyKind>>& body_kinds() const { return body_kinds_; }
-  /// Slots of a kind that belong to a component.
-  [[nodiscard]] Range body_slots(Index component, Index kind) const {
-    return body_slots_[component * body_kinds_.size() + kind];
-  }
   /// Blocks of all components, and the elements that act on them.
   [[nodiscard]] const BlockTable& blocks() const { return blocks_; }
 
@@ -77,28 +83,23 @@ public:
   /// True if the body has a joint.
   [[nodiscard]] bool is_jointed(Index body) const { return joints_.is_jointed(body); }
 
-  /// Calls f(kind, slots, q offset, v offset, rotation offset) for the bodies of a component, kind by kind.
+  /// Calls f(kind, slots, q offset, v offset, rotation offset) for consecutive bodies, kind by kind.
   template <class F>
-  void for_bodies(Index component, F&& f) const {
-    Index body = components_[component].bodies.begin;
-    for (Index kind = 0; kind < body_kinds_.size(); ++kind) {
-      const Range slots = body_slots(component, kind);
-      if (slots.empty()) continue;
+  void for_bodies(Range bodies, F&& f) const {
+    const Index* end = kind_ends_.data();
+    if (kind_ends_.size() > 1) end = std::upper_bound(end, end + kind_ends_.size(), bodies.begin);
+    for (Index body = bodies.begin; body < bodies.end; ++end) {
       const BodySlot first = layout_->bodies()[body];
-      f(*body_kinds_[kind], slots, first.q, first.v, first.rotation);
-      body += slots.size();
+      const Index count = std::min(*end, bodies.end) - body;
+      f(*body_kinds_[first.kind], Range{first.slot, first.slot + count}, first.q, first.v, first.rotation);
+      body += count;
     }
   }
 
-  /// The same for some consecutive bodies of a component.
+  /// The same for the bodies of a component.
   template <class F>
-  void for_bodies(Index component, Range bodies, F&& f) const {
-    for (Index body = bodies.begin; body < bodies.end;) {
-      const BodySlot first = layout_->bodies()[body];
-      const Index last = std::min(body_slots(component, first.kind).end, first.slot + (bodies.end - body));
-      f(*body_kinds_[first.kind], Range{first.slot, last}, first.q, first.v, first.rotation);
-      body += last - first.slot;
-    }
+  void for_bodies(Index component, F&& f) const {
+    for_bodies(components_[component].bodies, std::forward<F>(f));
   }
 
   /// The state described by the system, at time 0.
@@ -107,12 +108,14 @@ public:
 private:
   // Returns the layout, still to be completed, and the component of each body, by serial number.
   std::shared_ptr<Layout> order_bodies(std::vector<Index>& component_of_body);
+  void find_batches();
 
   System system_;
   std::shared_ptr<const Layout> layout_;
   std::vector<Component> components_;
   std::vector<std::unique_ptr<BodyKind>> body_kinds_;
-  std::vector<Range> body_slots_;  // by component, kind
+  std::vector<Index> kind_ends_;  // where bodies that follow one another cease to be of one kind
+  std::vector<Range> batches_;
   BlockTable blocks_;
   ArrangedJoints joints_;
   ArrangedElements elements_;
@@ -121,6 +124,8 @@ private:
 /// Fills the position group of `out` for one component.
 CAROM_API void evaluate_positions(const Assembly& assembly, Index component, const StateView& state,
                                   Evaluation& out);
+/// Fills it for all.
+CAROM_API void evaluate_positions(const Assembly& assembly, const StateView& state, Evaluation& out);
 
 /// A computation for a block, done while its data are in the cache; called with its place in the component.
 using BlockTask = FunctionRef<void(const Block&, Index)>;
@@ -190,6 +195,10 @@ CAROM_API void evaluate(const Assembly& assembly, Index component, const StateVi
 /// Adds the potential energies of one component. The position group of `evaluation` must be up to date.
 CAROM_API void add_potentials(const Assembly& assembly, Index component, const StateView& state,
                               const Evaluation& evaluation, StoredEnergies& out);
+
+/// Adds the potential energies of fields on some bodies of a batch.
+CAROM_API void add_field_potentials(const Assembly& assembly, Range bodies, const StateView& state,
+                                    const Evaluation& evaluation, StoredEnergies& out);
 
 /// Adds the stored energies of one component. The position group of `evaluation` must be up to date.
 CAROM_API void add_stored_energies(const Assembly& assembly, Index component, const StateView& state,

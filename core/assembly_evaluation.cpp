@@ -12,10 +12,22 @@ Evaluation make_evaluation(const Assembly& assembly) {
   return evaluation;
 }
 
-void evaluate_positions(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
-  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
+namespace {
+
+void evaluate_rotations(const Assembly& assembly, Range bodies, const StateView& state, Evaluation& out) {
+  assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
     if (kind.has_orientation()) kind.rotations(slots, state.q + q, out.rotation.data() + rotation);
   });
+}
+
+}  // namespace
+
+void evaluate_positions(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
+  evaluate_rotations(assembly, assembly.components()[component].bodies, state, out);
+}
+
+void evaluate_positions(const Assembly& assembly, const StateView& state, Evaluation& out) {
+  evaluate_rotations(assembly, {0, static_cast<Index>(assembly.layout()->bodies().size())}, state, out);
 }
 
 namespace {
@@ -269,6 +281,15 @@ StoredEnergies stored_energies(const Assembly& assembly, const StateView& state,
     add_stored_energies(assembly, component, state, evaluation, stored);
   }
   return stored;
+}
+
+void add_field_potentials(const Assembly& assembly, Range bodies, const StateView& state,
+                          const Evaluation& evaluation, StoredEnergies& out) {
+  const Index component = assembly.component_of(bodies.begin);
+  const EvaluationContext at{assembly, state, evaluation, component, bodies};
+  for_kinds(assembly, component, [&](const ForceKind& kind, Range elements, Index) {
+    if (kind.is_field()) out[kind.stored_as()] += kind.potential(at, elements);
+  });
 }
 
 void add_potentials(const Assembly& assembly, Index component, const StateView& state,

@@ -76,31 +76,32 @@ struct Constraint {
     int columns = 0;    ///< its velocities
   };
 
+  // What every contact problem asks for comes first and close together.
   ConstraintKey key;                                    ///< identity
   ConstraintType type = ConstraintType::contact;        ///< origin
   int rows = 0;                                         ///< of a contact 2 in the plane, 3 in space
   int bodies = 0;                                       ///< blocks in use
   std::array<Block, std::size_t{max_bodies}> blocks{};  ///< bodies whose velocities have columns
-  Index source = none;          ///< of a limit and of friction in a joint: its number in the detector
-  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
-                                ///< or impulse
-  double gap = 0.0;             ///< negative where violated [m]
-  /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
-  /// with which it may still approach at its end [m/s]. Else 0.
-  double allowed_approach = 0.0;
-  Surface law;  ///< coefficients
+  Index source = none;  ///< of a limit and of friction in a joint: its number in the detector
   /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
   /// law.sticking_friction() where it stuck in the step before.
   double friction = 0.0;
-  std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
-      jacobian{};  ///< row-major, stride max_columns, block after block
+  Surface law;       ///< coefficients
+  double gap = 0.0;  ///< negative where violated [m]
+  /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
+  /// with which it may still approach at its end [m/s]. Else 0.
+  double allowed_approach = 0.0;
+  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
+                                ///< or impulse
   std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity{};  ///< of the moving ground shape where it is touched, along the rows [m/s]
   std::array<double, static_cast<std::size_t>(max_rows)>
-      drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
-  std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity_after{};  ///< likewise of the same place at the end of a time step; else the same as
                                  ///< surface_velocity [m/s]
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
+  std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
+      jacobian{};  ///< row by row, of columns() numbers each, block after block
 
   /// True of friction in a joint and of what is like it: a row without a normal.
   [[nodiscard]] bool has_dry_friction() const { return type >= ConstraintType::joint_friction; }
@@ -114,19 +115,20 @@ struct Constraint {
   }
   /// Its first body.
   [[nodiscard]] Index body() const { return blocks[0].body; }
-  /// Appends a body. \param v first of its velocities \param columns their number
-  void add_body(Index body, Index v, int columns) {
-    blocks[static_cast<std::size_t>(bodies++)] = {body, v, columns};
+  /// Appends a body, before rows are written. \param v first of its velocities \param width their number
+  void add_body(Index body, Index v, int width) {
+    blocks[static_cast<std::size_t>(bodies++)] = {body, v, width};
   }
-  /// Number of columns of all bodies.
-  [[nodiscard]] int columns() const {
-    int sum = 0;
-    for (int b = 0; b < bodies; ++b) sum += blocks[static_cast<std::size_t>(b)].columns;
-    return sum;
+  /// Forgets all bodies.
+  void clear_bodies() {
+    bodies = 0;
+    blocks = {};
   }
-  /// Row i of the Jacobian, max_columns numbers.
-  [[nodiscard]] const double* row(int i) const { return jacobian.data() + max_columns * i; }
-  [[nodiscard]] double* row(int i) { return jacobian.data() + max_columns * i; }
+  /// Number of columns of all bodies: numbers of a row.
+  [[nodiscard]] int columns() const { return blocks[0].columns + blocks[1].columns + blocks[2].columns; }
+  /// Row i of the Jacobian.
+  [[nodiscard]] const double* row(int i) const { return jacobian.data() + columns() * i; }
+  [[nodiscard]] double* row(int i) { return jacobian.data() + columns() * i; }
   /// Row i times numbers of the bodies. \param numbers an array over all velocities
   [[nodiscard]] double times(int i, const double* numbers) const {
     double sum = 0.0;

@@ -27,10 +27,9 @@ void GravityKind<D>::evaluate(const EvaluationContext& at, Range elements, const
   const Range bodies = at.bodies.empty() ? at.assembly.components()[at.component].bodies : at.bodies;
   for (Index element = elements.begin; element < elements.end; ++element) {
     const double* const g = parts_[element].acceleration.data();
-    at.assembly.for_bodies(at.component, bodies,
-                           [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-                             kind.add_weight(slots, g, loads.conservative + v);
-                           });
+    at.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      kind.add_weight(slots, g, loads.conservative + v);
+    });
   }
 }
 
@@ -40,10 +39,9 @@ double GravityKind<D>::potential(const EvaluationContext& at, Range elements) co
   CompensatedSum sum;
   for (Index element = elements.begin; element < elements.end; ++element) {
     const double* const g = parts_[element].acceleration.data();
-    at.assembly.for_bodies(at.component, bodies,
-                           [&](const BodyKind& kind, Range slots, Index q, Index, Index) {
-                             sum.add(kind.weight_potential(slots, g, at.state.q + q));
-                           });
+    at.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index, Index) {
+      sum.add(kind.weight_potential(slots, g, at.state.q + q));
+    });
   }
   return sum.value();
 }

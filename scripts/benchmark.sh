@@ -4,11 +4,11 @@
 # particles runs for its whole second too, which takes ten minutes more.
 #   scripts/benchmark.sh               all
 #   scripts/benchmark.sh <name>...     these alone, of net, impact, tables, chain, event, flow, joint,
-#                                      description
+#                                      description, uncoupled
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-programs=(net impact tables chain event flow joint description)
+programs=(net impact tables chain event flow joint description uncoupled)
 for name in "$@"; do
   if [[ " ${programs[*]} " != *" $name "* ]]; then
     echo "usage: $0 [${programs[*]}]" >&2

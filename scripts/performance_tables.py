@@ -13,8 +13,9 @@ from pathlib import Path
 
 SIZES = [10, 30, 100, 300, 1000]
 WHEELS = [500, 4000]
+DISCS = [100, 2000, 10000]
 TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "per_wheel", "seconds", "per_unknown")
+         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -277,6 +278,22 @@ def stiff_table(flow):
     return table(["0.02 s of motion", "unknowns", "steps", "ms", "ns per step and unknown"], rows)
 
 
+def uncoupled_table(uncoupled):
+    rows = []
+    for key, title in (("by_hand", "one loop by hand: motion, energies, work"),
+                       ("by_hand_with_gaps", "the same, and the gaps over the floor"),
+                       ("uncoupled", "library: discs in free fall"),
+                       ("uncoupled_rolling", "library: every disc in contact with the floor"),
+                       ("one_component", "library: joined by springs to one component, in free fall")):
+        cells = [title]
+        for count in DISCS:
+            case = uncoupled.get(f"{key}/{count}")
+            ratio = case and case["per_disc"] / uncoupled[f"by_hand_with_gaps/{count}"]["per_disc"]
+            cells.append(f"{figure(1e9 * case['per_disc'])} ({ratio:.2f})" if case else "")
+        rows.append(cells)
+    return table(["ns per disc and step (ratio to the loop with gaps)"] + [f"{count:,} discs" for count in DISCS], rows)
+
+
 def machine(context, compiler, began, idle=1.2):
     """What was measured on. Up to `idle` is the load of the benchmark before."""
     cpu = "unknown processor"
@@ -302,7 +319,11 @@ def main():
     flow_context, flow = load(folder, "flow")
     joint_context, joint = load(folder, "joint")
     description_context, description = load(folder, "description")
+    uncoupled_context, uncoupled = load(folder, "uncoupled")
     parts = {}
+    if uncoupled:
+        parts |= {"uncoupled_machine": machine(uncoupled_context, compiler, "the discs"),
+                  "uncoupled": uncoupled_table(uncoupled)}
     if net:
         parts |= {"machine": machine(context, compiler, "the net", idle=0.5), "net": net_table(net), "second": second_table(net)}
     if net and impact and tables:

@@ -4,17 +4,43 @@
 
 namespace carom {
 
+namespace {
+
+bool is_centred(const BodyFeature& point) {
+  return point.centre[0] == 0.0 && point.centre[1] == 0.0 && point.centre[2] == 0.0;
+}
+
+/// Appends a run of one body to another of the same kind, if it goes on with it.
+bool join(CentreRun& run, const CentreRun& next) {
+  if (run.bodies.end != next.bodies.begin || run.material != next.material) return false;
+  if ((run.points == none) != (next.points == none)) return false;
+  if (run.points != none && run.points + run.bodies.size() != next.points) return false;
+  run.radius = std::max(run.radius, next.radius);
+  ++run.bodies.end;
+  return true;
+}
+
+}  // namespace
+
 BodyFeatures::BodyFeatures(const Assembly& assembly) {
-  collect_centres(assembly);
   collect_points(assembly);
+  collect_centres(assembly);
   of_component_.reserve(assembly.components().size());
-  Index centre = 0, point = 0;
+  OfComponents own{};
   for (const Component& component : assembly.components()) {
-    OfComponent own{{centre, centre}, {point, point}};
-    while (centre < centres_.size() && centres_[centre].bodies.end <= component.bodies.end) ++centre;
-    while (point < points_.size() && points_[point].body < component.bodies.end) ++point;
-    own.centres.end = centre;
-    own.points.end = point;
+    while (own.centres.begin < centres_.size() &&
+           centres_[own.centres.begin].bodies.end <= component.bodies.begin) {
+      ++own.centres.begin;
+    }
+    own.centres.end = std::max(own.centres.end, own.centres.begin);
+    while (own.centres.end < centres_.size() &&
+           centres_[own.centres.end].bodies.begin < component.bodies.end) {
+      ++own.centres.end;
+    }
+    own.points.begin = own.points.end;
+    while (own.points.end < points_.size() && points_[own.points.end].body < component.bodies.end) {
+      ++own.points.end;
+    }
     of_component_.push_back(own);
   }
 }
@@ -26,23 +52,30 @@ Index BodyFeatures::number_of(MaterialId material) {
   return number;
 }
 
+/// Runs end where the kind, the material or the step between the features changes, and with the batch.
 void BodyFeatures::collect_centres(const Assembly& assembly) {
   const Layout& layout = *assembly.layout();
   const auto& registry = assembly.system().body_kinds();
-  for (const Component& component : assembly.components()) {
+  Index point = 0;
+  for (const Range batch : assembly.batches()) {
+    const Range bodies = assembly.bodies_of(batch);
     Index last_kind = none;
-    for (Index body = component.bodies.begin; body < component.bodies.end; ++body) {
+    for (Index body = bodies.begin; body < bodies.end; ++body) {
       const BodySlot slot = layout.bodies()[body];
+      const Index first = point;
+      while (point < points_.size() && points_[point].body == body) ++point;
       const auto place = registry.place(slot.serial);
       const BodyKind& kind = *registry.entries()[place.entry].kind;
-      if (!kind.has_contact_point(place.slot)) continue;
-      const Index material = number_of(kind.material(place.slot));
-      if (slot.kind == last_kind && centres_.back().bodies.end == body &&
-          centres_.back().material == material) {
-        ++centres_.back().bodies.end;
+      CentreRun run{{body, body + 1}, none, none, 0.0};
+      if (kind.has_contact_point(place.slot)) {
+        run.material = number_of(kind.material(place.slot));
+      } else if (point == first + 1 && is_centred(points_[first])) {
+        run.points = first;
+        run.radius = points_[first].radius;
       } else {
-        centres_.push_back({{body, body + 1}, material});
+        continue;
       }
+      if (slot.kind != last_kind || !join(centres_.back(), run)) centres_.push_back(run);
       last_kind = slot.kind;
     }
   }
@@ -72,7 +105,7 @@ void BodyFeatures::collect_points(const Assembly& assembly) {
 
 FeatureKey BodyFeatures::first_of(Index material, const Layout& layout) const {
   const auto has_it = [material](const auto& candidate) { return candidate.material == material; };
-  const auto centre = std::find_if(centres_.begin(), centres_.end(), has_it);
+  const auto centre = std::find_if(centres_.begin(), centres_.end(), has_it);  // without extent
   const auto point = std::find_if(points_.begin(), points_.end(), has_it);
   const bool is_centre =
       centre != centres_.end() && (point == points_.end() || centre->bodies.begin <= point->body);
@@ -80,10 +113,6 @@ FeatureKey BodyFeatures::first_of(Index material, const Layout& layout) const {
                    : point->key;
 }
 
-bool BodyFeatures::any_off_centre() const {
-  return std::any_of(points_.begin(), points_.end(), [](const BodyFeature& point) {
-    return point.centre[0] != 0.0 || point.centre[1] != 0.0 || point.centre[2] != 0.0;
-  });
-}
+bool BodyFeatures::any_off_centre() const { return !std::all_of(points_.begin(), points_.end(), is_centred); }
 
 }  // namespace carom

@@ -27,17 +27,20 @@ struct BodyFeature {
   }
 };
 
-/// Neighbouring bodies of one kind and component that touch at their centres.
+/// Neighbouring bodies of one kind that touch at their centres of mass, or with one rounded point each around
+/// them; of one component, or uncoupled.
 struct CentreRun {
   Range bodies;           ///< in the order of assembly
-  Index material = none;  ///< number in BodyFeatures::materials()
+  Index material = none;  ///< number in BodyFeatures::materials(), of those without extent
+  Index points = none;    ///< the first of their rounded points, which follow one another; `none`: no extent
+  double radius = 0.0;    ///< the largest [m]
 };
 
 /// All features that can touch, ordered by body.
 class CAROM_API BodyFeatures {
 public:
-  /// Ranges of centres() and points() that belong to one component.
-  struct OfComponent {
+  /// Ranges of centres() that have bodies of some components, and of the points() of these.
+  struct OfComponents {
     Range centres, points;
   };
 
@@ -50,9 +53,11 @@ public:
   [[nodiscard]] const std::vector<CentreRun>& centres() const { return centres_; }
   /// Rounded points of shapes.
   [[nodiscard]] const std::vector<BodyFeature>& points() const { return points_; }
-  /// Those of one component.
-  [[nodiscard]] OfComponent of(Index component) const {
-    return of_component_.empty() ? OfComponent{} : of_component_[component];
+  /// Those of consecutive components.
+  [[nodiscard]] OfComponents of(Range components) const {
+    if (of_component_.empty()) return {};
+    const OfComponents &first = of_component_[components.begin], &last = of_component_[components.end - 1];
+    return {{first.centres.begin, last.centres.end}, {first.points.begin, last.points.end}};
   }
   /// Materials that features have; one of them may be no material.
   [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
@@ -63,13 +68,13 @@ public:
 
 private:
   [[nodiscard]] Index number_of(MaterialId material);
-  void collect_centres(const Assembly& assembly);
   void collect_points(const Assembly& assembly);
+  void collect_centres(const Assembly& assembly);
 
   std::vector<CentreRun> centres_;
   std::vector<BodyFeature> points_;
   std::vector<MaterialId> materials_;
-  std::vector<OfComponent> of_component_;  // empty where nothing was collected
+  std::vector<OfComponents> of_component_;  // empty where nothing was collected
 };
 
 }  // namespace carom

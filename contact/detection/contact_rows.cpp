@@ -42,7 +42,7 @@ PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature,
 template <int D>
 void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& state, Constraint& out) {
   const BodySlot& body = at.body;
-  out.bodies = 0;
+  out.clear_bodies();
   out.add_body(at.feature.body, body.v, static_cast<int>(body.v_size));
   out.rows = D;
   out.gap = gap.distance - at.feature.radius;

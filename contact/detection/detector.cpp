@@ -12,14 +12,15 @@ void Detector::find(Index component, const StateView& state, const Evaluation& e
   find(component, state, evaluation, places, nullptr, margin, out);
 }
 
-void Detector::find(Index component, const StateView& state, const Evaluation& evaluation,
-                    const GroundPlaces& places, const GroundPlaces* after, double margin,
-                    std::vector<Constraint>& out, const LastingContacts* lasting) const {
-  assert(!has_moving_ground() || places.time() == state.time);
-  if (lasting != nullptr && lasting->empty()) lasting = nullptr;
-  const ContactQuery query{state, evaluation, places, after, margin, lasting};
-  ground_.find(component, query, out);
-  joints_.find_limits(component, query, out);
+void Detector::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
+  assert(!has_moving_ground() || query.places.time() == query.state.time);
+  ContactQuery asked = query;
+  if (asked.lasting != nullptr && asked.lasting->empty()) asked.lasting = nullptr;
+  ground_.find(components, asked, out);
+  if (joints_.empty()) return;
+  for (Index component = components.begin; component < components.end; ++component) {
+    joints_.find_limits(component, asked, out);
+  }
 }
 
 void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,

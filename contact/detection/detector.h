@@ -50,7 +50,11 @@ public:
   /// \param lasting contacts of the step before, found also where turning may have opened them; null: none
   void find(Index component, const StateView& state, const Evaluation& evaluation, const GroundPlaces& places,
             const GroundPlaces* after, double margin, std::vector<Constraint>& out,
-            const LastingContacts* lasting = nullptr) const;
+            const LastingContacts* lasting = nullptr) const {
+    find(Range{component, component + 1}, {state, evaluation, places, after, margin, lasting}, out);
+  }
+  /// Likewise of a batch, or of one component.
+  void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
   void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,

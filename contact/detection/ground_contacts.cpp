@@ -1,6 +1,8 @@
 #include <carom/contact/detection/ground_contacts.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace carom {
@@ -17,6 +19,8 @@ public:
   void before(Index body, F&& f) {
     for (; range_.begin < range_.end && points_[range_.begin].body < body; ++range_.begin) f(range_.begin);
   }
+  /// Leaves out all before a point.
+  void skip_to(Index point) { range_.begin = std::max(range_.begin, point); }
 
 private:
   const std::vector<BodyFeature>& points_;
@@ -38,47 +42,80 @@ GroundContacts::GroundContacts(const Assembly& assembly)
       features_(shapes_.empty() ? BodyFeatures() : BodyFeatures(assembly)),
       laws_(assembly, features_, shapes_) {}
 
-void GroundContacts::find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
+void GroundContacts::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
   if (assembly_->layout()->dimension() == 2) {
-    find_in<2>(component, query, out);
+    find_in<2>(components, query, out);
   } else {
-    find_in<3>(component, query, out);
+    find_in<3>(components, query, out);
   }
 }
 
-bool GroundContacts::any_touches(Range bodies, const ContactQuery& query) const {
-  if (query.lasting != nullptr && query.lasting->any_centre(bodies)) return true;
+bool GroundContacts::any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const {
+  double margin = query.margin;
+  if (centres.points == none) {
+    if (query.lasting != nullptr && query.lasting->any_centre(bodies)) return true;
+  } else {
+    if (query.lasting != nullptr && shapes_.any_moves()) return true;
+    // No distance less its radius is missed by the rounding of this sum.
+    constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
+    margin += centres.radius + slack * (std::abs(margin) + centres.radius);
+  }
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
   for (Index shape = 0; shape < shapes_.size(); ++shape) {
-    if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, query.margin)) return true;
+    if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) return true;
   }
   return false;
 }
 
+/// Calls f(run) for the centres of some components.
+template <class F>
+void GroundContacts::for_runs(Range components, F&& f) const {
+  const Range all = assembly_->bodies_of(components), own = features_.of(components).centres;
+  for (Index i = own.begin; i < own.end; ++i) {
+    CentreRun run = features_.centres()[i];
+    const Index first = std::max(all.begin, run.bodies.begin);
+    if (run.points != none) run.points += first - run.bodies.begin;
+    run.bodies = {first, std::min(all.end, run.bodies.end)};
+    f(run);
+  }
+}
+
 template <int D>
-void GroundContacts::find_in(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
-  // Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
-  constexpr Index many = 64, few = 8;
+void GroundContacts::find_in(Range components, const ContactQuery& query,
+                             std::vector<Constraint>& out) const {
+  // Centres are looked at so many at a time; fewer, and one by one, only where any of them touches. A look at
+  // this many is not worth while.
+  constexpr Index many = 64, few = 8, hardly_any = 2;
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
-  const BodyFeatures::OfComponent own = features_.of(component);
-  PointsInOrder rest(points, own.points);
+  PointsInOrder rest(points, features_.of(components).points);
   const auto add_point = [&](Index i) { add<D>(bodies[points[i].body], points[i], query, out); };
-  for (Index i = own.centres.begin; i < own.centres.end; ++i) {
-    const CentreRun& centres = features_.centres()[i];
-    for_parts(centres.bodies, many, [&](Range part) {
-      if (!any_touches(part, query)) return;
-      for_parts(part, few, [&](Range near) {
-        if (near.size() < part.size() && !any_touches(near, query)) return;
-        for (Index body = near.begin; body < near.end; ++body) {
-          rest.before(body, add_point);
-          const BodySlot at = bodies[body];
-          add<D>(at, BodyFeature::at_centre(at, body, centres.material), query, out);
+  for_runs(components, [&](const CentreRun& centres) {
+    const bool rounded = centres.points != none;
+    if (rounded) {
+      rest.before(centres.bodies.begin, add_point);
+      rest.skip_to(centres.points + centres.bodies.size());
+    }
+    const auto add_bodies = [&](Range some) {
+      for (Index body = some.begin; body < some.end; ++body) {
+        if (rounded) {
+          add_point(centres.points + (body - centres.bodies.begin));
+          continue;
         }
+        rest.before(body, add_point);
+        const BodySlot at = bodies[body];
+        add<D>(at, BodyFeature::at_centre(at, body, centres.material), query, out);
+      }
+    };
+    if (centres.bodies.size() <= hardly_any) return add_bodies(centres.bodies);
+    for_parts(centres.bodies, many, [&](Range part) {
+      if (!any_touches(part, centres, query)) return;
+      for_parts(part, few, [&](Range near) {
+        if (near.size() == part.size() || any_touches(near, centres, query)) add_bodies(near);
       });
     });
-  }
+  });
   rest.before(none, add_point);
 }
 
@@ -142,15 +179,15 @@ void GroundContacts::append_pairs(Index component, std::vector<ContactPair>& out
   };
   const std::vector<BodyFeature>& points = features_.points();
   const auto append_point = [&](Index i) { append(points[i].body, i, points[i].material); };
-  const BodyFeatures::OfComponent own = features_.of(component);
-  PointsInOrder rest(points, own.points);
-  for (Index i = own.centres.begin; i < own.centres.end; ++i) {
-    const CentreRun& centres = features_.centres()[i];
+  const Range own{component, component + 1};
+  PointsInOrder rest(points, features_.of(own).points);
+  for_runs(own, [&](const CentreRun& centres) {
+    if (centres.points != none) return;  // they are among the points
     for (Index body = centres.bodies.begin; body < centres.bodies.end; ++body) {
       rest.before(body, append_point);
       append(body, none, centres.material);
     }
-  }
+  });
   rest.before(none, append_point);
 }
 

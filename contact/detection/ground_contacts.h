@@ -30,8 +30,9 @@ public:
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return features_.any_off_centre(); }
 
-  /// Appends the contacts of one component that a query asks for, ordered by body, feature and shape.
-  void find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
+  /// shape.
+  void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
@@ -40,7 +41,7 @@ public:
 
 private:
   template <int D>
-  void find_in(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  void find_in(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
   // Appends the contacts of one feature.
   template <int D>
   void add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,
@@ -49,8 +50,10 @@ private:
   template <int D>
   void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
-  // Whether any of some neighbours that touch at their centres may have a contact.
-  [[nodiscard]] bool any_touches(Range bodies, const ContactQuery& query) const;
+  template <class F>
+  void for_runs(Range components, F&& f) const;
+  // Whether any of some neighbours in a run may have a contact.
+  [[nodiscard]] bool any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const;
 
   const Assembly* assembly_;
   GroundShapes shapes_;

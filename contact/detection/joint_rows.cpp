@@ -139,7 +139,7 @@ void JointRows::update_friction(const JointView& at, Constraint& constraint) con
 void JointRows::take(const JointRow& from, const JointBodies& bodies, Constraint& out) const {
   const BodySlots& slots = assembly_->layout()->bodies();
   out.rows = 1;
-  out.bodies = 0;
+  out.clear_bodies();
   double* place = out.row(0);
   for (int b = 0; b < from.bodies; ++b) {
     const JointRow::Block& block = from.blocks[static_cast<std::size_t>(b)];

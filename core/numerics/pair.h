@@ -59,8 +59,19 @@ public:
     correction_ += (sum_ - (total - taken)) + (term - taken);
     sum_ = total;
   }
+  /// Adds another sum.
+  void add(const PairSum& other) {
+    add(other.sum_);
+    correction_ += other.correction_;
+  }
   /// Both lanes together.
   [[nodiscard]] double value() const { return (sum_[0] + sum_[1]) + (correction_[0] + correction_[1]); }
+  /// Likewise, without the rounding error of their sum.
+  [[nodiscard]] double accurate_value() const {
+    const double total = sum_[0] + sum_[1], taken = total - sum_[0];
+    const double lost = (sum_[0] - (total - taken)) + (sum_[1] - taken);
+    return total + (lost + (correction_[0] + correction_[1]));
+  }
 
 private:
   Pair sum_{};

@@ -31,18 +31,52 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   if (together) {
     add_problem(in, island.constraints);
   } else {
-    const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
-    const auto alone = [](Index body) { return body; };
-    for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
-      add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
-      problems_[in_use_ - 1].respond(masses_);
-    }
+    part_problems(in, island);
   }
   if (by_block_) return share_out(island, trial);
   for (const Index component : island.components) {
     const Range v = assembly_->components()[component].v;
     std::fill(trial.dv_impulses.begin() + v.begin, trial.dv_impulses.begin() + v.end, 0.0);
   }
+}
+
+/// Problems of constraints that share bodies.
+void ContactStage::part_problems(const StepInput& in, const StepIsland& island) {
+  const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
+  const auto alone = [](Index body) { return body; };
+  for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
+    add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
+    problems_[in_use_ - 1].respond(masses_);
+  }
+}
+
+const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
+                                                  const StepRule& rule, StepTrial& trial) {
+  in_use_ = 0;
+  struck_.clear();
+  if (island.constraints.empty()) return nullptr;
+  trial.expect_impulses();
+  part_problems(in, island);
+  for (const Constraint& constraint : island.constraints) {
+    for (int b = 0; b < constraint.bodies; ++b) {
+      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
+      if (struck_.empty() || struck_.back() != body) struck_.push_back(body);
+    }
+  }
+  if (!std::is_sorted(struck_.begin(), struck_.end())) std::sort(struck_.begin(), struck_.end());
+  struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
+  const double* const loads = in.companion.loads.total.data();
+  for (const Index body : struck_) {
+    const BodySlot slot = assembly_->layout()->bodies()[body];
+    std::copy_n(loads + slot.v, slot.v_size, trial.loads_guess.data() + slot.v);
+  }
+  return solve(in, rule, trial);
+}
+
+std::span<const Index> ContactStage::struck(Range bodies) const {
+  if (struck_.empty()) return {};
+  const auto first = std::lower_bound(struck_.begin(), struck_.end(), bodies.begin);
+  return {first, std::lower_bound(first, struck_.end(), bodies.end)};
 }
 
 /// Problems come in the order of their first bodies. Where one has bodies of several blocks, blocks are not

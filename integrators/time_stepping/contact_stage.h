@@ -28,6 +28,13 @@ public:
   /// matrix is still to be made; else bodies answer for themselves, and constraints that share bodies share a
   /// problem
   void state_problems(const StepInput& in, const StepIsland& island, bool together, StepTrial& trial);
+  /// Likewise of an island under constant loads, whose bodies answer for themselves, and solves them.
+  /// Impulses change velocities of the bodies struck() alone. Returns the first problem that is not solved,
+  /// or null.
+  [[nodiscard]] const IslandProblem* solve_constant(const StepInput& in, const StepIsland& island,
+                                                    const StepRule& rule, StepTrial& trial);
+  /// Those of some bodies that have constraints, after solve_constant().
+  [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
   [[nodiscard]] std::span<IslandProblem> problems() { return {problems_.data(), in_use_}; }
   [[nodiscard]] std::span<const IslandProblem> problems() const { return {problems_.data(), in_use_}; }
@@ -52,6 +59,7 @@ public:
 
 private:
   void add_problem(const StepInput& in, std::span<Constraint> constraints);
+  void part_problems(const StepInput& in, const StepIsland& island);
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
   [[nodiscard]] bool solve(const StepInput& in, const StepRule& rule, IslandProblem& problem,
@@ -65,6 +73,7 @@ private:
   bool by_block_ = true;
   Index first_run_ = 0;                // of the component at hand
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any
+  std::vector<Index> struck_;          // ascending
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 };
 

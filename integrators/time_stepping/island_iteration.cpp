@@ -8,7 +8,7 @@ namespace carom {
 
 IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
     : parts_(&parts), stop_(stop), method_(*parts.assembly) {
-  sweeps_.resize(parts.assembly->components().size());
+  sweeps_.assign(parts.assembly->components().size(), 1);
   method_.use(parts.options.iteration);
 }
 

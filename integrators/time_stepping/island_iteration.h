@@ -30,10 +30,8 @@ public:
   /// SolverError, with the trial as it failed.
   [[nodiscard]] LoadsKnown solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
 
-  /// Sweeps that the components of this step needed.
+  /// Sweeps that the components needed when they were iterated last; 1 if they never were.
   [[nodiscard]] const std::vector<int>& sweeps() const { return sweeps_; }
-  /// Takes note of those of a component that was not iterated.
-  void note_sweeps(Index component, int sweeps) { sweeps_[component] = sweeps; }
   /// The most sweeps around contacts alone since the last call.
   [[nodiscard]] int take_local_sweeps() { return std::exchange(local_sweeps_, 0); }
 

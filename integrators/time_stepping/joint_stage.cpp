@@ -93,7 +93,7 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
     correct_impulses(trial);  // for what contact changed
   }
   for (Index i = v.begin; i < v.end; ++i) trial.dv_impulses[i] = arrays.dv_joints[i] + arrays.dv_contact[i];
-  rule.move(in, component_, all.bodies, true, trial);
+  rule.move(in, all.bodies, true, trial);
   trial.swept = true;
   return_to_joints(in, trial);
   return true;

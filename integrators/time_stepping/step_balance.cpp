@@ -37,8 +37,7 @@ bool StepBalance::book_couplings(const StepInput& in, Index component, const Ste
   for (std::size_t i = 0; i < stored_energy_count; ++i)
     stored.values[i] += trial.account.potentials.values[i];
   double total = 0.0, dissipative = 0.0, external = 0.0;
-  for (Index part = 0; part < all.blocks.size(); ++part) {
-    const BlockWorks& works = trial.account.works[part];
+  for (const BlockWorks& works : trial.account.works) {
     stored[StoredEnergy::kinetic] += works.kinetic;
     total += works.total;
     dissipative += works.dissipative;
@@ -201,11 +200,11 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
 }
 
 void StepBalance::book_projection(const GapProjection::Result& result, const StoredEnergies& before,
-                                  const StepTrial& trial) {
+                                  const StoredEnergies& after) {
   result_.report.projected = std::max(result_.report.projected, result.shift);
-  energy_position_projection_ += before.potential() - trial.account.potentials.potential();
+  energy_position_projection_ += before.potential() - after.potential();
   for (std::size_t i = 0; i < stored_energy_count; ++i) {
-    result_.stored.values[i] += trial.account.potentials.values[i] - before.values[i];
+    result_.stored.values[i] += after.values[i] - before.values[i];
   }
 }
 
@@ -259,9 +258,11 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   std::swap(state.z, trial.end.z);
   state.time = end_time;
   PresentLoads& loads = companion.loads;
-  loads.total.swap(trial.loads_end.total);
-  loads.dissipative.swap(trial.loads_end.dissipative);
-  loads.external.swap(trial.loads_end.external);
+  if (memory.guesses) {  // else no loads change
+    loads.total.swap(trial.loads_end.total);
+    loads.dissipative.swap(trial.loads_end.dissipative);
+    loads.external.swap(trial.loads_end.external);
+  }
   loads.valid = true;
   loads.mean = memory.mean;
   // The loads at the start are kept as those to which the next step compares its own.

@@ -48,9 +48,10 @@ public:
   /// Books the impulses of a contact problem. Returns the energy that an impact gained [J], else 0.
   /// \param after velocities at the end as contact sees them
   double book_contacts(const IslandProblem& problem, const double* after, const StepTrial& trial);
-  /// Books that bodies were moved out of ground shapes. \param before energies of the component before
+  /// Books that bodies were moved out of ground shapes. \param before potentials of their component before it
+  /// \param after likewise
   void book_projection(const GapProjection::Result& result, const StoredEnergies& before,
-                       const StepTrial& trial);
+                       const StoredEnergies& after);
   /// Books a change of kinetic energy by bringing velocities back onto joints. \param lost [J]
   void book_velocity_projection(double lost);
 

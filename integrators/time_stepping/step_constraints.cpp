@@ -9,7 +9,7 @@
 namespace carom {
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), detector_(assembly), capture_speed_(options.capture_speed), islands_(assembly) {}
+    : detector_(assembly), capture_speed_(options.capture_speed), islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
@@ -30,11 +30,13 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   std::sort(sticking_.begin(), sticking_.end());
 }
 
-void StepConstraints::find(const StepInput& in, Index component, const StepTrial& trial,
-                           std::vector<Constraint>& out) {
+void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
+                              std::vector<Constraint>& out) {
   const std::size_t first = out.size();
-  detector_.find(component, in.start.view(), trial.at_start, places_, &places_after_, 0.0, out, &lasting_);
-  detector_.find_joint_friction(component, in.start.view(), trial.at_start, out);
+  const StateView start = in.start.view();
+  detector_.find(components, {start, trial.at_start, places_, &places_after_, 0.0, &lasting_}, out);
+  // Components with joints come alone.
+  if (components.size() == 1) detector_.find_joint_friction(components.begin, start, trial.at_start, out);
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   if (detector_.has_static_friction()) {
@@ -47,18 +49,17 @@ void StepConstraints::find(const StepInput& in, Index component, const StepTrial
   if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
 }
 
-void StepConstraints::find(const StepInput& in, const StepTrial& trial) {
+void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
   remember(in, trial.history.step);
   constraints_.clear();
-  for (Index component = 0; component < assembly_->components().size(); ++component) {
-    find(in, component, trial, constraints_);
-  }
-  islands_.find(constraints_);
+  for (const Range batch : batches) find_in(in, batch, trial, constraints_);
+  islands_.find(batches, constraints_);
 }
 
 void StepConstraints::restore(const StepInput& in, const StepIsland& island, const StepTrial& trial) {
   again_.clear();
-  find(in, island.components.front(), trial, again_);
+  const Index component = island.components.front();
+  find_in(in, {component, component + 1}, trial, again_);
   std::copy(again_.begin(), again_.end(), island.constraints.begin());
 }
 

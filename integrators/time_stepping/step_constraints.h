@@ -32,8 +32,8 @@ public:
   void place_surfaces(const StepInput& in);
 
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
-  /// (StepTrial::at_start) must be up to date where asked for.
-  void find(const StepInput& in, const StepTrial& trial);
+  /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
+  void find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
   /// The islands, in the order of their first components. Valid until the next find().
   [[nodiscard]] std::span<const StepIsland> islands() const { return islands_.list(); }
   /// Finds the constraints of an island of one component as they were at the start, for another iteration.
@@ -41,9 +41,8 @@ public:
 
 private:
   void remember(const StepInput& in, double last_step);
-  void find(const StepInput& in, Index component, const StepTrial& trial, std::vector<Constraint>& out);
+  void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
 
-  const Assembly* assembly_;
   Detector detector_;
   double capture_speed_;
   GroundPlaces places_, places_after_;   // at the start; at the end

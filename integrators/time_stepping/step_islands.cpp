@@ -12,52 +12,75 @@ StepIslands::StepIslands(const Assembly& assembly)
   std::iota(alone_.begin(), alone_.end(), Index{0});
 }
 
-void StepIslands::find(std::span<Constraint> constraints) {
+void StepIslands::find(std::span<const Range> batches, std::span<Constraint> constraints) {
   islands_.clear();
   if (std::any_of(constraints.begin(), constraints.end(),
                   [this](const Constraint& constraint) { return joins_components(constraint); })) {
-    return join(constraints);
+    return join(batches, constraints);
   }
+  const auto& components = assembly_->components();
   std::size_t next = 0;
-  for (const Index& component : alone_) {
-    const Index end = assembly_->components()[component].bodies.end;
+  for (const Range& batch : batches) {
+    const Index end = components[batch.end - 1].bodies.end;
     const std::size_t first = next;
     while (next < constraints.size() && constraints[next].body() < end) ++next;
-    islands_.push_back({{&component, 1}, constraints.subspan(first, next - first)});
+    islands_.push_back({std::span(alone_).subspan(batch.begin, batch.size()),
+                        constraints.subspan(first, next - first),
+                        {&batch, 1}});
   }
-}
-
-Index StepIslands::component_of(Index body) const {
-  const auto& all = assembly_->components();
-  const auto at = std::upper_bound(
-      all.begin(), all.end(), body,
-      [](Index wanted, const Component& component) { return wanted < component.bodies.end; });
-  return static_cast<Index>(at - all.begin());
 }
 
 bool StepIslands::joins_components(const Constraint& constraint) const {
+  const Component& first = assembly_->components()[assembly_->component_of(constraint.body())];
   for (int b = 1; b < constraint.bodies; ++b) {
     const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-    if (component_of(body) != component_of(constraint.body())) return true;
+    if (body < first.bodies.begin || body >= first.bodies.end) return true;
   }
   return false;
 }
 
-/// Some islands have several components.
-void StepIslands::join(std::span<Constraint> constraints) {
+/// Some islands have several components. What is left of a batch between them stays together.
+void StepIslands::join(std::span<const Range> batches, std::span<Constraint> constraints) {
+  const auto component_of = [this](Index body) { return assembly_->component_of(body); };
   const auto island = [this](Index component) { return partition_.island_of(component); };
-  const auto count = static_cast<Index>(alone_.size());
-  partition_.arrange(constraints, count, [this](Index body) { return component_of(body); });
+  partition_.arrange(constraints, static_cast<Index>(alone_.size()), component_of);
+  const auto is_alone = [&](std::size_t i) {
+    const bool last = i + 1 == joined_.size() || island(joined_[i + 1]) != island(joined_[i]);
+    return last && island(joined_[i]) == joined_[i];
+  };
   joined_ = alone_;
   std::stable_sort(joined_.begin(), joined_.end(), [&](Index a, Index b) { return island(a) < island(b); });
-  std::size_t next = 0;
+  ranges_.clear();
+  ranges_.reserve(alone_.size());  // they stay where they are
+  std::size_t next = 0, batch = 0;
   for (std::size_t first = 0, last = 0; first < joined_.size(); first = last) {
     const Index name = island(joined_[first]);
     while (last < joined_.size() && island(joined_[last]) == name) ++last;
+    while (joined_[first] >= batches[batch].end) ++batch;
+    // Others that stand alone in the batch.
+    const bool alone = last == first + 1;
+    while (alone && last < joined_.size() && joined_[last] < batches[batch].end && is_alone(last)) ++last;
     const std::size_t begin = next;
-    while (next < constraints.size() && island(component_of(constraints[next].body())) == name) ++next;
-    islands_.push_back({{joined_.data() + first, last - first}, constraints.subspan(begin, next - begin)});
+    const Index behind = last < joined_.size() ? island(joined_[last]) : none;
+    while (next < constraints.size() && island(component_of(constraints[next].body())) < behind) ++next;
+    const std::span<const Index> components(joined_.data() + first, last - first);
+    islands_.push_back({components, constraints.subspan(begin, next - begin),
+                        add_ranges(components, batches.subspan(batch))});
   }
+}
+
+/// Splits components where they do not follow one another, and where a batch ends.
+std::span<const Range> StepIslands::add_ranges(std::span<const Index> components,
+                                               std::span<const Range> batches) {
+  const std::size_t first = ranges_.size();
+  auto batch = batches.begin();
+  for (const Index component : components) {
+    const bool goes_on = ranges_.size() > first && ranges_.back().end == component && component < batch->end;
+    while (component >= batch->end) ++batch;
+    if (!goes_on) ranges_.push_back({component, component});
+    ranges_.back().end = component + 1;
+  }
+  return std::span<const Range>(ranges_).subspan(first);
 }
 
 }  // namespace carom

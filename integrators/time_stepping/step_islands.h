@@ -14,10 +14,11 @@
 
 namespace carom {
 
-/// Components that constraints join, and these.
+/// Components that constraints join, and these; or the components of a batch that none joins to others.
 struct StepIsland {
-  std::span<const Index> components;  ///< ascending
-  std::span<Constraint> constraints;  ///< that act on them
+  std::span<const Index> components;    ///< ascending
+  std::span<Constraint> constraints;    ///< that act on them
+  std::span<const Range> batches = {};  ///< its components again: those of one batch that follow one another
 };
 
 /// Finds islands. Keeps memory.
@@ -26,20 +27,24 @@ public:
   /// \param assembly must outlive it
   explicit StepIslands(const Assembly& assembly);
 
-  /// Finds the islands: every component belongs to one. \param constraints in the order of the components of
-  /// their first bodies; those of an island are brought together, as they came
-  void find(std::span<Constraint> constraints);
+  /// Finds the islands: every component belongs to one.
+  /// \param batches ranges of components, in their order; what constraints join leaves its batch
+  /// \param constraints in the order of the components of their first bodies; those of an island are brought
+  /// together, as they came
+  void find(std::span<const Range> batches, std::span<Constraint> constraints);
   /// The islands, in the order of their first components. Valid until the next find(), as long as the
   /// constraints stay where they are.
   [[nodiscard]] std::span<const StepIsland> list() const { return islands_; }
 
 private:
-  [[nodiscard]] Index component_of(Index body) const;
   [[nodiscard]] bool joins_components(const Constraint& constraint) const;
-  void join(std::span<Constraint> constraints);
+  void join(std::span<const Range> batches, std::span<Constraint> constraints);
+  [[nodiscard]] std::span<const Range> add_ranges(std::span<const Index> components,
+                                                  std::span<const Range> batches);
 
   const Assembly* assembly_;
   std::vector<Index> alone_, joined_;  // components in their order; island by island
+  std::vector<Range> ranges_;          // of joined_
   std::vector<StepIsland> islands_;
   IslandPartition partition_;
 };

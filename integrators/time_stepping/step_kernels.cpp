@@ -101,24 +101,35 @@ void add_change_of_points(const BodyMasses& masses, Index count, double weight, 
   }
 }
 
-void sweep_planar_bodies(const BodyMasses& masses, Index count, double step, const SweepArrays& a) {
+/// Bodies of one kind of sweep. \param turn turn(angle by which a body turns at its mean spin)
+template <bool Response, class Turn>
+void sweep_planar_bodies(const BodyMasses& masses, Index count, double step, const SweepArrays& arrays,
+                         Turn&& turn) {
+  const SweepArrays a = arrays;  // as above
+  const BodyMasses m = masses;
   const double half = 0.5 * step;
-  Index at = 0;
-  for (Index body = 0; body < count; ++body) {
-    const double by_mass = half / masses.mass[masses.stride * body];
-    const double by_inertia = half / masses.inertia[masses.stride * body];
-    for (Index i = 0; i < 3; ++i, ++at) {
-      const double inverse = i < 2 ? by_mass : by_inertia;
-      const double change_of_v =
-          inverse * (a.load0[at] + a.load1[at]) + a.carried[at] + (a.response ? a.response[at] : 0.0);
-      const double v = a.v0[at] + change_of_v;
-      double move = half * (a.v0[at] + v);
-      if (i == 2 && a.rational_turn) move = Space<2>::rational_turn(move);
-      a.cut[at] = static_cast<float>(change_of_v - (v - a.v0[at]));
-      a.q1[at] = a.q0[at] + move;
-      a.v1[at] = v;
-    }
+  for (Index body = 0, at = 0; body < count; ++body, at += 3) {
+    const Pair inverse = both(half) / Pair{m.mass[m.stride * body], m.inertia[m.stride * body]};
+    sweep_pair<Response>(a, at, both(half), both(inverse[0]));
+    const Index angle = at + 2;
+    double change_of_v = inverse[1] * (a.load0[angle] + a.load1[angle]) + a.carried[angle];
+    if constexpr (Response) change_of_v += a.response[angle];
+    const double v = a.v0[angle] + change_of_v;
+    a.cut[angle] = static_cast<float>(change_of_v - (v - a.v0[angle]));
+    a.q1[angle] = a.q0[angle] + turn(half * (a.v0[angle] + v));
+    a.v1[angle] = v;
   }
+}
+
+void sweep_planar_bodies(const BodyMasses& masses, Index count, double step, const SweepArrays& a) {
+  const auto at_rate = [](double angle) { return angle; };
+  const auto rational = [](double angle) { return Space<2>::rational_turn(angle); };
+  if (a.response != nullptr) {
+    if (a.rational_turn) return sweep_planar_bodies<true>(masses, count, step, a, rational);
+    return sweep_planar_bodies<true>(masses, count, step, a, at_rate);
+  }
+  if (a.rational_turn) return sweep_planar_bodies<false>(masses, count, step, a, rational);
+  sweep_planar_bodies<false>(masses, count, step, a, at_rate);
 }
 
 void add_change_of_planar_bodies(const BodyMasses& masses, Index count, double weight, double step,

@@ -44,8 +44,8 @@ struct StepParts {
   }
   /// True if the loads of all components of an island are those at the start.
   [[nodiscard]] bool has_constant_loads(const StepIsland& island) const {
-    return std::all_of(island.components.begin(), island.components.end(), [this](Index component) {
-      return schedule.coupling(component) == CouplingClass::constant_loads;
+    return std::all_of(island.batches.begin(), island.batches.end(), [this](Range batch) {
+      return schedule.coupling(batch.begin) == CouplingClass::constant_loads;
     });
   }
 

@@ -20,23 +20,51 @@ double work(const double* a, const double* b, const State& start, const State& e
   return 0.25 * step * sum;
 }
 
+/// The same of loads that are `loads` at both ends: sums that do not wait for each other.
+double work(const double* loads, const State& start, const State& end, Range v, double step) {
+  Pair first = both(0.0), second = both(0.0);
+  const auto pair = [&](Index i) {
+    const Pair load = load_pair(loads + i);
+    return (load_pair(start.v.data() + i) + load_pair(end.v.data() + i)) * (load + load);
+  };
+  Index i = v.begin;
+  for (; i + 3 < v.end; i += 4) {
+    first += pair(i);
+    second += pair(i + 2);
+  }
+  if (i + 1 < v.end) {
+    first += pair(i);
+    i += 2;
+  }
+  first += second;
+  double sum = first[0] + first[1];
+  if (i < v.end) sum += (start.v[i] + end.v[i]) * (loads[i] + loads[i]);
+  return 0.25 * step * sum;
+}
+
+double kinetic_energy(const StepInput& in, Range bodies, const StepTrial& trial) {
+  double sum = 0.0;
+  in.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
+  });
+  return sum;
+}
+
 }  // namespace
 
-void StepRule::move(const StepInput& in, Index component, Range bodies, bool with_impulses,
-                    StepTrial& trial) const {
-  const double* const load0 = start_of_sum(in, trial);
-  in.assembly.for_bodies(component, bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+void StepRule::move(const StepInput& in, Range bodies, const double* load0, const double* load1,
+                    bool with_impulses, StepTrial& trial) const {
+  in.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     sweep_bodies(kind.masses(slots.begin), slots.size(), in.step,
                  {in.start.q.data() + q, in.start.v.data() + v, in.companion.rounding.data() + v, load0 + v,
-                  trial.loads_guess.data() + v, with_impulses ? trial.dv_impulses.data() + v : nullptr,
-                  trial.end.q.data() + q, trial.end.v.data() + v, trial.rounding.data() + v, is_mean()});
+                  load1 + v, with_impulses ? trial.dv_impulses.data() + v : nullptr, trial.end.q.data() + q,
+                  trial.end.v.data() + v, trial.rounding.data() + v, is_mean()});
   });
 }
 
-SweepChange StepRule::next_change(const StepInput& in, Index component, Range bodies,
-                                  const StepTrial& trial) const {
+SweepChange StepRule::next_change(const StepInput& in, Range bodies, const StepTrial& trial) const {
   SweepChange change;
-  in.assembly.for_bodies(component, bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+  in.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     add_next_change(kind.masses(slots.begin), slots.size(), impulse_weight(in.step), in.step,
                     {trial.loads_guess.data() + v, trial.loads_end.total.data() + v, trial.end.q.data() + q,
                      trial.end.v.data() + v},
@@ -45,8 +73,7 @@ SweepChange StepRule::next_change(const StepInput& in, Index component, Range bo
   return change;
 }
 
-BlockWorks StepRule::works(const StepInput& in, Index component, const Block& block,
-                           const StepTrial& trial) const {
+BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTrial& trial) const {
   const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
     if (at_end.empty()) return 0.0;
     const double* const first = is_mean() ? at_end.data() : at_start.data();
@@ -56,10 +83,16 @@ BlockWorks StepRule::works(const StepInput& in, Index component, const Block& bl
   sums.total = work(start_of_sum(in, trial), trial.loads_guess.data(), in.start, trial.end, block.v, in.step);
   sums.dissipative = of_cause(in.companion.loads.dissipative, trial.loads_end.dissipative);
   sums.external = of_cause(in.companion.loads.external, trial.loads_end.external);
-  in.assembly.for_bodies(component, block.bodies,
-                         [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-                           sums.kinetic += kind.kinetic_energy(slots, trial.end.v.data() + v);
-                         });
+  sums.kinetic = kinetic_energy(in, block.bodies, trial);
+  return sums;
+}
+
+BlockWorks StepRule::works_constant(const StepInput& in, Range bodies, Range v,
+                                    const StepTrial& trial) const {
+  const double* const loads = in.companion.loads.total.data();
+  BlockWorks sums{};
+  sums.total = work(loads, in.start, trial.end, v, in.step);
+  sums.kinetic = kinetic_energy(in, bodies, trial);
   return sums;
 }
 

@@ -49,19 +49,30 @@ public:
   [[nodiscard]] const double* start_of_sum(const StepInput& in, const StepTrial& trial) const {
     return is_mean() ? trial.loads_guess.data() : in.companion.loads.total.data();
   }
-  /// Velocities, then positions of some bodies of a component by the loads of the guess.
+  /// Velocities, then positions of some bodies by the loads of the guess.
   /// \param with_impulses whether impulses have changed velocities there (StepTrial::dv_impulses)
-  void move(const StepInput& in, Index component, Range bodies, bool with_impulses, StepTrial& trial) const;
+  void move(const StepInput& in, Range bodies, bool with_impulses, StepTrial& trial) const {
+    move(in, bodies, start_of_sum(in, trial), trial.loads_guess.data(), with_impulses, trial);
+  }
+  /// Likewise by the loads at the start, which do not change.
+  void move_constant(const StepInput& in, Range bodies, bool with_impulses, StepTrial& trial) const {
+    const double* const loads = in.companion.loads.total.data();
+    move(in, bodies, loads, loads, with_impulses, trial);
+  }
   /// Change that another move would make, by the loads that the guess led to: velocities by M^-1 times their
   /// change, coordinates by h/2 times that, which is less than h times it.
-  [[nodiscard]] SweepChange next_change(const StepInput& in, Index component, Range bodies,
-                                        const StepTrial& trial) const;
+  [[nodiscard]] SweepChange next_change(const StepInput& in, Range bodies, const StepTrial& trial) const;
   /// Works of the loads over a block: the total is that of the impulse that acted; its parts by cause are
   /// those of the loads that it led to, and what the iteration left open counts as conservative.
-  [[nodiscard]] BlockWorks works(const StepInput& in, Index component, const Block& block,
-                                 const StepTrial& trial) const;
+  [[nodiscard]] BlockWorks works(const StepInput& in, const Block& block, const StepTrial& trial) const;
+  /// Works of loads that do not change over some bodies, whose velocities are `v`.
+  [[nodiscard]] BlockWorks works_constant(const StepInput& in, Range bodies, Range v,
+                                          const StepTrial& trial) const;
 
 private:
+  void move(const StepInput& in, Range bodies, const double* load0, const double* load1, bool with_impulses,
+            StepTrial& trial) const;
+
   ForceRule rule_;
 };
 

@@ -27,6 +27,11 @@ void LoadsAtEnd::finish(Range v) {
   add(total, external, v);
 }
 
+void TrialAccount::start(Index parts) {
+  works.resize(parts);
+  potentials = {};
+}
+
 StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean) {
   StepNeeds needs;
   bool joints = false;
@@ -58,11 +63,6 @@ StepTrial::StepTrial(const Assembly& assembly, const StepNeeds& model)
     at_midpoint.rotation.resize(rotations);
   }
   recorded.resize(assembly.blocks().size());
-  Index most_blocks = 1;
-  for (const Component& component : assembly.components()) {
-    most_blocks = std::max(most_blocks, component.blocks.size());
-  }
-  account.works.resize(most_blocks);
 }
 
 void StepTrial::begin(const StepInput& in, LoadHistory& from) {

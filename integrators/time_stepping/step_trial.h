@@ -35,9 +35,13 @@ struct BlockWorks {
 };
 
 /// Works and energies of the last iterate of a component.
-struct TrialAccount {
-  std::vector<BlockWorks> works;  ///< by block
-  StoredEnergies potentials;      ///< by cause
+struct CAROM_API TrialAccount {
+  std::vector<BlockWorks> works;          ///< by block, or by part of a batch
+  std::vector<StoredEnergies> of_fields;  ///< potentials, by part of a batch
+  StoredEnergies potentials;              ///< all, by cause
+
+  /// Forgets what was, and makes room. \param parts blocks, or parts of a batch
+  void start(Index parts);
 };
 
 /// Quantities of which the model of a run needs some: they save what nobody asks for.

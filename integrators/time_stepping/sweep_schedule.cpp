@@ -9,9 +9,19 @@
 
 namespace carom {
 
+namespace {
+
+/// True if loads at the start of a step are those at its end, and conservative.
+bool stays_as_it_is(const ForceKind& kind) {
+  return kind.is_constant() && !kind.depends_on_time() && !kind.books_external() && !kind.books_dissipative();
+}
+
+}  // namespace
+
 SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs)
     : assembly_(&assembly), workers_(std::max(options.threads, 1)) {
   classify(options, needs);
+  find_batches();
   Index most_blocks = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -30,15 +40,31 @@ void SweepSchedule::classify(const TimeStepping& options, const StepNeeds& needs
     if (assembly.has_joints(component) || !assembly.components()[component].z.empty()) continue;
     coupling_[component] = CouplingClass::constant_loads;
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      if (assembly.elements(component, kind).empty() || assembly.force_kinds()[kind]->is_constant()) continue;
+      if (assembly.elements(component, kind).empty() || stays_as_it_is(*assembly.force_kinds()[kind]))
+        continue;
       coupling_[component] = CouplingClass::streamable;
     }
   }
 }
 
-bool SweepSchedule::any_iterated() const {
-  return std::any_of(coupling_.begin(), coupling_.end(),
-                     [](CouplingClass coupling) { return coupling != CouplingClass::constant_loads; });
+/// Parts of a batch need fields that can be evaluated in parts.
+void SweepSchedule::find_batches() {
+  any_iterated_ = std::any_of(coupling_.begin(), coupling_.end(), [](CouplingClass coupling) {
+    return coupling != CouplingClass::constant_loads;
+  });
+  const auto& kinds = assembly_->force_kinds();
+  const bool in_parts = std::all_of(kinds.begin(), kinds.end(), [](const auto& kind) {
+    return !kind->is_field() || kind->works_in_parts();
+  });
+  for (const Range batch : assembly_->batches()) {
+    if (in_parts && coupling_[batch.begin] == CouplingClass::constant_loads) {
+      batches_.push_back(batch);
+      continue;
+    }
+    for (Index component = batch.begin; component < batch.end; ++component) {
+      batches_.push_back({component, component + 1});
+    }
+  }
 }
 
 bool SweepSchedule::may_fuse(const SweepStages& stages, int sweeps, int expected) const {
@@ -57,10 +83,29 @@ void SweepSchedule::improve(const SweepStages& stages) const {
   for_blocks(stages, [&](const Block& block, Index) { stages.improve(block); });
 }
 
-void SweepSchedule::finish_constant(const SweepStages& stages) const {
-  for_blocks(stages, [&](const Block& block, Index part) {
-    stages.trial.account.works[part] = stages.rule.works(stages.in, stages.component, block, stages.trial);
-  });
+void SweepSchedule::run(const ConstantStages& stages) const {
+  const Range all = stages.bodies();
+  constexpr Index size = BlockTable::block_size;
+  const Index parts = (all.size() + size - 1) / size;
+  stages.trial.account.start(parts);
+  if (stages.components.size() > 1) stages.trial.account.of_fields.resize(parts);
+  const auto& components = assembly_->components();
+  const Range v{components[stages.components.begin].v.begin, components[stages.components.end - 1].v.end};
+  const auto run_part = [&](Range some, Range velocities, Index part) {
+    if (any_iterated_) stages.load(velocities);
+    stages.move(some);
+    stages.finish(some, velocities, part);
+  };
+  if (parts == 1) {
+    run_part(all, v, 0);
+  } else {
+    const BodySlots& bodies = assembly_->layout()->bodies();
+    workers_.for_each(parts, [&](Index part) {
+      const Index first = all.begin + part * size, end = std::min(first + size, all.end);
+      run_part({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, part);
+    });
+  }
+  stages.close();
 }
 
 SweepChange SweepSchedule::largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const {
@@ -84,7 +129,7 @@ void SweepSchedule::evaluate(const SweepStages& stages, LoadsKnown asked, bool w
   };
   const Loads loads = by_cause ? trial.loads_end.by_cause() : trial.loads_end.in_one();
   const BlockTasks tasks{first, last};
-  if (by_cause) trial.account.potentials = {};
+  if (by_cause) trial.account.start(stages.blocks().size());
   if (stages.rule.is_mean()) {
     trial.with_step(stages.in, component, [&](const StepContext& at) {
       evaluate_mean_loads(*assembly_, component, at, loads, workers_, tasks);
@@ -126,7 +171,7 @@ void SweepSchedule::fuse(const SweepStages& stages, bool guessing) {
     stages.finish(block, part);
     changes_[part] = stages.change(block);
   };
-  trial.account.potentials = {};
+  trial.account.start(stages.blocks().size());
   evaluate_loads_twice(*assembly_, stages.component, trial.end.view(), trial.at_end, trial.loads_end.in_one(),
                        {first, compare}, trial.loads_end.by_cause(), {again, last}, trial.account.potentials,
                        workers_);
@@ -184,15 +229,15 @@ int SweepSchedule::presolve_around_contacts(const SweepStages& stages, double to
       const SweepChange next = stages.change(assembly_->blocks()[index]);
       largest.take(next);
       stages.improve(assembly_->blocks()[index]);
-      local_[index - blocks.begin] = settled;
+      local_[index - blocks.begin] = swept;
       return next.change <= tolerance;
     });
     if (judge.judge(largest.change, largest.size) != FixedPointJudge::Verdict::go_on) break;
   }
-  // Blocks that do not settle are left to the iteration, which says why.
-  const bool settles = std::isfinite(judge.change()) && judge.contraction() < 1.0;
+  // Blocks that do not converge are left to the iteration, which says why.
+  const bool contracts = std::isfinite(judge.change()) && judge.contraction() < 1.0;
   for (Index part = 0; part < blocks.size(); ++part) {
-    local_[part] = settles && local_[part] == settled ? settled : untouched;
+    local_[part] = contracts && local_[part] == swept ? swept : untouched;
   }
   return judge.sweeps();
 }

@@ -20,6 +20,7 @@
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/sweep_stages.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -41,8 +42,11 @@ public:
 
   /// Coupling of a component.
   [[nodiscard]] CouplingClass coupling(Index component) const { return coupling_[component]; }
+  /// Components that a step takes in one loop, in their order: batches of uncoupled bodies whose loads are
+  /// constant; each other component by itself.
+  [[nodiscard]] std::span<const Range> batches() const { return batches_; }
   /// True if a component is coupled by loads that change.
-  [[nodiscard]] bool any_iterated() const;
+  [[nodiscard]] bool any_iterated() const { return any_iterated_; }
   /// True if a sweep that was preceded by so many may be fused with the next.
   [[nodiscard]] bool may_fuse(const SweepStages& stages, int sweeps, int expected) const;
 
@@ -52,8 +56,8 @@ public:
   void move(const SweepStages& stages) const;
   /// The loads that the guess led to become the guess, of all blocks.
   void improve(const SweepStages& stages) const;
-  /// Works of loads that are the same at both ends.
-  void finish_constant(const SweepStages& stages) const;
+  /// The step of bodies under constant loads, part by part, and its account.
+  void run(const ConstantStages& stages) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);
   /// One sweep, block by block, and its loads. \param guessing whether it begins with a guess
@@ -80,6 +84,7 @@ private:
     workers_.for_each(blocks.size(), [&](Index part) { f(assembly_->blocks()[blocks.begin + part], part); });
   }
   void classify(const TimeStepping& options, const StepNeeds& needs);
+  void find_batches();
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes, BlockTask first);
   [[nodiscard]] SweepChange largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const;
   int presolve_around_contacts(const SweepStages& stages, double tolerance);
@@ -88,9 +93,11 @@ private:
 
   const Assembly* assembly_;
   Workers workers_;
-  std::vector<CouplingClass> coupling_;                 // by component
+  std::vector<CouplingClass> coupling_;  // by component
+  bool any_iterated_ = false;
+  std::vector<Range> batches_;
   std::vector<SweepChange> changes_, earlier_changes_;  // by block of a component; of the sweep before
-  enum Local : std::uint8_t { untouched, guessed, settled };
+  enum Local : std::uint8_t { untouched, guessed, swept };
   std::vector<std::uint8_t> local_;  // by block of a component: Local, of presolve()
   Surroundings upset_;               // blocks around contacts
 };

@@ -1,10 +1,12 @@
 // Problem: one step t_j -> t_{j+1} (Johansson 1999, section 4). Stages are named functions of a range and
 // hand values on; `in` never changes, whatever is thrown, and the trial of a step that fails is asked for the
-// cause.
+// cause. From here: the iteration is island_iteration.cpp, the law of impact contact/solvers/solver_chain.cpp
+// and the solvers that it calls.
 
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace carom {
@@ -39,7 +41,8 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 
 StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
-  parts_.constraints.find(in, parts_.trial);  // gaps <= 0, joint limits, dry friction, at t_j
+  // gaps <= 0, joint limits, dry friction, at t_j
+  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
   return balance_.finish(in);  // works of what acted, records
 }
@@ -55,19 +58,19 @@ void TimeStepper::prepare(const StepInput& in) {
   } catch (const SolverError& error) {
     fail_motion(error, in);
   }
-  if (!parts_.trial.needs.start_rotations) return;
-  for (Index component = 0; component < in.assembly.components().size(); ++component) {
-    evaluate_positions(in.assembly, component, in.start.view(), parts_.trial.at_start);
+  if (parts_.trial.needs.start_rotations) {
+    evaluate_positions(in.assembly, in.start.view(), parts_.trial.at_start);
   }
 }
 
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
   FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
   const bool automatic = parts_.options.iteration == Iteration::automatic;
+  const bool constant = parts_.has_constant_loads(island);
   // Islands of several components are swept, whatever the iteration.
-  const bool swept = island.components.size() > 1 || (automatic && parts_.has_constant_loads(island));
+  const bool swept = island.components.size() > 1 || (automatic && constant);
   if (swept || !automatic) iteration_.use(swept ? Iteration::fixed_point : parts_.options.iteration);
-  if (parts_.has_constant_loads(island)) {
+  if (constant) {
     advance_under_constant_loads(island, in);
     static_cast<void>(judge.judge(0.0, 0.0));
   } else if (automatic && !swept) {
@@ -76,8 +79,10 @@ void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
     book(island, in, iteration_.solve(island, in, judge));
   }
   StepReport& report = balance_.report();
-  for (const Index component : island.components) {
-    couplings_.rate(in, component, judge.contraction(), parts_.trial, report);
+  if (!constant) {
+    for (const Index component : island.components) {
+      couplings_.rate(in, component, judge.contraction(), parts_.trial, report);
+    }
   }
   report.iteration = std::max(report.iteration, iteration_.current());
   report.sweeps = std::max(report.sweeps, judge.sweeps());
@@ -115,41 +120,43 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
 
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.
 void TimeStepper::advance_under_constant_loads(const StepIsland& island, const StepInput& in) {
-  parts_.contacts.state_problems(in, island, false, parts_.trial);
-  const std::vector<double>& loads = in.companion.loads.total;
-  for (const Index component : island.components) {
-    const Range v = parts_.assembly->components()[component].v;
-    std::copy(loads.begin() + v.begin, loads.begin() + v.end, parts_.trial.loads_guess.begin() + v.begin);
-    std::copy(loads.begin() + v.begin, loads.begin() + v.end, parts_.trial.loads_end.total.begin() + v.begin);
-    iteration_.note_sweeps(component, 1);
+  parts_.trial.swept = false;
+  if (const IslandProblem* const failed =
+          parts_.contacts.solve_constant(in, island, parts_.rule, parts_.trial)) {
+    parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
   }
-  if (const IslandProblem* const failed = parts_.contacts.solve(in, parts_.rule, parts_.trial)) {
-    parts_.errors(in, island.components.front()).fail_contact(*failed);
+  for (const Range components : island.batches) {
+    parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
+    parts_.trial.swept = true;
+    if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   }
-  for (const Index component : island.components) parts_.schedule.move(parts_.stages(in, component));
-  parts_.trial.swept = true;
-  book(island, in, LoadsKnown::total);
+  book_contacts(island, in);
+  if (parts_.options.project_gaps) project_positions(island, in);
+}
+
+/// Names the cause in the first component of which an energy is not finite.
+void TimeStepper::fail_account(Range components, const StepInput& in) {
+  for (Index component = components.begin; component < components.end; ++component) {
+    StoredEnergies stored;
+    evaluate_positions(in.assembly, component, parts_.trial.end.view(), parts_.trial.at_end);
+    add_stored_energies(in.assembly, component, parts_.trial.end.view(), parts_.trial.at_end, stored);
+    if (!std::isfinite(stored.total())) parts_.errors(in, component).fail_account();
+  }
+  parts_.errors(in, components.begin).fail_account();
 }
 
 /// Books the island, and moves its bodies out of ground shapes where that is asked for.
 void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown known) {
   for (const Index component : island.components) {
     const SweepStages at = parts_.stages(in, component);
-    if (parts_.has_constant_loads(island)) {
-      parts_.trial.account.potentials = {};
-      add_potentials(*parts_.assembly, component, parts_.trial.end.view(), parts_.trial.at_end,
-                     parts_.trial.account.potentials);
-      parts_.schedule.finish_constant(at);
-    } else if (known == LoadsKnown::total) {
-      parts_.schedule.evaluate(at, LoadsKnown::by_cause, false);
-    }
-    if (!balance_.book_couplings(in, component, parts_.trial)) parts_.errors(in, component).fail_account();
+    if (known == LoadsKnown::total) parts_.schedule.evaluate(at, LoadsKnown::by_cause, false);
+    if (!balance_.book_couplings(in, component, parts_.trial)) fail_account({component, component + 1}, in);
     if (JointStage* const joints = parts_.joints.of(component)) {
       balance_.book_joints(in, component, *joints, parts_.problem(), parts_.trial);
     }
   }
   book_contacts(island, in);
-  if (parts_.options.project_gaps && !island.constraints.empty()) project_positions(island, in);
+  if (parts_.options.project_gaps) project_positions(island, in);
 }
 
 void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
@@ -167,29 +174,38 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 
 /// Bodies of contacts that took part are moved by the smallest displacement, along their joints.
 void TimeStepper::project_positions(const StepIsland& island, const StepInput& in) {
-  const Assembly& assembly = *parts_.assembly;
-  for (const Index component : island.components) {
-    evaluate_positions(assembly, component, parts_.trial.end.view(), parts_.trial.at_end);
-    JointStage* const stage = parts_.joints.of(component);
-    JointConstraints none_there;
-    JointConstraints& joints = stage != nullptr ? stage->rows().at_end() : none_there;
-    const GapProjection::Result result = projection_.project(
-        assembly, component, parts_.constraints.detector(), parts_.constraints.places_at_end(),
-        {island.constraints}, parts_.contacts.chain(), parts_.trial.end, parts_.trial.at_end, joints);
-    if (result.left != nullptr) parts_.errors(in, component).fail_projection(*result.left);
-    if (!result.moved) continue;
-    if (stage != nullptr) balance_.book_velocity_projection(stage->project_velocities(parts_.trial));
-    const StoredEnergies before = parts_.trial.account.potentials;
-    if (parts_.rule.is_mean()) {
-      // The mean loads are those that acted.
-      parts_.trial.account.potentials = {};
-      add_potentials(assembly, component, parts_.trial.end.view(), parts_.trial.at_end,
-                     parts_.trial.account.potentials);
-    } else {
-      parts_.schedule.evaluate(parts_.stages(in, component), LoadsKnown::by_cause, false);
-    }
-    balance_.book_projection(result, before, parts_.trial);
+  const auto component_of = [&](const Constraint& at) { return in.assembly.component_of(at.body()); };
+  for (std::size_t first = 0, last = 0; first < island.constraints.size(); first = last) {
+    const Index component = component_of(island.constraints[first]);
+    while (last < island.constraints.size() && component_of(island.constraints[last]) == component) ++last;
+    project_component(component, island.constraints.subspan(first, last - first), in);
   }
+}
+
+void TimeStepper::project_component(Index component, std::span<const Constraint> constraints,
+                                    const StepInput& in) {
+  const Assembly& assembly = *parts_.assembly;
+  const auto potentials = [&] {
+    StoredEnergies sum;
+    add_potentials(assembly, component, parts_.trial.end.view(), parts_.trial.at_end, sum);
+    return sum;
+  };
+  evaluate_positions(assembly, component, parts_.trial.end.view(), parts_.trial.at_end);
+  const StoredEnergies before = potentials();
+  JointStage* const stage = parts_.joints.of(component);
+  JointConstraints none_there;
+  JointConstraints& joints = stage != nullptr ? stage->rows().at_end() : none_there;
+  const GapProjection::Result result = projection_.project(
+      assembly, component, parts_.constraints.detector(), parts_.constraints.places_at_end(), {constraints},
+      parts_.contacts.chain(), parts_.trial.end, parts_.trial.at_end, joints);
+  if (result.left != nullptr) parts_.errors(in, component).fail_projection(*result.left);
+  if (!result.moved) return;
+  if (stage != nullptr) balance_.book_velocity_projection(stage->project_velocities(parts_.trial));
+  // Mean loads are those that acted.
+  if (!parts_.rule.is_mean()) {
+    parts_.schedule.evaluate(parts_.stages(in, component), LoadsKnown::by_cause, false);
+  }
+  balance_.book_projection(result, before, potentials());
 }
 
 /// Loads at the start, where the last step did not leave them: a function of the state.

@@ -28,6 +28,8 @@
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 
+#include <span>
+
 namespace carom {
 
 /// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion,
@@ -51,9 +53,11 @@ private:
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
+  [[noreturn]] void fail_account(Range components, const StepInput& in);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void project_positions(const StepIsland& island, const StepInput& in);
+  void project_component(Index component, std::span<const Constraint> constraints, const StepInput& in);
   void evaluate_start(const State& state, Companion& companion);
 
   StepParts parts_;

@@ -18,8 +18,10 @@ using namespace carom::planar;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Surface law{.friction = 0.5, .normal_restitution = 0.5};
 
-/// A chain of particles and rigid bodies at random places over a floor and beside a wall: one component.
-System random_chain(carom_test::Random& random, int bodies) {
+enum class Joined { to_a_chain, not_at_all };
+
+/// Particles and rigid bodies at random places over a floor and beside a wall.
+System random_bodies(carom_test::Random& random, int bodies, Joined joined) {
   System system;
   system.add(HalfPlane{.normal = {0, 1}}, law);
   system.add(HalfPlane{.normal = {1, 0.2}}, law);
@@ -29,10 +31,14 @@ System random_chain(carom_test::Random& random, int bodies) {
     if (i % 7 == 3) {
       next = system.add(RigidBody{.mass = box(1.0, 0.2, 0.1), .position = random.vec<2>(), .angle = 0.1 * i});
       system.add(Segment{.body = next, .from = {-0.1, 0.0}, .to = {0.1, 0.05}});
+    } else if (i > bodies / 2) {
+      next = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = random.vec<2>()});
+      system.add(Disc{.body = next, .radius = 0.01 * (i % 10 + 1)});
     } else {
       next = system.add(Particle{.mass = 1.0, .position = random.vec<2>(), .contact = i % 11 != 5});
     }
-    if (i > 0) system.add(SpringDamper{.from = last, .to = next, .stiffness = 1.0});
+    if (i > 0 && joined == Joined::to_a_chain)
+      system.add(SpringDamper{.from = last, .to = next, .stiffness = 1.0});
     last = next;
   }
   return system;
@@ -42,16 +48,19 @@ System random_chain(carom_test::Random& random, int bodies) {
 TEST(GroundContacts, FindAllPairsThatTouch) {
   carom_test::Random random(4201);
   for (int repeat = 0; repeat < 20; ++repeat) {
-    const carom_test::PlacedModel model(random_chain(random, 90));
-    ASSERT_EQ(model.assembly.components().size(), 1U);
+    const Joined joined = repeat % 2 == 0 ? Joined::to_a_chain : Joined::not_at_all;
+    const carom_test::PlacedModel model(random_bodies(random, 90, joined));
+    const auto components = static_cast<Index>(model.assembly.components().size());
+    ASSERT_EQ(components, joined == Joined::to_a_chain ? 1U : 90U);
     const GroundContacts contacts(model.assembly);
     EXPECT_TRUE(contacts.needs_rotations());
     std::vector<ContactPair> pairs;
-    contacts.append_pairs(0, pairs);
+    for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
     const GroundPlaces places;
     for (const double margin : {-0.9, 0.0, 0.1, infinity}) {
       std::vector<Constraint> found;
-      contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, margin, nullptr}, found);
+      contacts.find({0, components}, {model.state.view(), model.evaluation, places, nullptr, margin, nullptr},
+                    found);
       std::size_t next = 0;
       for (const ContactPair& pair : pairs) {
         Constraint at;
@@ -92,7 +101,7 @@ TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
   EXPECT_TRUE(contacts.has_static_friction());
   const GroundPlaces places;
   std::vector<Constraint> found;
-  contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, 0.0, nullptr}, found);
+  contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, 0.0, nullptr}, found);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].friction, curve.friction_at(0.3));
 }
@@ -106,7 +115,7 @@ TEST(GroundContacts, InSpaceRowsAreAFrame) {
   const GroundContacts contacts(model.assembly);
   const GroundPlaces places;
   std::vector<Constraint> found;
-  contacts.find(0, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);
+  contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].rows, 3);
   EXPECT_NEAR(found[0].gap, 3.6, 1e-14);

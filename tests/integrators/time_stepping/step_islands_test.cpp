@@ -45,9 +45,10 @@ std::vector<Index> components(const StepIsland& island) {
 TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
   const Assembly assembly = particles();
   StepIslands islands(assembly);
+  const std::vector<Range> alone{{0, 1}, {1, 2}, {2, 3}, {3, 4}};
   std::vector<Constraint> list{contact(assembly, {0}), contact(assembly, {1, 3}), contact(assembly, {2}),
                                contact(assembly, {3})};
-  islands.find(list);
+  islands.find(alone, list);
   ASSERT_EQ(islands.list().size(), 3u);
   EXPECT_EQ(components(islands.list()[0]), (std::vector<Index>{0}));
   EXPECT_EQ(components(islands.list()[1]), (std::vector<Index>{1, 3}));
@@ -58,16 +59,53 @@ TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
   EXPECT_EQ(islands.list()[2].constraints[0].body(), 2u);
   // Without the constraint in the next step everybody stands alone again; a chain joins all.
   list = {contact(assembly, {0}), contact(assembly, {3})};
-  islands.find(list);
+  islands.find(alone, list);
   ASSERT_EQ(islands.list().size(), 4u);
   for (Index i = 0; i < 4; ++i) {
     EXPECT_EQ(components(islands.list()[i]), (std::vector<Index>{i}));
     EXPECT_EQ(islands.list()[i].constraints.size(), i == 0 || i == 3 ? 1u : 0u);
   }
   list = {contact(assembly, {0, 1}), contact(assembly, {1, 2}), contact(assembly, {2, 3})};
-  islands.find(list);
+  islands.find(alone, list);
   ASSERT_EQ(islands.list().size(), 1u);
   EXPECT_EQ(islands.list()[0].constraints.size(), 3u);
+}
+
+/// Uncoupled bodies are one island; what a constraint joins leaves it for as long as it acts.
+TEST(StepIslands, BatchesStayTogetherUnlessConstraintsJoin) {
+  System system;
+  for (int i = 0; i < 6; ++i) system.add(Particle{.mass = 1.0, .position = {1.0 * i, 0.0}});
+  const Assembly assembly(std::move(system));
+  ASSERT_EQ(assembly.batches().size(), 1u);
+  StepIslands islands(assembly);
+  std::vector<Constraint> list{contact(assembly, {1}), contact(assembly, {4})};
+  islands.find(assembly.batches(), list);
+  ASSERT_EQ(islands.list().size(), 1u);
+  EXPECT_EQ(islands.list()[0].components.size(), 6u);
+  EXPECT_EQ(islands.list()[0].constraints.size(), 2u);
+  ASSERT_EQ(islands.list()[0].batches.size(), 1u);
+  EXPECT_EQ(islands.list()[0].batches[0].size(), 6u);
+
+  list = {contact(assembly, {1}), contact(assembly, {2, 4}), contact(assembly, {3}), contact(assembly, {5})};
+  islands.find(assembly.batches(), list);
+  ASSERT_EQ(islands.list().size(), 3u);
+  EXPECT_EQ(components(islands.list()[0]), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(components(islands.list()[1]), (std::vector<Index>{2, 4}));
+  EXPECT_EQ(components(islands.list()[2]), (std::vector<Index>{3, 5}));
+  for (const StepIsland& island : islands.list()) {
+    std::vector<Index> again;
+    for (const Range range : island.batches) {
+      for (Index component = range.begin; component < range.end; ++component) again.push_back(component);
+    }
+    EXPECT_EQ(again, components(island));
+  }
+  ASSERT_EQ(islands.list()[0].constraints.size(), 1u);
+  EXPECT_EQ(islands.list()[0].constraints[0].body(), 1u);
+  ASSERT_EQ(islands.list()[1].constraints.size(), 1u);
+  EXPECT_EQ(islands.list()[1].constraints[0].bodies, 2);
+  ASSERT_EQ(islands.list()[2].constraints.size(), 2u);
+  EXPECT_EQ(islands.list()[2].constraints[0].body(), 3u);
+  EXPECT_EQ(islands.list()[2].constraints[1].body(), 5u);
 }
 
 /// Two pairs of particles on springs, the left one running into the right one; a spring without stiffness

@@ -69,7 +69,7 @@ public:
         {companion_.loads.total.data(), companion_.loads.dissipative.data(), companion_.loads.total.data()});
     for (std::size_t i = 0; i < size; ++i) companion_.loads.total[i] += companion_.loads.dissipative[i];
     trial_.begin(in_, companion_.history);
-    constraints_.find(in_, trial_);
+    constraints_.find(in_, schedule_.batches(), trial_);
     contacts_.state_problems(in_, constraints_.islands().front(), false, trial_);
   }
   [[nodiscard]] SweepStages stages() { return {in_, rule_, 0, contacts_, trial_}; }

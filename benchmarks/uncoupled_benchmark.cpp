@@ -1,0 +1,131 @@
+// Free discs over a floor, in time stepping: time per disc and step, beside one loop by hand that does the
+// same sweep and account, and beside the same discs as one component.
+//
+// Names: <what>/<N> for N discs. `per_disc` is in seconds, over one step.
+
+#include <carom/carom.h>
+
+#include "benchmarks/allocation_meter.h"
+#include "benchmarks/discs.h"
+#include "benchmarks/plain_discs.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+namespace {
+
+constexpr double radius = 0.01;  // [m]
+constexpr double height = 50.0;  // of the centres; nothing comes to the floor [m]
+constexpr double step = 1e-4;    // [s]
+constexpr double longest = 1.0;  // then a run starts anew [s]
+
+enum class Joined { not_at_all, by_springs };
+
+carom::System discs(int count, Joined joined, double above) {
+  namespace planar = carom::planar;
+  carom::System system;
+  system.add(planar::Gravity{.acceleration = {0.0, -benchmarks::disc_gravity}});
+  system.add(planar::HalfPlane{.point = {0.0, 0.0}, .normal = {0.0, 1.0}},
+             carom::Surface{.friction = 0.3, .normal_restitution = 0.5});
+  std::vector<carom::BodyId> bodies;
+  for (int i = 0; i < count; ++i) {
+    const auto mass = planar::disc(benchmarks::disc_density * radius * radius, radius);
+    bodies.push_back(system.add(planar::RigidBody{.mass = mass,
+                                                  .position = benchmarks::disc_position(i, radius, above),
+                                                  .velocity = {benchmarks::disc_speed, 0.0},
+                                                  .spin = benchmarks::disc_spin}));
+    system.add(planar::Disc{.body = bodies.back(), .radius = radius});
+  }
+  if (joined == Joined::not_at_all) return system;
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    system.add(planar::SpringDamper{.from = {bodies[i - 1]}, .to = {bodies[i]}, .stiffness = 1e-3});
+  }
+  return system;
+}
+
+void count_discs(benchmark::State& state) {
+  using benchmark::Counter;
+  state.counters["per_disc"] =
+      Counter(static_cast<double>(state.range(0)), Counter::kIsIterationInvariantRate | Counter::kInvert);
+}
+
+void time_steps(benchmark::State& state, Joined joined, double above) {
+  carom::Simulation simulation(discs(static_cast<int>(state.range(0)), joined, above),
+                               carom::TimeStepping{.step = step});
+  simulation.step();
+  const carom::State begin = simulation.state();
+  std::int64_t allocations = 0;
+  std::size_t contacts = 0;
+  for (auto _ : state) {
+    if (simulation.time() > longest) {
+      state.PauseTiming();
+      simulation.set_state(begin);
+      state.ResumeTiming();
+    }
+    const std::int64_t before = benchmarks::allocations();
+    contacts += simulation.step().contacts.size();
+    allocations += benchmarks::allocations() - before;
+  }
+  count_discs(state);
+  using benchmark::Counter;
+  state.counters["contacts"] = Counter(static_cast<double>(contacts), Counter::kAvgIterations);
+  state.counters["allocations"] = Counter(static_cast<double>(allocations), Counter::kAvgIterations);
+}
+
+void uncoupled(benchmark::State& state) { time_steps(state, Joined::not_at_all, height); }
+void uncoupled_rolling(benchmark::State& state) { time_steps(state, Joined::not_at_all, radius); }
+void one_component(benchmark::State& state) { time_steps(state, Joined::by_springs, height); }
+
+// Both sides go the same way, or their ratio says nothing.
+void demand_equal_motion() {
+  constexpr int count = 150, steps = 30;
+  carom::Simulation simulation(discs(count, Joined::not_at_all, height), carom::TimeStepping{.step = step});
+  benchmarks::PlainDiscs plain(count, radius, height);
+  for (int i = 0; i < steps; ++i) {
+    simulation.step();
+    benchmarks::plain_step_with_gaps(plain, radius, step);
+  }
+  for (std::size_t i = 0; i < plain.q.size(); ++i) {
+    if (!(std::abs(plain.q[i] - simulation.state().q[i]) <= 1e-12)) {
+      throw std::logic_error("discs by hand and by library part");
+    }
+  }
+  const double difference = plain.kinetic + plain.potential - simulation.energy().total();
+  if (!(std::abs(difference) <= 1e-10)) throw std::logic_error("energies by hand and by library part");
+}
+
+template <class Step>
+void time_plain(benchmark::State& state, Step&& make_step) {
+  static const bool checked = (demand_equal_motion(), true);
+  static_cast<void>(checked);
+  benchmarks::PlainDiscs plain(static_cast<int>(state.range(0)), radius, height);
+  for (auto _ : state) {
+    make_step(plain);
+    benchmark::ClobberMemory();
+  }
+  count_discs(state);
+}
+
+void by_hand(benchmark::State& state) {
+  time_plain(state, [](benchmarks::PlainDiscs& plain) { benchmarks::plain_step(plain, step); });
+}
+void by_hand_with_gaps(benchmark::State& state) {
+  time_plain(state,
+             [](benchmarks::PlainDiscs& plain) { benchmarks::plain_step_with_gaps(plain, radius, step); });
+}
+
+void sizes(benchmark::internal::Benchmark* timed) {
+  for (const int n : {100, 2000, 10000}) timed->Arg(n);
+}
+
+BENCHMARK(by_hand)->Apply(sizes);
+BENCHMARK(by_hand_with_gaps)->Apply(sizes);
+BENCHMARK(uncoupled)->Apply(sizes);
+BENCHMARK(uncoupled_rolling)->Apply(sizes);
+BENCHMARK(one_component)->Arg(2000);
+
+}  // namespace
