@@ -26,12 +26,12 @@ void answer_alone(std::span<const ImpulseDirection> directions, const double* ma
 }
 
 /// Products of rows and columns of one body of S velocities. \param lower of the lower triangle, mirrored
-/// \param size number of them, if known when this is compiled
-template <int S, std::size_t size = 0>
+/// \tparam N number of them, if known when this is compiled
+template <int S, std::size_t N = 0>
 void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
               double* matrix) {
-  if (size == 0 && directions.size() == 2) return multiply<S, 2>(directions, responses, lower, matrix);
-  const std::size_t n = size != 0 ? size : directions.size();
+  if (N == 0 && directions.size() == 2) return multiply<S, 2>(directions, responses, lower, matrix);
+  const std::size_t n = N != 0 ? N : directions.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double* const row = directions[i].constraint->row(directions[i].row);
     const double* response = responses;
