@@ -76,7 +76,7 @@ struct Constraint {
     int columns = 0;    ///< its velocities
   };
 
-  // What every contact problem asks for comes first and close together.
+  // Numbers that every contact problem reads come first and close together.
   ConstraintKey key;                                    ///< identity
   ConstraintType type = ConstraintType::contact;        ///< origin
   int rows = 0;                                         ///< of a contact 2 in the plane, 3 in space

@@ -34,7 +34,8 @@ struct CAROM_API EvaluationContext {
   const Evaluation& evaluation;  ///< its derived quantities; those of position are up to date
   Index component;               ///< the component the elements belong to
   Range reach;                   ///< all bodies of the component
-  Range bodies;                  ///< for a field, the bodies of the component that it acts on; all if empty
+  Range bodies;  ///< for a field, the bodies that it acts on; all of the component if empty. For
+                 ///< a potential they may be uncoupled bodies of several components
 
   /// Throws the ModelError of an element that looks at a body outside its component.
   [[noreturn]] void refuse_unnamed(BodyId body) const;
