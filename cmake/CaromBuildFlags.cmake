@@ -19,6 +19,13 @@ function(carom_add_build_flags target)
   if(type STREQUAL "SHARED_LIBRARY" AND NOT APPLE)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
     target_link_options(${target} PRIVATE -Wl,-Bsymbolic-functions)
+    # A structure of some hundred bytes is set and copied by plain moves: the string instructions that GCC takes
+    # instead begin slowly, and a step of one body has several of them.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+      set(set_plainly "vector_loop:2048:noalign,libcall:-1:noalign")
+      set(copy_plainly "unrolled_loop:2048:noalign,libcall:-1:noalign")
+      target_compile_options(${target} PRIVATE -mmemset-strategy=${set_plainly} -mmemcpy-strategy=${copy_plainly})
+    endif()
   endif()
 
   target_compile_options(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace carom {
 
@@ -13,14 +14,15 @@ namespace {
 template <int S>
 void answer_alone(std::span<const ImpulseDirection> directions, const double* mass, const double* inertia,
                   double* x) {
+  const double m = *mass, i = *inertia;
   for (const ImpulseDirection& direction : directions) {
     const Constraint& at = *direction.constraint;
-    const double* const number = at.row(direction.row);
-    const double* const tangent = at.row(at.tangent_row());
-    for (int c = 0; c < S; ++c) {
-      const double along = direction.ratio != 0.0 ? number[c] + direction.ratio * tangent[c] : number[c];
-      x[c] = along / (c < 2 ? *mass : *inertia);
+    std::copy_n(at.row(direction.row), S, x);
+    if (direction.ratio != 0.0) {
+      const double* const tangent = at.row(at.tangent_row());
+      for (int c = 0; c < S; ++c) x[c] += direction.ratio * tangent[c];
     }
+    for (int c = 0; c < S; ++c) x[c] /= c < 2 ? m : i;
     x += S;
   }
 }
@@ -31,6 +33,7 @@ template <int S, std::size_t N = 0>
 void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
               double* matrix) {
   if (N == 0 && directions.size() == 2) return multiply<S, 2>(directions, responses, lower, matrix);
+  if (N == 0 && directions.size() == 1) return multiply<S, 1>(directions, responses, lower, matrix);
   const std::size_t n = N != 0 ? N : directions.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double* const row = directions[i].constraint->row(directions[i].row);
@@ -44,6 +47,15 @@ void multiply(std::span<const ImpulseDirection> directions, const double* respon
   }
 }
 
+/// Adds responses of one body of S velocities.
+template <int S>
+void add_alone(const double* responses, std::span<const double> impulses, double scale, double* x) {
+  for (const double number : impulses) {
+    const double impulse = scale * number;
+    for (int c = 0; c < S; ++c) x[c] += *responses++ * impulse;
+  }
+}
+
 }  // namespace
 
 /// Responses of one body that answers for itself, the usual case, in a tight loop. Returns the number of its
@@ -51,16 +63,17 @@ void multiply(std::span<const ImpulseDirection> directions, const double* respon
 int Delassus::build_of_one_body(const BodyResponse& response) {
   if (directions_.empty()) return 0;
   const Constraint::Block& block = directions_.front().constraint->blocks[0];
+  const Constraint* last = nullptr;
   for (const ImpulseDirection& direction : directions_) {
-    const Constraint& at = *direction.constraint;
-    if (at.bodies != 1 || at.blocks[0].body != block.body) return 0;
+    if (std::exchange(last, direction.constraint) == direction.constraint) continue;
+    if (last->bodies != 1 || last->blocks[0].body != block.body) return 0;
   }
   const BodyMasses masses = response.alone(block.body);
   if (masses.mass == nullptr || masses.layout == BodyMasses::Layout::spatial_points) return 0;
   common_ = {block.v, block.v + static_cast<Index>(block.columns)};
   responses_.resize(size() * common_.size());
   if (masses.layout == BodyMasses::Layout::planar_points) {
-    answer_alone<2>(directions_, masses.mass, nullptr, responses_.data());
+    answer_alone<2>(directions_, masses.mass, masses.mass, responses_.data());
   } else {
     answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
   }
@@ -265,6 +278,10 @@ void Delassus::write(double* matrix) const {
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
+  if (velocities_of_one_ == 3)
+    return add_alone<3>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
+  if (velocities_of_one_ == 2)
+    return add_alone<2>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
   const auto add = [&](const double* response, double impulse, Range v) {
     for (Index i = v.begin; i < v.end; ++i) x[i] += *response++ * impulse;
   };

@@ -21,42 +21,45 @@ bool is_one_planar_contact(const ContactProblem& problem) {
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = false;
-  // The same form as before is the hot path.
-  const bool same_form =
-      constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_);
-  if (same_form) {
-    problem_.sets()[1].coefficient = constraints[0].friction;
-  } else {
-    directions_.clear();
-    first_row_.clear();
-    int rows = 0;
-    for (const Constraint& constraint : constraints) {
-      first_row_.push_back(rows);
-      rows += constraint.rows;
-    }
-    const auto count = static_cast<std::size_t>(rows);
-    problem_.reset(rows);
-    before_.resize(count);
-    restitution_.resize(count);
-    answer_.impulse.resize(count);
-    slides_.assign(constraints.size(), 0.0);
+  if (constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_)) {
+    return take_one_planar(constraints[0], velocity_before);
   }
+  directions_.clear();
+  first_row_.clear();
+  int rows = 0;
+  for (const Constraint& constraint : constraints) {
+    first_row_.push_back(rows);
+    rows += constraint.rows;
+  }
+  const auto count = static_cast<std::size_t>(rows);
+  problem_.reset(rows);
+  before_.resize(count);
+  restitution_.resize(count);
+  answer_.impulse.assign(count, 0.0);
+  slides_.assign(constraints.size(), 0.0);
   std::size_t row = 0;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
-    const Constraint& constraint = constraints[c];
-    for (int i = 0; i < constraint.rows; ++i, ++row) {
-      if (same_form) {
-        directions_[row].constraint = &constraint;
-      } else {
-        directions_.push_back({&constraint, i});
-        set_row(c, i);
-      }
-      before_[row] = constraint.velocity(i, velocity_before);
-      restitution_[row] = constraint.restitution(i);
-      answer_.impulse[row] = 0.0;
+    for (int i = 0; i < constraints[c].rows; ++i, ++row) {
+      directions_.push_back({&constraints[c], i});
+      set_row(c, i);
+      before_[row] = constraints[c].velocity(i, velocity_before);
+      restitution_[row] = constraints[c].restitution(i);
     }
   }
-  if (!same_form) problem_.group();
+  problem_.group();
+}
+
+/// The hot path: one planar contact after another, so that only its numbers need to be filled in.
+void IslandProblem::take_one_planar(const Constraint& contact, const double* velocity_before) {
+  problem_.sets()[1].coefficient = contact.friction;
+  restitution_[0] = contact.law.normal_restitution;
+  restitution_[1] = contact.law.tangential_restitution;
+  for (int i = 0; i < 2; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    directions_[row].constraint = &contact;
+    before_[row] = contact.velocity(i, velocity_before);
+    answer_.impulse[row] = 0.0;
+  }
 }
 
 /// The set that impulses along a row lie in.
@@ -101,22 +104,18 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
-  for (std::size_t c = 0; c < constraints_.size(); ++c) {
-    const Constraint& constraint = constraints_[c];
-    for (int i = 0; i < constraint.rows; ++i) {
-      const auto row = static_cast<std::size_t>(first_row_[c] + i);
-      b[row] = constraint.velocity_after(i, velocity_free) + restitution_[row] * before_[row];
-    }
-    if (constraint.allowed_approach > 0.0) {
-      b[static_cast<std::size_t>(first_row_[c])] += constraint.allowed_approach;
-    }
-    for (int i = 0; i < constraint.rows; ++i) {
+  const auto matrix = problem_.matrix();
+  const std::size_t diagonal = b.size() + 1;
+  std::size_t row = 0;
+  for (const Constraint& constraint : constraints_) {
+    for (int i = 0; i < constraint.rows; ++i, ++row) {
       // Of what joints hold fast, against what moves around it, or has moved before [m/s].
       constexpr double rounding = 1e-9, least = 1e-10;
-      const int row = first_row_[c] + i;
-      double& number = b[static_cast<std::size_t>(row)];
-      if (problem_.w(row, row) != 0.0) continue;
-      if (std::abs(number) <= rounding * constraint.speed(i, velocity_free) + least) number = 0.0;
+      double number = constraint.velocity_after(i, velocity_free) + restitution_[row] * before_[row];
+      if (i == 0 && constraint.allowed_approach > 0.0) number += constraint.allowed_approach;
+      const bool held = matrix[diagonal * row] == 0.0;
+      if (held && std::abs(number) <= rounding * constraint.speed(i, velocity_free) + least) number = 0.0;
+      b[row] = number;
     }
   }
 }

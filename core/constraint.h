@@ -189,6 +189,15 @@ private:
   /// Calls f(number of row i, its place among all velocities).
   template <class F>
   void for_columns(int i, F&& f) const {
+    constexpr int of_planar_body = 3;
+    if (bodies == 1 && blocks[0].columns == of_planar_body) {  // the usual case, without loops
+      const double* const h = jacobian.data() + of_planar_body * i;
+      const Index v = blocks[0].v;
+      f(h[0], v);
+      f(h[1], v + 1);
+      f(h[2], v + 2);
+      return;
+    }
     const double* h = row(i);
     for (int b = 0; b < bodies; ++b) {
       const Block& block = blocks[static_cast<std::size_t>(b)];

@@ -72,6 +72,8 @@ public:
   }
   /// True if there is any in a component.
   [[nodiscard]] bool has_dry_friction(Index component) const { return joints_.has_friction(component); }
+  /// True if there is any at all.
+  [[nodiscard]] bool has_dry_friction() const { return joints_.has_friction(); }
   /// Brings the row of friction in a joint to a configuration, and its drift.
   void update_friction_rows(const JointView& at, Constraint& contact) const {
     joints_.update_friction(at, contact);

@@ -81,6 +81,15 @@ void GroundContacts::for_runs(Range components, F&& f) const {
   }
 }
 
+/// True if no body touches at its bare centre.
+bool GroundContacts::only_points(Range components) const {
+  const Range own = features_.of(components).centres;
+  for (Index i = own.begin; i < own.end; ++i) {
+    if (features_.centres()[i].points == none) return false;
+  }
+  return true;
+}
+
 template <int D>
 void GroundContacts::find_in(Range components, const ContactQuery& query,
                              std::vector<Constraint>& out) const {
@@ -91,6 +100,9 @@ void GroundContacts::find_in(Range components, const ContactQuery& query,
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
   const auto add_point = [&](Index i) { add<D>(bodies[points[i].body], points[i], query, out); };
+  if (features_.of(components).points.size() <= hardly_any && only_points(components)) {
+    return rest.before(none, add_point);
+  }
   for_runs(components, [&](const CentreRun& centres) {
     const bool rounded = centres.points != none;
     if (rounded) {

@@ -52,6 +52,7 @@ private:
             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
   template <class F>
   void for_runs(Range components, F&& f) const;
+  [[nodiscard]] bool only_points(Range components) const;
   // Whether any of some neighbours in a run may have a contact.
   [[nodiscard]] bool any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const;
 

@@ -270,15 +270,21 @@ SolverChain::SolverChain(SolverChain&&) noexcept = default;
 SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
 
 ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
+  ContactReport report;
+  solve(problem, impulse, report);
+  return report;
+}
+
+/// The report is built where the caller reads it: copying it would cost as much as solving a contact.
+void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report) {
   demand_grouped(problem, impulse);
   Workspace& work = *work_;
-  // One report, built where the caller reads it: copying it would cost as much as solving a contact.
-  ContactReport report;
+  report = {};
   if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
       problem.sets()[1].kind == SetKind::bounded_interval && work.solve_regular(problem, impulse, report)) {
-    return report;
+    return;
   }
-  if (!work.begin(problem, impulse, report)) return report;
+  if (!work.begin(problem, impulse, report)) return;
   Workspace::Attempt attempt{.report = report};
   const SolverId first =
       problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
@@ -290,7 +296,6 @@ ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double
   }
   work.conclude(problem, impulse, attempt);
   work.count(attempt);
-  return report;
 }
 
 void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution) {
@@ -311,7 +316,7 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
     work.start.assign(solution.impulse.begin(), solution.impulse.end());
     work.start_modes.assign(solution.modes.begin(), solution.modes.end());
   }
-  report = solve(problem, solution.impulse);
+  solve(problem, solution.impulse, report);
   solution.modes.assign(work.modes.begin(), work.modes.end());
   solution.changed_modes = warm && solution.modes != work.start_modes;
   if (!solution.changed_modes || several || !keep(work.start_modes, work.start)) return;

@@ -100,6 +100,8 @@ public:
   void reset_statistics();
 
 private:
+  void solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+
   struct Workspace;
   std::unique_ptr<Workspace> work_;
 };

@@ -28,8 +28,16 @@ FullPivoting::Pivot FullPivoting::choose_pivot(std::size_t step) const {
   return best;
 }
 
+/// One equation, without the search.
+bool FullPivoting::solve_one(double& right) {
+  rank_ = std::abs(matrix_[0]) > 0.0 ? 1 : 0;
+  right = rank_ == 1 ? right / matrix_[0] : 0.0;
+  return std::isfinite(right);
+}
+
 bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   const std::size_t n = size();
+  if (n == 1) return solve_one(right[0]);
   double largest = 0.0;
   for (std::size_t step = 0; step < n; ++step) {
     const Pivot pivot = choose_pivot(step);

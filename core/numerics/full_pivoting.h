@@ -37,6 +37,7 @@ private:
   [[nodiscard]] double entry(std::size_t i, std::size_t j) const {
     return matrix_[row_order_[i] * size() + column_order_[j]];
   }
+  [[nodiscard]] bool solve_one(double& right);
   struct Pivot {
     std::size_t row, column;  // in the order of elimination
     double size;

@@ -44,6 +44,10 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
 void ContactStage::part_problems(const StepInput& in, const StepIsland& island) {
   const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
   const auto alone = [](Index body) { return body; };
+  if (island.constraints.size() == 1) {
+    add_problem(in, island.constraints);
+    return problems_[in_use_ - 1].respond(masses_);
+  }
   for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
     add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
     problems_[in_use_ - 1].respond(masses_);
@@ -51,7 +55,7 @@ void ContactStage::part_problems(const StepInput& in, const StepIsland& island) 
 }
 
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
-                                                  const StepRule& rule, StepTrial& trial) {
+                                                  StepTrial& trial) {
   in_use_ = 0;
   struck_.clear();
   if (island.constraints.empty()) return nullptr;
@@ -66,11 +70,10 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
   if (!std::is_sorted(struck_.begin(), struck_.end())) std::sort(struck_.begin(), struck_.end());
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
   const double* const loads = in.companion.loads.total.data();
-  for (const Index body : struck_) {
-    const BodySlot slot = assembly_->layout()->bodies()[body];
-    std::copy_n(loads + slot.v, slot.v_size, trial.loads_guess.data() + slot.v);
+  for (IslandProblem& problem : problems()) {
+    if (!solve(in, {loads, loads}, problem, chains_.front(), trial)) return &problem;
   }
-  return solve(in, rule, trial);
+  return nullptr;
 }
 
 std::span<const Index> ContactStage::struck(Range bodies) const {
@@ -123,38 +126,42 @@ bool ContactStage::touches(Index part) const {
 void ContactStage::solve_block(const StepInput& in, const StepRule& rule, const Block& block, Index part,
                                StepTrial& trial) {
   if (!touches(part)) return;
+  const EndLoads loads{rule.start_of_sum(in, trial), trial.loads_guess.data()};
   for (Index i = block_problems_[part].begin; i < block_problems_[part].end; ++i) {
-    static_cast<void>(solve(in, rule, problems_[i], chains_[block.run - first_run_], trial));
+    static_cast<void>(solve(in, loads, problems_[i], chains_[block.run - first_run_], trial));
   }
 }
 
 const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  const EndLoads loads{rule.start_of_sum(in, trial), trial.loads_guess.data()};
   for (IslandProblem& problem : problems()) {
-    if (!solve(in, rule, problem, chains_.front(), trial)) return &problem;
+    if (!solve(in, loads, problem, chains_.front(), trial)) return &problem;
   }
   return nullptr;
 }
 
 /// Bodies answer for themselves: v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of those of the problem. False if
 /// there are no impulses.
-bool ContactStage::solve(const StepInput& in, const StepRule& rule, IslandProblem& problem,
+bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
   const double half = 0.5 * in.step;
-  const double* const load0 = rule.start_of_sum(in, trial);
+  double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
+  const float* const rounding = in.companion.rounding.data();
+  const double* const start = in.start.v.data();
   Index last = none;
   for (const Constraint& constraint : problem.constraints()) {
     for (int b = 0; b < constraint.bodies; ++b) {
-      if (constraint.blocks[static_cast<std::size_t>(b)].body == last) continue;
-      last = constraint.blocks[static_cast<std::size_t>(b)].body;
-      const BodySlot& body = assembly_->layout()->bodies()[last];
-      for (Index k = body.v; k < body.v + body.v_size; ++k) {
-        trial.dv_impulses[k] = half * (load0[k] + trial.loads_guess[k]);
-      }
-      assembly_->body_kinds()[body.kind]->apply_inverse_mass(
-          {body.slot, body.slot + 1}, trial.dv_impulses.data() + body.v, trial.free.data() + body.v);
-      for (Index k = body.v; k < body.v + body.v_size; ++k) {
-        trial.free[k] += static_cast<double>(in.companion.rounding[k]) + in.start.v[k];
-        trial.dv_impulses[k] = 0.0;
+      const Constraint::Block& block = constraint.blocks[static_cast<std::size_t>(b)];
+      if (block.body == last) continue;
+      last = block.body;
+      const BodySlot body = assembly_->layout()->bodies()[last];
+      const Index end = block.v + static_cast<Index>(block.columns);
+      for (Index k = block.v; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
+      assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv + block.v,
+                                                             free + block.v);
+      for (Index k = block.v; k < end; ++k) {
+        free[k] += static_cast<double>(rounding[k]) + start[k];
+        dv[k] = 0.0;
       }
     }
   }
@@ -173,9 +180,10 @@ const IslandProblem* ContactStage::first_unsolved() const {
 
 void ContactStage::add_statistics(ChainStatistics& sum) {
   for (SolverChain& chain : chains_) {
-    if (chain.statistics().problems > 0) sum += chain.statistics();
+    if (chain.statistics().problems == 0) continue;
+    sum += chain.statistics();
+    chain.reset_statistics();
   }
-  forget_statistics();
 }
 
 void ContactStage::forget_statistics() {

@@ -32,7 +32,7 @@ public:
   /// Impulses change velocities of the bodies struck() alone. Returns the first problem that is not solved,
   /// or null.
   [[nodiscard]] const IslandProblem* solve_constant(const StepInput& in, const StepIsland& island,
-                                                    const StepRule& rule, StepTrial& trial);
+                                                    StepTrial& trial);
   /// Those of some bodies that have constraints, after solve_constant().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
@@ -58,11 +58,16 @@ public:
   void forget_statistics();
 
 private:
+  // Loads at both ends of a step, over all velocities.
+  struct EndLoads {
+    const double* start;
+    const double* end;
+  };
   void add_problem(const StepInput& in, std::span<Constraint> constraints);
   void part_problems(const StepInput& in, const StepIsland& island);
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
-  [[nodiscard]] bool solve(const StepInput& in, const StepRule& rule, IslandProblem& problem,
+  [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 
   const Assembly* assembly_;

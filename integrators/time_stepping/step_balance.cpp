@@ -185,11 +185,12 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   entry.gap = at.gap;
   for (int row = 0; row < at.rows; ++row) {
     const auto direction = static_cast<std::size_t>(row);
-    entry.velocity_before[direction] = map.before(contact, row);
-    entry.velocity_after[direction] = at.velocity_after(row, after);
-    entry.impulse[direction] = map.impulse(contact, row);
-    entry.work[direction] = impulse_work(entry.impulse[direction], entry.velocity_before[direction],
-                                         entry.velocity_after[direction]);
+    const double before = map.before(contact, row), with = at.velocity_after(row, after);
+    const double impulse = map.impulse(contact, row);
+    entry.velocity_before[direction] = before;
+    entry.velocity_after[direction] = with;
+    entry.impulse[direction] = impulse;
+    entry.work[direction] = impulse_work(impulse, before, with);
   }
   entry.mode = problem.modes()[contact];
   entry.impact = entry.velocity_before[0] < -capture_speed_;
@@ -253,36 +254,35 @@ void add_to(Statistics& statistics, const StepReport& report) {
 void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
+  result.report.findings.swap(report.findings);
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
   std::swap(state.z, trial.end.z);
   state.time = end_time;
   PresentLoads& loads = companion.loads;
+  loads.valid = true;
+  loads.mean = memory.mean;
+  companion.history.step = step;
   if (memory.guesses) {  // else no loads change
     loads.total.swap(trial.loads_end.total);
     loads.dissipative.swap(trial.loads_end.dissipative);
     loads.external.swap(trial.loads_end.external);
-  }
-  loads.valid = true;
-  loads.mean = memory.mean;
-  // The loads at the start are kept as those to which the next step compares its own.
-  companion.history = std::move(trial.history);
-  companion.history.sweeps.assign(memory.sweeps.begin(), memory.sweeps.end());
-  if (memory.guesses) {
+    // The loads at the start are kept as those to which the next step compares its own.
+    companion.history = std::move(trial.history);
+    companion.history.sweeps.assign(memory.sweeps.begin(), memory.sweeps.end());
     companion.history.go_on(step, trial.loads_end.total.size());
     companion.history.before.swap(trial.loads_end.total);
+    companion.iterations.swap(memory.iterations);
   } else {
-    companion.history.step = step;
+    companion.iterations.clear();
   }
   std::swap(companion.rounding, trial.rounding);
-  companion.iterations.swap(memory.iterations);
   companion.ledger.book(result.flows, result.stored);
   companion.modes = result.joint_friction_modes;
   for (const ContactRecord& contact : result.report.contacts) {
     companion.modes.emplace_back(contact.key, contact.mode);
   }
   add_to(companion.statistics, result.report);
-  result.report.findings.swap(report.findings);
   std::swap(report, result.report);
 }
 

@@ -9,7 +9,10 @@
 namespace carom {
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : detector_(assembly), capture_speed_(options.capture_speed), islands_(assembly) {}
+    : detector_(assembly),
+      capture_speed_(options.capture_speed),
+      joint_friction_(detector_.has_dry_friction()),
+      islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
@@ -34,9 +37,11 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
                               std::vector<Constraint>& out) {
   const std::size_t first = out.size();
   const StateView start = in.start.view();
-  detector_.find(components, {start, trial.at_start, places_, &places_after_, 0.0, &lasting_}, out);
+  const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
+  detector_.find(components, {start, trial.at_start, places_, &places_after_, 0.0, lasting}, out);
   // Components with joints come alone.
-  if (components.size() == 1) detector_.find_joint_friction(components.begin, start, trial.at_start, out);
+  if (joint_friction_ && components.size() == 1)
+    detector_.find_joint_friction(components.begin, start, trial.at_start, out);
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   if (detector_.has_static_friction()) {
@@ -50,7 +55,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
 }
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
-  remember(in, trial.history.step);
+  remember(in, in.last_step);
   constraints_.clear();
   for (const Range batch : batches) find_in(in, batch, trial, constraints_);
   islands_.find(batches, constraints_);

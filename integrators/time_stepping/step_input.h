@@ -16,6 +16,7 @@ struct StepInput {
   const Companion& companion;  ///< at t_j; its history of loads is with the trial
   double step;                 ///< h [s]
   double end_time;             ///< t_{j+1} [s]
+  double last_step = 0.0;      ///< length of the step before [s]
 };
 
 }  // namespace carom

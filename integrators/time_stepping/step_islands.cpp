@@ -13,24 +13,32 @@ StepIslands::StepIslands(const Assembly& assembly)
 }
 
 void StepIslands::find(std::span<const Range> batches, std::span<Constraint> constraints) {
-  islands_.clear();
   if (std::any_of(constraints.begin(), constraints.end(),
                   [this](const Constraint& constraint) { return joins_components(constraint); })) {
     return join(batches, constraints);
   }
+  if (apart_ != batches.data() || islands_.size() != batches.size()) part(batches);
   const auto& components = assembly_->components();
   std::size_t next = 0;
-  for (const Range& batch : batches) {
-    const Index end = components[batch.end - 1].bodies.end;
+  for (StepIsland& island : islands_) {
+    const Index end = components[island.batches.front().end - 1].bodies.end;
     const std::size_t first = next;
     while (next < constraints.size() && constraints[next].body() < end) ++next;
-    islands_.push_back({std::span(alone_).subspan(batch.begin, batch.size()),
-                        constraints.subspan(first, next - first),
-                        {&batch, 1}});
+    island.constraints = constraints.subspan(first, next - first);
   }
 }
 
+/// Every batch is an island.
+void StepIslands::part(std::span<const Range> batches) {
+  islands_.clear();
+  for (const Range& batch : batches) {
+    islands_.push_back({std::span(alone_).subspan(batch.begin, batch.size()), {}, {&batch, 1}});
+  }
+  apart_ = batches.data();
+}
+
 bool StepIslands::joins_components(const Constraint& constraint) const {
+  if (constraint.bodies == 1) return false;
   const Component& first = assembly_->components()[assembly_->component_of(constraint.body())];
   for (int b = 1; b < constraint.bodies; ++b) {
     const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
@@ -50,6 +58,8 @@ void StepIslands::join(std::span<const Range> batches, std::span<Constraint> con
   };
   joined_ = alone_;
   std::stable_sort(joined_.begin(), joined_.end(), [&](Index a, Index b) { return island(a) < island(b); });
+  islands_.clear();
+  apart_ = nullptr;
   ranges_.clear();
   ranges_.reserve(alone_.size());  // they stay where they are
   std::size_t next = 0, batch = 0;

@@ -28,7 +28,8 @@ public:
   explicit StepIslands(const Assembly& assembly);
 
   /// Finds the islands: every component belongs to one.
-  /// \param batches ranges of components, in their order; what constraints join leaves its batch
+  /// \param batches ranges of components, in their order, that stay where and as they are as long as this is
+  /// used; what constraints join leaves its batch
   /// \param constraints in the order of the components of their first bodies; those of an island are brought
   /// together, as they came
   void find(std::span<const Range> batches, std::span<Constraint> constraints);
@@ -38,6 +39,7 @@ public:
 
 private:
   [[nodiscard]] bool joins_components(const Constraint& constraint) const;
+  void part(std::span<const Range> batches);
   void join(std::span<const Range> batches, std::span<Constraint> constraints);
   [[nodiscard]] std::span<const Range> add_ranges(std::span<const Index> components,
                                                   std::span<const Range> batches);
@@ -46,6 +48,7 @@ private:
   std::vector<Index> alone_, joined_;  // components in their order; island by island
   std::vector<Range> ranges_;          // of joined_
   std::vector<StepIsland> islands_;
+  const Range* apart_ = nullptr;  // the batches that are the islands; null where constraints join some
   IslandPartition partition_;
 };
 

@@ -87,13 +87,11 @@ BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTr
   return sums;
 }
 
-BlockWorks StepRule::works_constant(const StepInput& in, Range bodies, Range v,
-                                    const StepTrial& trial) const {
-  const double* const loads = in.companion.loads.total.data();
-  BlockWorks sums{};
-  sums.total = work(loads, in.start, trial.end, v, in.step);
-  sums.kinetic = kinetic_energy(in, bodies, trial);
-  return sums;
+void StepRule::works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
+                              BlockWorks& out) const {
+  out.total = work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
+  out.kinetic = kinetic_energy(in, bodies, trial);
+  out.dissipative = out.external = 0.0;
 }
 
 }  // namespace carom

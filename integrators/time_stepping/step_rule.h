@@ -66,8 +66,8 @@ public:
   /// those of the loads that it led to, and what the iteration left open counts as conservative.
   [[nodiscard]] BlockWorks works(const StepInput& in, const Block& block, const StepTrial& trial) const;
   /// Works of loads that do not change over some bodies, whose velocities are `v`.
-  [[nodiscard]] BlockWorks works_constant(const StepInput& in, Range bodies, Range v,
-                                          const StepTrial& trial) const;
+  void works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
+                      BlockWorks& out) const;
 
 private:
   void move(const StepInput& in, Range bodies, const double* load0, const double* load1, bool with_impulses,

@@ -65,8 +65,13 @@ StepTrial::StepTrial(const Assembly& assembly, const StepNeeds& model)
   recorded.resize(assembly.blocks().size());
 }
 
-void StepTrial::begin(const StepInput& in, LoadHistory& from) {
+void StepTrial::begin(const StepInput& in) {
   end.time = in.end_time;
+  loads_end.total.resize(end.v.size());
+}
+
+void StepTrial::begin(const StepInput& in, LoadHistory& from) {
+  begin(in);
   history = std::move(from);
   if (history.known == 0) history.pending = false;
   // The room of loads whose change is recorded just before it is written over.

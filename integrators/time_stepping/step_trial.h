@@ -59,7 +59,9 @@ struct StepNeeds {
 struct CAROM_API StepTrial {
   StepTrial(const Assembly& assembly, const StepNeeds& model);
 
-  /// Takes over the history of loads and forgets the step before. \param in the next step
+  /// Forgets the step before. \param in the next step, of which no loads are guessed
+  void begin(const StepInput& in);
+  /// Likewise where loads are guessed: takes over their history.
   void begin(const StepInput& in, LoadHistory& history);
   /// Gives the history back after a step that failed: nothing in it is pending any more.
   void give_back(const StepInput& in, LoadHistory& history);
@@ -91,7 +93,7 @@ struct CAROM_API StepTrial {
   std::vector<double> dv_impulses;     ///< changes of velocity by impulses; empty until anything touches
   std::vector<double> free;            ///< velocities without them, likewise
   TrialAccount account;                ///< of the component at hand
-  LoadHistory history;                 ///< of the companion, during a step
+  LoadHistory history;                 ///< of the companion, during a step in which loads are guessed
   std::vector<std::uint8_t> recorded;  ///< by block: its part of the last change, where that is pending
   bool swept = false;                  ///< `end` is an iterate of the component at hand
 

@@ -74,7 +74,7 @@ struct ConstantStages {
   }
   /// Works of the loads, energies at the end.
   void finish(Range some, Range v, Index part) const {
-    trial.account.works[part] = rule.works_constant(in, some, v, trial);
+    rule.works_constant(in, some, v, trial, trial.account.works[part]);
     if (components.size() == 1) return;
     trial.account.of_fields[part] = {};
     add_field_potentials(in.assembly, some, trial.end.view(), trial.at_end, trial.account.of_fields[part]);

@@ -23,20 +23,30 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   evaluate_start(state, companion);
-  const StepInput in{*parts_.assembly, state, companion, step, end_time};
-  parts_.trial.begin(in, companion.history);
+  const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
+  if (memory_.guesses) {
+    parts_.trial.begin(in, companion.history);
+  } else {
+    parts_.trial.begin(in);
+  }
   try {
     StepResult& result = make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
   } catch (const SolverError& error) {
-    parts_.trial.give_back(in, companion.history);
+    give_up(in, companion);
     throw with_file(error, parts_.options);
   } catch (...) {
-    parts_.trial.give_back(in, companion.history);
+    give_up(in, companion);
     throw;
   }
+}
+
+/// What a step that fails leaves behind must not be seen by the next.
+void TimeStepper::give_up(const StepInput& in, Companion& companion) {
+  if (memory_.guesses) parts_.trial.give_back(in, companion.history);
+  parts_.contacts.forget_statistics();
 }
 
 StepResult& TimeStepper::make_step(const StepInput& in) {
@@ -51,7 +61,6 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
 void TimeStepper::prepare(const StepInput& in) {
   balance_.begin(in);
   memory_.iterations.clear();
-  parts_.contacts.forget_statistics();  // of a step that failed
   try {
     prescribed_.demand_continuous(in.start.time, in.end_time);
     parts_.constraints.place_surfaces(in);
@@ -64,25 +73,25 @@ void TimeStepper::prepare(const StepInput& in) {
 }
 
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
-  FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
-  const bool automatic = parts_.options.iteration == Iteration::automatic;
-  const bool constant = parts_.has_constant_loads(island);
   // Islands of several components are swept, whatever the iteration.
-  const bool swept = island.components.size() > 1 || (automatic && constant);
-  if (swept || !automatic) iteration_.use(swept ? Iteration::fixed_point : parts_.options.iteration);
-  if (constant) {
+  const bool swept = island.components.size() > 1;
+  const bool automatic = parts_.options.iteration == Iteration::automatic;
+  StepReport& report = balance_.report();
+  if (parts_.has_constant_loads(island)) {
     advance_under_constant_loads(island, in);
-    static_cast<void>(judge.judge(0.0, 0.0));
-  } else if (automatic && !swept) {
+    report.sweeps = std::max(report.sweeps, 1);
+    if (!swept && !automatic) report.iteration = std::max(report.iteration, parts_.options.iteration);
+    return;
+  }
+  FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
+  if (automatic && !swept) {
     iterate_automatically(island, in, judge);
   } else {
+    iteration_.use(swept ? Iteration::fixed_point : parts_.options.iteration);
     book(island, in, iteration_.solve(island, in, judge));
   }
-  StepReport& report = balance_.report();
-  if (!constant) {
-    for (const Index component : island.components) {
-      couplings_.rate(in, component, judge.contraction(), parts_.trial, report);
-    }
+  for (const Index component : island.components) {
+    couplings_.rate(in, component, judge.contraction(), parts_.trial, report);
   }
   report.iteration = std::max(report.iteration, iteration_.current());
   report.sweeps = std::max(report.sweeps, judge.sweeps());
@@ -121,8 +130,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.
 void TimeStepper::advance_under_constant_loads(const StepIsland& island, const StepInput& in) {
   parts_.trial.swept = false;
-  if (const IslandProblem* const failed =
-          parts_.contacts.solve_constant(in, island, parts_.rule, parts_.trial)) {
+  if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
     parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
   }
   for (const Range components : island.batches) {

@@ -49,6 +49,7 @@ public:
 
 private:
   [[nodiscard]] StepResult& make_step(const StepInput& in);
+  void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
