@@ -1,4 +1,5 @@
-# Installs the library, its headers and a package for find_package(carom).
+# Installs the library, its headers and a package for find_package(carom). The build tree is such a package too:
+# CMAKE_PREFIX_PATH may be the build directory.
 include(CMakePackageConfigHelpers)
 
 if(CAROM_NATIVE)
@@ -6,6 +7,7 @@ if(CAROM_NATIVE)
 endif()
 
 set(carom_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/carom")
+set(carom_built_package "${PROJECT_BINARY_DIR}/lib/cmake/carom")
 
 install(
   TARGETS carom
@@ -24,6 +26,10 @@ install(
   EXPORT carom-targets
   NAMESPACE carom::
   DESTINATION ${carom_package_dir})
+export(
+  EXPORT carom-targets
+  NAMESPACE carom::
+  FILE "${carom_built_package}/carom-targets.cmake")
 
 if(TARGET carom_testing)
   # An export of its own: only who asks for COMPONENTS testing needs GoogleTest.
@@ -36,6 +42,10 @@ if(TARGET carom_testing)
     EXPORT carom-testing-targets
     NAMESPACE carom::
     DESTINATION ${carom_package_dir})
+  export(
+    EXPORT carom-testing-targets
+    NAMESPACE carom::
+    FILE "${carom_built_package}/carom-testing-targets.cmake")
 endif()
 
 set(carom_static_dependencies "")
@@ -43,14 +53,14 @@ if(carom_type STREQUAL "STATIC_LIBRARY")
   set(carom_static_dependencies "${carom_private_packages}")
 endif()
 configure_package_config_file(
-  "${CMAKE_CURRENT_LIST_DIR}/carom-config.cmake.in" "${PROJECT_BINARY_DIR}/package/carom-config.cmake"
+  "${CMAKE_CURRENT_LIST_DIR}/carom-config.cmake.in" "${carom_built_package}/carom-config.cmake"
   INSTALL_DESTINATION ${carom_package_dir}
   NO_SET_AND_CHECK_MACRO)
 # Until 1.0 a minor version may break its users.
 write_basic_package_version_file(
-  "${PROJECT_BINARY_DIR}/package/carom-config-version.cmake"
+  "${carom_built_package}/carom-config-version.cmake"
   COMPATIBILITY SameMinorVersion)
 install(
-  FILES "${PROJECT_BINARY_DIR}/package/carom-config.cmake" "${PROJECT_BINARY_DIR}/package/carom-config-version.cmake"
+  FILES "${carom_built_package}/carom-config.cmake" "${carom_built_package}/carom-config-version.cmake"
   DESTINATION ${carom_package_dir})
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/carom)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs a user's program against carom in four ways: a shared copy out of the Debian package, the same
+# Builds and runs a user's program against carom in four ways: a shared copy out of the Debian package, a build tree
 # from a program with wider vector instructions, a subdirectory, and an installed static copy. And the energy tests
 # of docs/energy_tests.md, from an empty folder, against the shared copy; examples and what pages show, compiled.
 #   tests/consumer/run.sh <work dir> [<build dir of a shared carom>]
@@ -168,14 +168,12 @@ else
   echo "consumer: left out, this build has no testing kit"
 fi
 
-echo "consumer: shared copy, program compiled with -mavx2"
-if grep -qw avx2 /proc/cpuinfo; then
-  configure_and_build "$here/find_package" "$work/from-shared-avx2" \
-    -DCMAKE_PREFIX_PATH="$shared" "${without_private[@]}" -DCMAKE_CXX_FLAGS="-mavx2 -mfma"
-  run "$work/from-shared-avx2/consumer"
-else
-  echo "consumer: left out, this machine has no AVX2"
-fi
+echo "consumer: build tree, program compiled with -mavx2 where the machine has it"
+wider=
+if grep -qw avx2 /proc/cpuinfo; then wider="-mavx2 -mfma"; fi
+configure_and_build "$here/find_package" "$work/from-build" \
+  -DCMAKE_PREFIX_PATH="$shared_build" "${without_private[@]}" -DCMAKE_CXX_FLAGS="$wider"
+run "$work/from-build/consumer"
 
 # Targets that a subdirectory brings unasked are looked at there; it is built as a static library, with all that can be
 # installed, to serve the next part too.
