@@ -3,6 +3,7 @@
 #include <carom/core/part_check.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/running_model.h>
+#include <carom/integrators/step_grid.h>
 
 #include <algorithm>
 
@@ -14,6 +15,44 @@ ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const Sto
     controller = std::make_unique<StepController>(assembly, *options);
   } else {
     driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
+  }
+}
+
+void ModeMachines::advance(const Run& run, double limit) {
+  State& state = run.state;
+  Companion& companion = run.companion;
+  if (controller && std::get<TimeStepping>(run.mode).control) {
+    controller->step(*stepper, state, companion, limit, run.report);
+    return;
+  }
+  const auto advance_to = [&](double step, double end) {
+    if (stepper) {
+      stepper->step(state, companion, step, end, run.report);
+    } else {
+      driver->advance(state, companion, end, run.report, run.events);
+    }
+  };
+  const StepGrid grid(run.mode);
+  const double full = grid.length(), close = grid.closeness(state.time);
+  const double grid_end = grid.next(companion);
+  if (limit < grid_end - close) {
+    // Cut short: the grid starts anew from there.
+    advance_to(limit - state.time, limit);
+    restart_grid(companion, state.time);
+  } else {
+    const bool snapped = limit <= grid_end + close;
+    advance_to(full, snapped ? limit : grid_end);
+    ++companion.grid_steps;
+  }
+}
+
+/// Where that fails the motion before is good: the run goes there by intervals, and fails in the last.
+void ModeMachines::advance_unseen(const Run& run, double limit) {
+  try {
+    driver->advance(run.state, run.companion, limit, run.report, run.events);
+    StepGrid(run.mode).skip_to(run.companion, limit);
+  } catch (...) {
+    while (run.state.time < limit) advance(run, limit);
   }
 }
 

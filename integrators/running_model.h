@@ -12,8 +12,18 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace carom {
+
+/// What a machine advances.
+struct Run {
+  const Mode& mode;
+  State& state;
+  Companion& companion;
+  StepReport& report;
+  std::vector<EventRecord>& events;
+};
 
 /// Machines of a mode, over one assembly.
 struct ModeMachines {
@@ -22,6 +32,11 @@ struct ModeMachines {
   [[nodiscard]] const Detector& detector() const {
     return stepper ? stepper->detector() : driver->detector();
   }
+
+  /// One step, to the next time of the grid (StepGrid), or to a time before it [s].
+  void advance(const Run& run, double limit);
+  /// In the event-driven mode: to a time at once, without output in between.
+  void advance_unseen(const Run& run, double limit);
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< likewise

@@ -12,9 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <iostream>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -48,11 +50,16 @@ struct Simulation::Impl {
   }
   /// The grid of times of the mode.
   [[nodiscard]] StepGrid grid() const { return StepGrid(mode); }
-  void step(Simulation& simulation, double limit);
+  /// True if somebody sees what happens between the times asked for.
+  [[nodiscard]] bool looked_at() const {
+    return observed || progress || stop.asks() || log.enabled(LogLevel::error);
+  }
+  enum class Stops { on_grid, where_seen };
+  void step(Simulation& simulation, double limit, Stops stops);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
   void rethrow(const std::vector<std::exception_ptr>& thrown);
-  void advance(double limit);
-  void write_to_log(std::size_t told);
+  [[nodiscard]] std::int64_t events_counted() const;
+  void write_to_log(std::int64_t told);
 
   CallGuard guard;
   StopRequest stop;
@@ -70,7 +77,7 @@ struct Simulation::Impl {
 };
 
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.
-void Simulation::Impl::step(Simulation& simulation, double limit) {
+void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
   const double close = grid().closeness(state.time);
   if (limit - state.time <= close) {
     state.time = limit;
@@ -82,11 +89,17 @@ void Simulation::Impl::step(Simulation& simulation, double limit) {
     call_actions(simulation, thrown);
     rethrow(thrown);
   }
-  const std::size_t told = events.size();
+  const std::int64_t told = log.enabled(LogLevel::error) ? events_counted() : 0;
   {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
-    advance(std::min(limit, next_due(companion)));
+    const double end = std::min(limit, next_due(companion));
+    const Run run{mode, state, companion, report, events};
+    if (stops == Stops::where_seen && model->machines.driver && !looked_at()) {
+      model->machines.advance_unseen(run, end);
+    } else {
+      model->machines.advance(run, end);
+    }
   }
   try {
     write_to_log(told);
@@ -113,34 +126,13 @@ void Simulation::Impl::rethrow(const std::vector<std::exception_ptr>& thrown) {
   std::rethrow_exception(thrown.front());
 }
 
-void Simulation::Impl::advance(double limit) {
-  ModeMachines& machines = model->machines;
-  if (machines.controller && std::get<TimeStepping>(mode).control) {
-    machines.controller->step(*machines.stepper, state, companion, limit, report);
-    return;
-  }
-  const auto advance_to = [&](double step, double end) {
-    if (machines.stepper) {
-      machines.stepper->step(state, companion, step, end, report);
-    } else {
-      machines.driver->advance(state, companion, end, report, events);
-    }
-  };
-  const double full = grid().length(), close = grid().closeness(state.time);
-  const double grid_end = grid().next(companion);
-  if (limit < grid_end - close) {
-    // Cut short: the grid starts anew from there.
-    advance_to(limit - state.time, limit);
-    restart_grid(companion, state.time);
-  } else {
-    const bool snapped = limit <= grid_end + close;
-    advance_to(full, snapped ? limit : grid_end);
-    ++companion.grid_steps;
-  }
+std::int64_t Simulation::Impl::events_counted() const {
+  const EventCounts& counts = companion.statistics.events;
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
 /// Findings once for every model, as soon as there is a sink.
-void Simulation::Impl::write_to_log(std::size_t told) {
+void Simulation::Impl::write_to_log(std::int64_t told) {
   if (!log.enabled(LogLevel::error)) return;  // the highest level of a line
   const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
   if (!findings_written && log.enabled(LogLevel::warning)) {
@@ -149,7 +141,10 @@ void Simulation::Impl::write_to_log(std::size_t told) {
   }
   const Detector& detector = model->machines.detector();
   write_step_news(log, report, detector);
-  write_event_news(log, std::span(events).subspan(told), detector);
+  const auto* const options = std::get_if<EventDriven>(&mode);
+  if (options == nullptr || !options->record_events) return;
+  const auto fresh = std::min(events.size(), static_cast<std::size_t>(events_counted() - told));
+  write_event_news(log, std::span(events).last(fresh), detector);
 }
 
 Simulation::Simulation(System system, Mode mode)
@@ -161,7 +156,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 const StepReport& Simulation::step() {
   impl_->guard.demand("step", CallGuard::Need::outside);
   impl_->grid().demand_times("step", impl_->state.time, impl_->companion, impl_->state.time);
-  impl_->step(*this, std::numeric_limits<double>::infinity());
+  impl_->step(*this, std::numeric_limits<double>::infinity(), Impl::Stops::on_grid);
   return impl_->report;
 }
 
@@ -181,7 +176,7 @@ void Simulation::run_until(double time) {
   std::optional<ProgressBar> bar;
   if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
   while (self.state.time < time) {
-    self.step(*this, time);
+    self.step(*this, time, Impl::Stops::where_seen);
     if (bar) bar->update(self.state.time);
   }
 }

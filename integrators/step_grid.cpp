@@ -32,6 +32,11 @@ double StepGrid::next(const Companion& companion) const {
   return companion.grid_start + static_cast<double>(companion.grid_steps + 1) * length();
 }
 
+void StepGrid::skip_to(Companion& companion, double time) const {
+  companion.grid_steps = std::llround((time - companion.grid_start) / length());
+  match(companion, time);
+}
+
 void StepGrid::match(Companion& companion, double time) const {
   const auto* const stepping = std::get_if<TimeStepping>(mode_);
   if (stepping != nullptr && stepping->control) return;  // goes along no grid

@@ -20,6 +20,8 @@ public:
   [[nodiscard]] double closeness(double time) const;
   /// Next time of the grid [s].
   [[nodiscard]] double next(const Companion& companion) const;
+  /// Goes along the grid to a time, and begins it anew there if the time is not on it.
+  void skip_to(Companion& companion, double time) const;
   /// Begins the grid anew at a time if that is not on it: a checkpoint may come from a run with another step
   /// or interval.
   void match(Companion& companion, double time) const;

@@ -35,7 +35,10 @@ void ClockGroup::advance(double target, EventBalance& balance) try {
   memory_->motion.limit.restart();
   bool is_reachable = false;
   for (;;) {
-    if (phase_.kind == Phase::at_event) resolve_event(balance);  // impacts, modes, projection; flow or rest
+    if (phase_.kind == Phase::at_event) {
+      resolve_event(balance);  // impacts, modes, projection; flow or rest
+      balance.settle();
+    }
     if (phase_.kind == Phase::at_rest) clock_.now = target;
     if (clock_.now == target) break;
     memory_->motion.limit.restart();

@@ -23,8 +23,41 @@ void EventBalance::clear() {
   flows = {};
   events.clear();
   counts = {};
+  tally = {};
+  settled_ = 0;
   joint_impulses.clear();
   energy_gain = shift = 0.0;
+}
+
+void EventBalance::settle() {
+  for (; settled_ < events.size(); ++settled_) {
+    const EventRecord& event = events[settled_];
+    if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++tally.impacts;
+    if (event.outcome == Outcome::several_solutions) ++tally.several_solutions;
+    if (event.outcome == Outcome::forces_not_unique) ++tally.forces_not_unique;
+    tally.worst_residual = std::max(tally.worst_residual, event.residual);
+  }
+  if (!keeping.records) {
+    events.clear();
+    joint_impulses.clear();
+  } else if (keeping.limit > 0 && events.size() >= 2 * keeping.limit) {
+    // Now and then, so that a record is moved a few times at most.
+    keep_latest();
+  }
+  settled_ = events.size();
+}
+
+/// Groups that come later may have earlier events: the latest are those by time.
+void EventBalance::keep_latest() {
+  if (keeping.limit == 0 || events.size() <= keeping.limit) return;
+  order_events();
+  events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(keeping.limit));
+}
+
+void EventBalance::finish() {
+  settle();
+  order_events();
+  keep_latest();
 }
 
 void EventBalance::order_events() {

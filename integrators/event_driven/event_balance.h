@@ -14,6 +14,7 @@
 #include <carom/integrators/run/step_report.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -31,19 +32,42 @@ struct SolvedImpact {
   double accumulation_time = std::numeric_limits<double>::quiet_NaN();  ///< EventRecord::accumulation_time
 };
 
+/// Which records of events are kept.
+struct EventKeeping {
+  bool records = true;    ///< false: none
+  std::size_t limit = 0;  ///< at most so many, the latest; 0: all
+};
+
+/// What statistics count of the records of events.
+struct EventTally {
+  std::int64_t impacts = 0;  ///< of contacts with an impulse
+  std::int64_t several_solutions = 0;
+  std::int64_t forces_not_unique = 0;
+  double worst_residual = 0.0;
+};
+
 /// Energy that left clock groups, and what happened to them, since it was last cleared.
 struct CAROM_API EventBalance {
+  EventBalance() = default;
+  explicit EventBalance(const EventKeeping& kept) : keeping(kept) {}
+
+  EventKeeping keeping;
   EnergyFlows flows;
   std::vector<EventRecord> events;
   EventCounts counts{};
+  EventTally tally;                          ///< of all that is settled
   std::vector<JointImpulse> joint_impulses;  ///< of impacts
   double energy_gain = 0.0;                  ///< by impacts [J]
   double shift = 0.0;                        ///< largest displacement by projection [m]
 
   /// Begins anew. Memory stays.
   void clear();
+  /// The records so far are complete: counts them, and lets go of those that are not to be kept.
+  void settle();
   /// Groups advance one after the other: puts their events in the order of time, then as they were booked.
   void order_events();
+  /// Settles and orders what there is.
+  void finish();
   /// Records an event, which the caller completes. \param contact without bodies: of no contact
   EventRecord& record(EventKind kind, double time, const Constraint& contact, const Assembly& assembly);
   /// Books the works of an impact and records it, an event for each contact. Returns the energy that it
@@ -57,6 +81,9 @@ struct CAROM_API EventBalance {
                            const MotionSample& at);
 
 private:
+  void keep_latest();
+
+  std::size_t settled_ = 0;  // of the events
   std::vector<EventRecord> ordered_;
   std::vector<std::size_t> order_;
 };

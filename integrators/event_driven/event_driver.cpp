@@ -29,6 +29,10 @@ void check_options(const EventDriven& options) {
     throw ModelError("event-driven mode: evaluation_limit is " + std::to_string(options.evaluation_limit) +
                      "; allowed: at least 1");
   }
+  if (options.record_limit < 0) {
+    throw ModelError("event-driven mode: record_limit is " + std::to_string(options.record_limit) +
+                     "; allowed: at least 0, which keeps all records");
+  }
   if (options.method > FlowMethod::one_step) {
     throw ModelError("event-driven mode: method is " + std::to_string(static_cast<int>(options.method)) +
                      "; allowed: one of FlowMethod, explicit_runge_kutta (0) to one_step (3)");
@@ -43,7 +47,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       laws_(assembly, detector_),
       memory_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
-      trial_(assembly.layout()) {
+      trial_(assembly.layout()),
+      balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
     groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
@@ -82,7 +87,7 @@ void EventDriver::start(const State& state, const Companion& companion) {
 
 void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
                           std::vector<EventRecord>& events) {
-  laws_.demand(state.time, target);
+  laws_.demand(state.time, target, options_.interval);
   if (!started_) start(state, companion);
   advance_groups(state.time, target);
   trial_.time = target;
@@ -90,7 +95,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   for (auto& group : groups_) group->write(trial_, modes_);
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
-  balance_.order_events();
+  balance_.finish();
   write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
   companion.modes.swap(modes_);
@@ -99,7 +104,20 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.v.swap(trial_.v);
   state.z.swap(trial_.z);
   state.time = target;
-  if (options_.record_events) events.insert(events.end(), balance_.events.begin(), balance_.events.end());
+  append(balance_.events, events);
+}
+
+/// Records go to those that there are, of which the latest are kept.
+void EventDriver::append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const {
+  if (fresh.empty()) return;
+  if (events.empty()) {
+    events.swap(fresh);
+  } else {
+    events.insert(events.end(), fresh.begin(), fresh.end());
+  }
+  const std::size_t limit = balance_.keeping.limit;
+  if (limit == 0 || events.size() <= limit) return;
+  events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(limit));
 }
 
 /// The earliest group goes first, as far as it can meet no other one.
@@ -198,12 +216,10 @@ void EventDriver::count(Companion& companion) {
   ++statistics.steps;
   for (std::size_t kind = 0; kind < event_kind_count; ++kind)
     statistics.events[kind] += balance_.counts[kind];
-  for (const EventRecord& event : balance_.events) {
-    if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++statistics.impacts;
-    if (event.outcome == Outcome::several_solutions) ++statistics.several_solutions;
-    if (event.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
-    statistics.worst_residual = std::max(statistics.worst_residual, event.residual);
-  }
+  statistics.impacts += balance_.tally.impacts;
+  statistics.several_solutions += balance_.tally.several_solutions;
+  statistics.forces_not_unique += balance_.tally.forces_not_unique;
+  statistics.worst_residual = std::max(statistics.worst_residual, balance_.tally.worst_residual);
   if (balance_.energy_gain > 0.0) {
     ++statistics.energy_gains;
     statistics.energy_gained += balance_.energy_gain;

@@ -51,6 +51,7 @@ private:
   void start(const State& state, const Companion& companion);
   template <class F>
   auto within_limit(double time, F&& evaluate) const;
+  void append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const;
   void count(Companion& companion);
   void advance_groups(double from, double to);
   void write_report(double from, double to, StepReport& out) const;

@@ -17,10 +17,13 @@ public:
   LawContinuity(const Assembly& assembly, const Detector& detector)
       : detector_(&detector), prescribed_(assembly) {}
 
-  /// Demands that nothing prescribed jumps between two times [s]. Throws SolverError naming the part.
-  void demand(double from, double to);
+  /// Demands that nothing prescribed jumps between two times [s], looking at times no farther apart than
+  /// `longest` [s]. Throws SolverError naming the part.
+  void demand(double from, double to, double longest);
 
 private:
+  void demand_part(double from, double to);
+
   const Detector* detector_;
   PrescribedJoints prescribed_;
   GroundPlaces before_, after_;  // at the ends of an advance

@@ -21,7 +21,9 @@ struct EventDriven {
   FlowMethod method = FlowMethod::explicit_runge_kutta;  ///< of the smooth phases
 
   /// Output interval: step() stops and observers are called at its multiples, > 0 [s]. It does not change the
-  /// motion: every component has its own steps, and output states are computed within them.
+  /// motion: every component has its own steps, and output states are computed within them. Where nobody
+  /// looks (no observer, no log with a sink, no stop function, no progress bar) run_until() goes straight to
+  /// its end, or to the next periodic action, and that is one step.
   double interval = 1e-2;
   /// Longest step where loads or shapes on ground depend on time, > 0 [s]. Changes between the stages of a
   /// step are not detected: it must be shorter than the shortest pulse of a load, and than the period of a
@@ -50,8 +52,11 @@ struct EventDriven {
   /// More evaluations of the motion of a component than this within one of its steps, its events or between
   /// two looks at it end a run with a SolverError, > 0.
   std::int64_t evaluation_limit = 10'000'000;
-  /// Keep a record of every event (Simulation::events()).
+  /// Keep a record of every event (Simulation::events()). Without it no record is made, and the report of a
+  /// step lists neither contacts nor impulses of joints; statistics count events all the same.
   bool record_events = true;
+  /// Keep at most so many records, the latest; the report of a step lists the contacts of these. 0: all.
+  std::int64_t record_limit = 0;
 
   /// An existing directory where the contact problem of a SolverError is written to a file, whose name is in
   /// the message (docs/contact_problems.md). Empty: nothing is written.

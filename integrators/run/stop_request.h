@@ -30,6 +30,8 @@ public:
   /// \param function empty: never ends
   explicit StopRequest(StopFunction function) : function_(std::move(function)) {}
 
+  /// True if there is a function to ask.
+  [[nodiscard]] bool asks() const { return static_cast<bool>(function_); }
   /// Throws Cancelled if work shall end.
   void check() const {
     if (function_ && function_()) stop();

@@ -34,6 +34,18 @@ TEST(StepGrid, BeginsAnewBesideItsTimes) {
   EXPECT_EQ(companion.grid_steps, 0);
 }
 
+TEST(StepGrid, SkipsToOneOfItsTimes) {
+  const Mode mode = EventDriven{.interval = 0.1};
+  Companion companion;
+  companion.grid_start = 1.0;
+  StepGrid(mode).skip_to(companion, 1.7);
+  EXPECT_EQ(companion.grid_start, 1.0);
+  EXPECT_EQ(companion.grid_steps, 7);
+  StepGrid(mode).skip_to(companion, 1.75);
+  EXPECT_EQ(companion.grid_start, 1.75);
+  EXPECT_EQ(companion.grid_steps, 0);
+}
+
 TEST(StepGrid, PeriodicEventsComeInTheirRhythm) {
   Companion companion;
   EXPECT_TRUE(std::isinf(next_due(companion)));

@@ -36,6 +36,38 @@ TEST(EventBalance, EventsInTimeThenAsBooked) {
   EXPECT_EQ(balance.counts[static_cast<std::size_t>(EventKind::slip)], 0);
 }
 
+TEST(EventBalance, CountsWhatItDoesNotKeep) {
+  System system;
+  system.add(Particle{.mass = 1.0});
+  const Assembly assembly(system);
+  for (const EventKeeping& keeping : {EventKeeping{}, EventKeeping{true, 3}, EventKeeping{false, 0}}) {
+    EventBalance balance(keeping);
+    for (int i = 0; i < 20; ++i) {
+      // Two groups, one after the other.
+      EventRecord& event = balance.record(EventKind::impact, i < 10 ? 1.0 * i : i - 9.5, {}, assembly);
+      event.impulse[0] = i % 2 == 0 ? 1.0 : 0.0;
+      event.residual = 1e-15 * i;
+      balance.settle();
+      if (keeping.limit > 0) {
+        EXPECT_LT(balance.events.size(), 2 * keeping.limit);
+      }
+    }
+    balance.finish();
+    EXPECT_EQ(balance.counts[static_cast<std::size_t>(EventKind::impact)], 20);
+    EXPECT_EQ(balance.tally.impacts, 10);
+    EXPECT_EQ(balance.tally.worst_residual, 1e-15 * 19);
+    std::vector<double> times;
+    for (const EventRecord& event : balance.events) times.push_back(event.time);
+    if (!keeping.records) {
+      EXPECT_TRUE(times.empty());
+    } else if (keeping.limit > 0) {
+      EXPECT_EQ(times, (std::vector<double>{8.5, 9.0, 9.5}));
+    } else {
+      EXPECT_EQ(times.size(), 20U);
+    }
+  }
+}
+
 TEST(EventBalance, RecordsTheBodyAndTheObstacleOfAContact) {
   System system;
   const BodyId ball = system.add(Particle{.mass = 1.0});
