@@ -234,6 +234,12 @@ BENCHMARK_CAPTURE(balls_at_rest, one_step, FlowMethod::one_step)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
 
+// The same with the options as they come: tolerances 1e-9 and 1e-11, every event recorded.
+void balls_by_default(benchmark::State& state) {
+  time_run(state, EventDriven{}, 3.0, [&] { return balls(static_cast<int>(state.range(0))); });
+}
+BENCHMARK(balls_by_default)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
+
 // Contact that lasts, 10 s of it: a brick at rest, the same on a plane that shakes too little to move it, a
 // disc that rolls down a plane; in both modes.
 

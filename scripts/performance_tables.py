@@ -187,6 +187,8 @@ def balls_table(event):
     for key, title in FLOWS[:2]:
         rows.append([f"µs per event, {title}"] + [figure(1e6 * event[f"balls_at_rest/{key}/{count}"]["per_event"])
                                                   for count in counts])
+    rows.append(["µs per event, options by default"]
+                + [figure(1e6 * event[f"balls_by_default/{count}"]["per_event"]) for count in counts])
     return table([""] + [f"{count} ball{'s' if count > 1 else ''}" for count in counts], rows)
 
 
