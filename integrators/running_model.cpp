@@ -52,6 +52,7 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
     driver->advance(run.state, run.companion, limit, run.report, run.events);
     StepGrid(run.mode).skip_to(run.companion, limit);
   } catch (...) {
+    if (!(run.state.time < limit)) throw;
     while (run.state.time < limit) advance(run, limit);
   }
 }

@@ -82,17 +82,16 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
   const System& system = motion_->model().assembly->system();
   if (event.guard == Guard::switching_point) return {system.name(motion_->guards().element(event.which))};
   const std::vector<ActiveContact>& closed = motion_->active().list();
-  Constraint contact;
+  if (event.guard == Guard::slip) return {failure_->name(closed[event.which].at)};
   if (event.guard == Guard::gap) {
+    Constraint contact;
     motion_->contact(event.which, at, contact);
-  } else if (event.guard == Guard::slip) {
-    contact = closed[event.which].at;
-  } else if (!closed.empty()) {
-    contact = closed.front().at;
-  } else {
-    return {};
+    return {failure_->name(contact)};
   }
-  return {failure_->name(contact)};
+  // A force, or a sum of them: of any that touches.
+  std::vector<std::string> names;
+  for (const ActiveContact& contact : closed) names.push_back(failure_->name(contact.at));
+  return names;
 }
 
 void GroupLimits::fail_evaluations() const {

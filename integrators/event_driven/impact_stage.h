@@ -37,7 +37,7 @@ public:
   void start() { accumulation_.clear(); }
   /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
   /// loads and accelerations those before.
-  bool resolve(EventInstant& at);
+  [[nodiscard]] bool resolve(EventInstant& at);
   /// Applies the answer of a problem of contacts of one mechanism, books and records it.
   void apply(EventKind kind, const IslandProblem& problem, EventInstant& at);
 

@@ -53,7 +53,8 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
     at.balance.events[i].free_acceleration = candidate.free_acceleration;
   }
   at.update();
-  impacts.resolve(at);
+  // It may throw the body against something else.
+  if (impacts.resolve(at)) at.update();
 }
 
 void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates, const EventInstant& at) {
