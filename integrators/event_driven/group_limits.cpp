@@ -90,6 +90,7 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
   }
   // A force, or a sum of them: of any that touches.
   std::vector<std::string> names;
+  names.reserve(closed.size());
   for (const ActiveContact& contact : closed) names.push_back(failure_->name(contact.at));
   return names;
 }
