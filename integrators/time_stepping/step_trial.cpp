@@ -71,12 +71,11 @@ void StepTrial::begin(const StepInput& in) {
 }
 
 void StepTrial::begin(const StepInput& in, LoadHistory& from) {
-  begin(in);
   history = std::move(from);
   if (history.known == 0) history.pending = false;
-  // The room of loads whose change is recorded just before it is written over.
+  // The room of loads whose change is recorded just before it is written over: taken over before any is made.
   if (!history.before.empty()) loads_end.total.swap(history.before);
-  loads_end.total.resize(end.v.size());
+  begin(in);
   if (history.pending) std::fill(recorded.begin(), recorded.end(), std::uint8_t{0});
 }
 

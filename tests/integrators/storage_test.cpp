@@ -82,6 +82,8 @@ TEST_P(Storage, OfANetIsAtMost200BytesForAParticleAnd128ForASpring) {
   RecordProperty("bytes_per_spring", std::to_string(spring));
   RecordProperty("bytes_per_particle", std::to_string(particle));
   EXPECT_LE(spring, 128.0);
+  // 206 and 238 are what it takes; one more array of numbers over all velocities is 16.
+  EXPECT_LE(particle, GetParam() ? 210.0 : 242.0);
   // A particle by itself takes more than 200 bytes, a spring less than 128: what counts is what a net takes.
   EXPECT_LE(bytes_sparse, 200.0 * n + 128.0 * springs(sparse));
   EXPECT_LE(bytes_full, 200.0 * n + 128.0 * springs(full));
