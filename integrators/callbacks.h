@@ -26,6 +26,8 @@ public:
   /// Removes one, with its rhythm. False if it is not there.
   [[nodiscard]] bool remove(const CallbackId& id, std::vector<Rhythm>& rhythms);
 
+  /// True if there is an observer.
+  [[nodiscard]] bool has_observers() const { return !observers_.empty(); }
   /// Calls all observers. An exception of one does not keep the others from their call; it is added to
   /// `thrown`.
   void call_observers(const Simulation& simulation, CallGuard& guard,

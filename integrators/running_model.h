@@ -16,7 +16,7 @@
 
 namespace carom {
 
-/// What a machine advances.
+/// A run as a machine advances it: state, companion, and what is told of it.
 struct Run {
   const Mode& mode;
   State& state;

@@ -52,7 +52,7 @@ struct Simulation::Impl {
   [[nodiscard]] StepGrid grid() const { return StepGrid(mode); }
   /// True if somebody sees what happens between the times asked for.
   [[nodiscard]] bool looked_at() const {
-    return observed || progress || stop.asks() || log.enabled(LogLevel::error);
+    return callbacks.has_observers() || progress || stop.asks() || log.enabled(LogLevel::error);
   }
   enum class Stops { on_grid, where_seen };
   void step(Simulation& simulation, double limit, Stops stops);
@@ -71,7 +71,6 @@ struct Simulation::Impl {
   std::vector<EventRecord> events;
   Callbacks callbacks;
   Log log;
-  bool observed = false;  // observe() was called
   bool findings_written = false;
   bool progress = false;
 };
@@ -106,7 +105,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
   } catch (...) {
     thrown.push_back(std::current_exception());
   }
-  if (observed) callbacks.call_observers(simulation, guard, thrown);
+  if (callbacks.has_observers()) callbacks.call_observers(simulation, guard, thrown);
   call_actions(simulation, thrown);
   if (!thrown.empty()) rethrow(thrown);
 }
@@ -184,7 +183,6 @@ void Simulation::run_until(double time) {
 CallbackId Simulation::observe(Observer observer) {
   impl_->guard.demand("observe", CallGuard::Need::no_step);
   if (!observer) throw ModelError("observe: observer is empty; allowed: a function");
-  impl_->observed = true;
   return impl_->callbacks.add_observer(std::move(observer));
 }
 

@@ -14,11 +14,6 @@ void Detector::find(Index component, const StateView& state, const Evaluation& e
 
 void Detector::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
   assert(!has_moving_ground() || query.places.time() == query.state.time);
-  if (query.lasting != nullptr && query.lasting->empty()) {
-    ContactQuery asked = query;
-    asked.lasting = nullptr;
-    return find(components, asked, out);
-  }
   ground_.find(components, query, out);
   if (joints_.empty()) return;
   for (Index component = components.begin; component < components.end; ++component) {

@@ -38,7 +38,7 @@ struct EventKeeping {
   std::size_t limit = 0;  ///< at most so many, the latest; 0: all
 };
 
-/// What statistics count of the records of events.
+/// Counts for the statistics, of the records of events.
 struct EventTally {
   std::int64_t impacts = 0;  ///< of contacts with an impulse
   std::int64_t several_solutions = 0;

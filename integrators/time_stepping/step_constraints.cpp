@@ -9,10 +9,7 @@
 namespace carom {
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : detector_(assembly),
-      capture_speed_(options.capture_speed),
-      joint_friction_(detector_.has_dry_friction()),
-      islands_(assembly) {}
+    : detector_(assembly), capture_speed_(options.capture_speed), islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
@@ -40,8 +37,9 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
   detector_.find(components, {start, trial.at_start, places_, &places_after_, 0.0, lasting}, out);
   // Components with joints come alone.
-  if (joint_friction_ && components.size() == 1)
+  if (detector_.has_dry_friction() && components.size() == 1) {
     detector_.find_joint_friction(components.begin, start, trial.at_start, out);
+  }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   if (detector_.has_static_friction()) {

@@ -45,7 +45,6 @@ private:
 
   Detector detector_;
   double capture_speed_;
-  bool joint_friction_;                  // whether there is any
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks

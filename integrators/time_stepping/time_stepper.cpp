@@ -43,7 +43,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   }
 }
 
-/// What a step that fails leaves behind must not be seen by the next.
+/// Leaves nothing of a step that failed to the next.
 void TimeStepper::give_up(const StepInput& in, Companion& companion) {
   if (memory_.guesses) parts_.trial.give_back(in, companion.history);
   parts_.contacts.forget_statistics();

@@ -69,6 +69,11 @@ TEST(UnseenRun, WhoeverLooksGetsEveryTime) {
   EXPECT_EQ(steps_with([](Simulation& now) { now.stop_when([] { return false; }); }), 10);
   EXPECT_EQ(steps_with([](Simulation& now) { now.show_progress(true); }), 10);
   EXPECT_EQ(steps_with([](Simulation& now) { now.log() = Log([](LogLevel, std::string_view) {}); }), 10);
+  EXPECT_EQ(steps_with([](Simulation& now) {
+              const CallbackId observer = now.observe([](const Simulation&) {});
+              now.remove_callback(observer);
+            }),
+            1);
   EXPECT_EQ(steps_with([](Simulation& now) { now.every(0.25, [](Simulation&) {}); }), 4);
 }
 
