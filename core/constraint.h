@@ -180,6 +180,13 @@ struct Constraint {
   [[nodiscard]] double velocity_after(int i, const double* velocities) const {
     return times(i, velocities) - surface_velocity_after[static_cast<std::size_t>(i)];
   }
+  /// Makes a constraint of a time step that of its first part. \param part 0 to 1: share of the step
+  void shorten(double part) {
+    for (std::size_t i = 0; i < surface_velocity.size(); ++i) {
+      surface_velocity_after[i] =
+          surface_velocity[i] + part * (surface_velocity_after[i] - surface_velocity[i]);
+    }
+  }
   /// Rate of the velocity along row i. \param accelerations of all bodies
   [[nodiscard]] double acceleration(int i, const double* accelerations) const {
     return times(i, accelerations) + drift[static_cast<std::size_t>(i)];

@@ -55,6 +55,10 @@ public:
   }
   /// Likewise of a batch, or of one component.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Likewise the contacts of one body with shapes on ground.
+  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+    ground_.find_of(body, query, out);
+  }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
   void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,

@@ -50,6 +50,31 @@ void GroundContacts::find(Range components, const ContactQuery& query, std::vect
   }
 }
 
+void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+  if (assembly_->layout()->dimension() == 2) {
+    find_of<2>(body, query, out);
+  } else {
+    find_of<3>(body, query, out);
+  }
+}
+
+template <int D>
+void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+  const Index component = assembly_->component_of(body);
+  const BodySlot slot = assembly_->layout()->bodies()[body];
+  for_runs({component, component + 1}, [&](const CentreRun& run) {
+    if (run.points != none || body < run.bodies.begin || body >= run.bodies.end) return;
+    add<D>(slot, BodyFeature::at_centre(slot, body, run.material), query, out);
+  });
+  const Range own = features_.of({component, component + 1}).points;
+  const auto points = features_.points().begin();
+  const auto before = [](const BodyFeature& point, Index of) { return point.body < of; };
+  for (auto point = std::lower_bound(points + own.begin, points + own.end, body, before);
+       point != points + own.end && point->body == body; ++point) {
+    add<D>(slot, *point, query, out);
+  }
+}
+
 bool GroundContacts::any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const {
   double margin = query.margin;
   if (centres.points == none) {

@@ -33,6 +33,8 @@ public:
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Likewise those of one body.
+  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
@@ -42,6 +44,8 @@ public:
 private:
   template <int D>
   void find_in(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  template <int D>
+  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   // Appends the contacts of one feature.
   template <int D>
   void add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,

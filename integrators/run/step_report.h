@@ -25,6 +25,7 @@ struct ContactRecord {
   BodyId body;          ///< the body
   ObstacleId obstacle;  ///< what it touches
   int directions = 2;   ///< 2 in the plane, 3 in space
+  double time = 0.0;    ///< end of the step; of an impact within it when that was [s]
   double gap = 0.0;     ///< when the contact was detected; > 0 of a lasting one that turning
                         ///< has opened [m]
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]

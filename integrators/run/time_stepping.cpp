@@ -12,6 +12,16 @@ std::string_view to_string(ForceRule rule) {
   return "unknown";
 }
 
+std::string_view to_string(ImpactTimes times) {
+  switch (times) {
+    case ImpactTimes::at_step_start:
+      return "at_step_start";
+    case ImpactTimes::located:
+      return "located";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(Iteration iteration) {
   switch (iteration) {
     case Iteration::fixed_point:

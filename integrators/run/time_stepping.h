@@ -27,6 +27,17 @@ enum class ForceRule : std::uint8_t {
   energy_momentum
 };
 
+/// When within a step bodies are hit by shapes on ground.
+enum class ImpactTimes : std::uint8_t {
+  /// At the start of the next step: a gap that closes within a step is violated at its end (Johansson 1999,
+  /// section 4). Of first order across impacts.
+  at_step_start,
+  /// When the gap closes: a body flies there, is hit, and flies on, what it is coupled to follows within the
+  /// same implicit step. Of second order across isolated impacts. Bodies that joints bind, and components
+  /// that the linearly implicit iteration solves, are hit at the start of the next step all the same.
+  located
+};
+
 /// How the implicit equations of a step are solved. All iterations converge to the same step.
 enum class Iteration : std::uint8_t {
   fixed_point,  ///< sweeps from loads to motion to loads; contract for roughly h^2 k/m and h d/m below a few
@@ -45,6 +56,8 @@ enum class Iteration : std::uint8_t {
 /// Number of iterations that can end a step: all but `automatic`, which stands behind them.
 inline constexpr std::size_t iteration_count = 3;
 
+/// Names: "at_step_start", "located".
+[[nodiscard]] CAROM_API std::string_view to_string(ImpactTimes times);
 /// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit", "automatic".
 [[nodiscard]] CAROM_API std::string_view to_string(ForceRule rule);
 [[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);  ///< likewise
@@ -78,6 +91,12 @@ struct TimeStepping {
   double capture_speed = 1e-2;
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;
+
+  ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
+  /// Of impacts that are located: the most of one body in one step, >= 1. After them its closed contacts act
+  /// to the end of the step as they do where impacts are not located; so the step ends although bounces may
+  /// accumulate in it.
+  int most_impacts = 10;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements
   /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does

@@ -22,8 +22,11 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
   const int expected = before.size() == sweeps_.size() ? before[front] : 1;
   for (;;) {
     if (stop_ != nullptr) stop_->check();
-    const SweepsMade made = is_streamed(island) ? sweep_streamed(parts_->stages(in, front), expected, judge)
-                                                : sweep_staged(island, in, expected, judge);
+    SweepsMade made = is_streamed(island) ? sweep_streamed(parts_->stages(in, front), expected, judge)
+                                          : sweep_staged(island, in, expected, judge);
+    if (const IslandProblem* const failed = parts_->located.first_unsolved()) {
+      parts_->errors(in, front).fail_contact(*failed);
+    }
     const SweepChange change = made.change;
     const bool ahead = joints == nullptr && !method_.is_newton();
     Verdict verdict =
@@ -31,6 +34,12 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
     // Newton's first is that from t_j: small or not, it says nothing of the guess.
     if (method_.is_newton() && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
     if (verdict == Verdict::failed) fail_contraction(island, in, judge);
+    const bool converged = verdict == Verdict::converged || made.converged_one_early;
+    // The first iterate mostly hits what the last one does; the last one says.
+    if ((judge.sweeps() == 1 || converged) && find_impacts(island, in)) {
+      verdict = Verdict::go_on;
+      made.converged_one_early = false;
+    }
     if (verdict == Verdict::converged || made.converged_one_early) {
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
@@ -44,6 +53,19 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
   }
 }
 
+/// Bodies that are hit within the step, as far as the iterate says. True if there are more than were known.
+bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in) {
+  if (!parts_->located.on() || method_.is_newton()) return false;
+  bool any = false;
+  for (const Index component : island.components) {
+    if (parts_->joints.of(component) != nullptr) continue;
+    any = parts_->located.take_up(in, {component, component + 1}, island.constraints,
+                                  parts_->constraints.places_at_end(), parts_->trial) ||
+          any;
+  }
+  return any;
+}
+
 /// Contact problems, and a first guess at the loads.
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const Index front = island.components.front();
@@ -53,6 +75,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
     parts_->errors(in, component).fail_joined(island.constraints);
   }
   parts_->contacts.state_problems(in, island, method_.is_newton() || joints != nullptr, parts_->trial);
+  parts_->located.clear();
   parts_->trial.swept = false;
   for (const Index component : island.components) {
     const Range z = parts_->assembly->components()[component].z;

@@ -100,22 +100,24 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   }
 }
 
-double StepBalance::book_contacts(const IslandProblem& problem, const double* after, const StepTrial& trial) {
+double StepBalance::book_contacts(const IslandProblem& problem, const double* after, double time,
+                                  const StepTrial& trial) {
   ImpulseWork work;
   bool impact = false;
   for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
     if (problem.constraints()[contact].has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work);
     } else {
-      book_contact(problem, contact, after, work, impact);
+      book_contact(problem, contact, after, time, work, impact);
     }
   }
   return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
 }
 
 void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
-                               ImpulseWork& sum, bool& impact) {
-  const ContactRecord& entry = record(problem, contact, after);
+                               double time, ImpulseWork& sum, bool& impact) {
+  ContactRecord& entry = record(problem, contact, after);
+  entry.time = time;
   result_.flows[EnergyFlow::external] += problem.map().surface_work(contact);
   impact = impact || entry.impact;
   for (int direction = 0; direction < entry.directions; ++direction) {
@@ -280,6 +282,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   companion.ledger.book(result.flows, result.stored);
   companion.modes = result.joint_friction_modes;
   for (const ContactRecord& contact : result.report.contacts) {
+    if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
     companion.modes.emplace_back(contact.key, contact.mode);
   }
   add_to(companion.statistics, result.report);

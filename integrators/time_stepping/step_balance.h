@@ -46,8 +46,9 @@ public:
   void book_joints(const StepInput& in, Index component, JointStage& joints, const IslandProblem* contact,
                    StepTrial& trial);
   /// Books the impulses of a contact problem. Returns the energy that an impact gained [J], else 0.
-  /// \param after velocities at the end as contact sees them
-  double book_contacts(const IslandProblem& problem, const double* after, const StepTrial& trial);
+  /// \param after velocities at the end as contact sees them \param time when that is [s]
+  double book_contacts(const IslandProblem& problem, const double* after, double time,
+                       const StepTrial& trial);
   /// Books that bodies were moved out of ground shapes. \param before potentials of their component before it
   /// \param after likewise
   void book_projection(const GapProjection::Result& result, const StoredEnergies& before,
@@ -61,8 +62,8 @@ public:
   [[nodiscard]] StepResult& finish(const StepInput& in);
 
 private:
-  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum,
-                    bool& impact);
+  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, double time,
+                    ImpulseWork& sum, bool& impact);
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,

@@ -46,6 +46,10 @@ void check_options(const TimeStepping& options) {
     refuse("iteration", static_cast<double>(options.iteration),
            "one of Iteration, fixed_point (0) to automatic (3)");
   }
+  if (options.impacts > ImpactTimes::located) {
+    refuse("impacts", static_cast<double>(options.impacts), "at_step_start (0) or located (1)");
+  }
+  if (options.most_impacts < 1) refuse("most_impacts", options.most_impacts, "at least 1");
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
   if (options.threads < 1) refuse("threads", options.threads, "at least 1");
   if (options.threads > 1 && !Workers::several_available()) {

@@ -7,6 +7,7 @@
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/located_impacts.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 #include <carom/integrators/time_stepping/step_rule.h>
@@ -26,13 +27,14 @@ struct StepParts {
         rule(chosen.force_rule),
         constraints(model, chosen),
         contacts(model),
+        located(model, constraints.detector(), chosen),
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),
         joints(model) {}
 
   /// Stages of a component.
   [[nodiscard]] SweepStages stages(const StepInput& in, Index component) {
-    return {in, rule, component, contacts, trial, joints.of(component) != nullptr};
+    return {in, rule, component, contacts, trial, joints.of(component) != nullptr, &located};
   }
   /// Errors of one.
   [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
@@ -54,6 +56,7 @@ struct StepParts {
   StepRule rule;
   StepConstraints constraints;
   ContactStage contacts;
+  LocatedImpacts located;
   StepTrial trial;
   SweepSchedule schedule;
   JointStages joints;

@@ -73,14 +73,20 @@ SweepChange StepRule::next_change(const StepInput& in, Range bodies, const StepT
   return change;
 }
 
+double StepRule::work(const StepInput& in, const double* start, const double* end, Range v,
+                      const StepTrial& trial) const {
+  return carom::work(start, end, in.start, trial.end, v, in.step);
+}
+
 BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTrial& trial) const {
   const auto of_cause = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
     if (at_end.empty()) return 0.0;
     const double* const first = is_mean() ? at_end.data() : at_start.data();
-    return work(first, at_end.data(), in.start, trial.end, block.v, in.step);
+    return carom::work(first, at_end.data(), in.start, trial.end, block.v, in.step);
   };
   BlockWorks sums{};
-  sums.total = work(start_of_sum(in, trial), trial.loads_guess.data(), in.start, trial.end, block.v, in.step);
+  sums.total =
+      carom::work(start_of_sum(in, trial), trial.loads_guess.data(), in.start, trial.end, block.v, in.step);
   sums.dissipative = of_cause(in.companion.loads.dissipative, trial.loads_end.dissipative);
   sums.external = of_cause(in.companion.loads.external, trial.loads_end.external);
   sums.kinetic = kinetic_energy(in, block.bodies, trial);
@@ -89,7 +95,7 @@ BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTr
 
 void StepRule::works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                               BlockWorks& out) const {
-  out.total = work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
+  out.total = carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
   out.kinetic = kinetic_energy(in, bodies, trial);
   out.dissipative = out.external = 0.0;
 }

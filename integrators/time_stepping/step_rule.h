@@ -62,6 +62,9 @@ public:
   /// Change that another move would make, by the loads that the guess led to: velocities by M^-1 times their
   /// change, coordinates by h/2 times that, which is less than h times it.
   [[nodiscard]] SweepChange next_change(const StepInput& in, Range bodies, const StepTrial& trial) const;
+  /// Work of some loads, given at both ends of the step, along the mean velocities `v` [J].
+  [[nodiscard]] double work(const StepInput& in, const double* start, const double* end, Range v,
+                            const StepTrial& trial) const;
   /// Works of the loads over a block: the total is that of the impulse that acted; its parts by cause are
   /// those of the loads that it led to, and what the iteration left open counts as conservative.
   [[nodiscard]] BlockWorks works(const StepInput& in, const Block& block, const StepTrial& trial) const;

@@ -6,6 +6,7 @@
 
 #include <carom/core/assembly.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
+#include <carom/integrators/time_stepping/located_impacts.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -23,8 +24,11 @@ struct SweepStages {
   Index component;
   ContactStage& contacts;
   StepTrial& trial;
-  bool jointed = false;  ///< joints change velocities of all its bodies
+  bool jointed = false;               ///< joints change velocities of all its bodies
+  LocatedImpacts* located = nullptr;  ///< bodies that are hit within the step; null: none
 
+  /// Bodies of the component.
+  [[nodiscard]] Range bodies() const { return in.assembly.components()[component].bodies; }
   /// Blocks of the component.
   [[nodiscard]] Range blocks() const { return in.assembly.components()[component].blocks; }
   /// Loads at the end by those of the steps before.
@@ -34,6 +38,9 @@ struct SweepStages {
   /// Velocities and positions of its bodies.
   void move(const Block& block, Index part) const {
     rule.move(in, block.bodies, jointed || contacts.touches(part), trial);
+    if (located == nullptr || located->empty()) return;
+    const LinearLoads loads{rule.start_of_sum(in, trial), trial.loads_guess.data()};
+    located->advance(in, rule, loads, block.bodies, trial);
   }
   /// Change that the next sweep would make.
   [[nodiscard]] SweepChange change(const Block& block) const {

@@ -32,6 +32,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   try {
     StepResult& result = make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
+    parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
   } catch (const SolverError& error) {
@@ -47,6 +48,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 void TimeStepper::give_up(const StepInput& in, Companion& companion) {
   if (memory_.guesses) parts_.trial.give_back(in, companion.history);
   parts_.contacts.forget_statistics();
+  parts_.located.forget_statistics();
 }
 
 StepResult& TimeStepper::make_step(const StepInput& in) {
@@ -130,16 +132,48 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.
 void TimeStepper::advance_under_constant_loads(const StepIsland& island, const StepInput& in) {
   parts_.trial.swept = false;
+  parts_.located.clear();
   if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
     parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
   }
   for (const Range components : island.batches) {
     parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
     parts_.trial.swept = true;
+    if (parts_.located.on()) locate_under_constant_loads(components, island, in);
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   }
   book_contacts(island, in);
   if (parts_.options.project_gaps) project_positions(island, in);
+}
+
+/// Bodies that are hit within the step, under constant loads: they are moved again, and booked anew.
+void TimeStepper::locate_under_constant_loads(Range components, const StepIsland& island,
+                                              const StepInput& in) {
+  LocatedImpacts& located = parts_.located;
+  StepTrial& trial = parts_.trial;
+  const GroundPlaces& places = parts_.constraints.places_at_end();
+  if (!located.take_up(in, components, island.constraints, places, trial)) return;
+  const double* const total = in.companion.loads.total.data();
+  const Range bodies = in.assembly.bodies_of(components);
+  StoredEnergies before, after;
+  for (LocatedMotion& motion : located.motions()) {
+    const Range body{motion.body(), motion.body() + 1};
+    if (body.begin < bodies.begin || body.begin >= bodies.end) continue;
+    BlockWorks &works = trial.account.works.front(), then, now;
+    parts_.rule.works_constant(in, body, motion.velocities(in), trial, then);
+    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, before);
+    located.advance(in, parts_.rule, {total, total}, body, trial);
+    if (motion.failed() != nullptr) {
+      parts_.errors(in, in.assembly.component_of(body.begin)).fail_contact(*motion.failed());
+    }
+    parts_.rule.works_constant(in, body, motion.velocities(in), trial, now);
+    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, after);
+    works.kinetic += now.kinetic - then.kinetic;
+    works.total += motion.work(in, {total, total}) - then.total;
+  }
+  for (std::size_t i = 0; i < stored_energy_count; ++i) {
+    trial.account.potentials.values[i] += after.values[i] - before.values[i];
+  }
 }
 
 /// Names the cause in the first component of which an energy is not finite.
@@ -158,6 +192,9 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
   for (const Index component : island.components) {
     const SweepStages at = parts_.stages(in, component);
     if (known == LoadsKnown::total) parts_.schedule.evaluate(at, LoadsKnown::by_cause, false);
+    if (!parts_.located.empty()) {
+      parts_.located.correct_works(in, parts_.rule, at.bodies(), parts_.trial);
+    }
     if (!balance_.book_couplings(in, component, parts_.trial)) fail_account({component, component + 1}, in);
     if (JointStage* const joints = parts_.joints.of(component)) {
       balance_.book_joints(in, component, *joints, parts_.problem(), parts_.trial);
@@ -168,15 +205,31 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
 }
 
 void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
-  if (parts_.contacts.problems().empty()) return;
   JointStage* const joints = parts_.joints.of(island.components.front());
-  const double* const after =
-      joints != nullptr ? joints->velocities_of_contact(parts_.trial) : parts_.trial.end.v.data();
+  const double* const after = joints != nullptr && !parts_.contacts.problems().empty()
+                                  ? joints->velocities_of_contact(parts_.trial)
+                                  : parts_.trial.end.v.data();
   for (const IslandProblem& problem : parts_.contacts.problems()) {
-    const double gain = balance_.book_contacts(problem, after, parts_.trial);
-    if (gain > 0.0 && parts_.options.refuse_energy_gain) {
-      parts_.errors(in, island.components.front()).refuse_gain(problem, gain);
+    if (parts_.located.contains(problem.constraints().front().body())) continue;
+    book_contact_problem(problem, after, in.end_time, in);
+  }
+  for (const LocatedMotion& motion : parts_.located.motions()) {
+    for (const MotionPhase& phase : motion.phases()) {
+      motion.show_end(in, phase, parts_.trial);
+      if (phase.constraints.empty()) continue;
+      const double time = phase.end < 1.0 ? in.start.time + phase.end * in.step : in.end_time;
+      book_contact_problem(phase.problem, after, time, in);
     }
+  }
+}
+
+/// \param after velocities after it, as contact sees them \param time when it ends [s]
+void TimeStepper::book_contact_problem(const IslandProblem& problem, const double* after, double time,
+                                       const StepInput& in) {
+  const double gain = balance_.book_contacts(problem, after, time, parts_.trial);
+  if (gain > 0.0 && parts_.options.refuse_energy_gain) {
+    parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()))
+        .refuse_gain(problem, gain);
   }
 }
 

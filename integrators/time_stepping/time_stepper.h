@@ -54,9 +54,12 @@ private:
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
+  void locate_under_constant_loads(Range components, const StepIsland& island, const StepInput& in);
   [[noreturn]] void fail_account(Range components, const StepInput& in);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
+  void book_contact_problem(const IslandProblem& problem, const double* after, double time,
+                            const StepInput& in);
   void project_positions(const StepIsland& island, const StepInput& in);
   void project_component(Index component, std::span<const Constraint> constraints, const StepInput& in);
   void evaluate_start(const State& state, Companion& companion);

@@ -1,0 +1,70 @@
+#pragma once
+
+/// \file
+/// Bodies of an island that shapes on ground hit within the step (TimeStepping::impacts). Found along the
+/// iterate; what they are coupled to follows by the iteration, so that the step stays one implicit problem.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/located_motion.h>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Finds such bodies, and moves them. Keeps memory.
+class CAROM_API LocatedImpacts {
+public:
+  /// \param assembly,detector must outlive it
+  LocatedImpacts(const Assembly& assembly, const Detector& detector, const TimeStepping& options);
+
+  /// True if impacts are located at all.
+  [[nodiscard]] bool on() const { return on_; }
+  /// Forgets all bodies.
+  void clear();
+  /// True if no body was taken up.
+  [[nodiscard]] bool empty() const { return in_use_ == 0; }
+  /// Takes up bodies of consecutive components whose gaps are closed at the end of the iterate, though not at
+  /// its start; and those that a contact hits at its start. True if there are any that were not known.
+  /// \param contacts of their island that take part from the start on \param places ground at the end
+  bool take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
+               const GroundPlaces& places, StepTrial& trial);
+  /// Moves those of some bodies again, after the rule has moved all. Bodies may be shared out to threads.
+  void advance(const StepInput& in, const StepRule& rule, const LinearLoads& loads, Range bodies,
+               StepTrial& trial);
+  /// True if a body was taken up.
+  [[nodiscard]] bool contains(Index body) const;
+  /// Motions of all that were, in no order.
+  [[nodiscard]] std::span<LocatedMotion> motions() { return {motions_.data(), in_use_}; }
+  /// A problem that was not solved; null if none.
+  [[nodiscard]] const IslandProblem* first_unsolved() const;
+  /// Replaces, in the account of the trial, works of loads on some bodies along their mean velocities by
+  /// those along their flights.
+  void correct_works(const StepInput& in, const StepRule& rule, Range bodies, StepTrial& trial) const;
+  /// Adds what solvers have counted since the last call;
+  void add_statistics(ChainStatistics& sum);
+  /// or forgets it, after a step that failed.
+  void forget_statistics();
+
+private:
+  [[nodiscard]] std::span<const Constraint> of_body(std::span<const Constraint> contacts, Index body) const;
+  void take_up(Index body, std::span<const Constraint> contacts, bool struck, StepTrial& trial);
+  [[nodiscard]] std::size_t place(Index body) const;
+
+  const Assembly* assembly_;
+  const Detector* detector_;
+  bool on_;
+  int most_impacts_;
+  double capture_speed_;
+  std::vector<LocatedMotion> motions_;
+  std::size_t in_use_ = 0;
+  std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
+  std::vector<Constraint> found_;
+};
+
+}  // namespace carom

@@ -1,0 +1,269 @@
+// Problem: a step of one body that is hit at instants within it.
+
+#include <carom/core/dynamics/body_response.h>
+#include <carom/integrators/time_stepping/located_motion.h>
+#include <carom/integrators/time_stepping/step_kernels.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+template <std::size_t N>
+void read(const std::vector<double>& from, Index first, Index count, std::array<double, N>& out) {
+  std::copy_n(from.begin() + first, count, out.begin());
+}
+
+template <std::size_t N>
+void write(const std::array<double, N>& from, Index first, Index count, std::vector<double>& out) {
+  std::copy_n(from.begin(), count, out.begin() + first);
+}
+
+}  // namespace
+
+void LocatedMotion::begin(Index body, std::span<const Constraint> contacts, bool struck) {
+  body_ = body;
+  struck_ = struck;
+  start_.assign(contacts.begin(), contacts.end());
+  used_ = 0;
+  failed_ = nullptr;
+}
+
+bool LocatedMotion::advance(const LocatedStep& step) {
+  const BodySlot slot = step.in.assembly.layout()->bodies()[body_];
+  const At at{step, slot, *step.in.assembly.body_kinds()[slot.kind]};
+  used_ = 0;
+  failed_ = nullptr;
+  closed_.clear();
+  for (const Constraint& contact : start_) closed_.push_back(contact.key);
+  const State& start = step.in.start;
+  std::copy_n(start.q.begin() + slot.q, slot.q_size, step.trial.end.q.begin() + slot.q);
+  std::copy_n(start.v.begin() + slot.v, slot.v_size, step.trial.end.v.begin() + slot.v);
+  return move(at);
+}
+
+/// Flights and impacts in turn.
+bool LocatedMotion::move(const At& at) {
+  int impacts = 0;
+  double now = 0.0;
+  if (struck_ && !strike(at, now, ++impacts == at.most_impacts)) return false;
+  while (now < 1.0) {
+    MotionPhase& flight = add_phase(at, now, 1.0);
+    if (impacts == 0) {
+      flight.constraints = start_;
+    } else if (!closed_.empty()) {
+      observe(at, now, std::numeric_limits<double>::infinity(), true);
+      take_closed(flight.constraints);
+    }
+    if (!fly(at, flight)) return false;
+    if (impacts == at.most_impacts || !find_closing(at, flight)) {
+      rotate(at);
+      return true;
+    }
+    write(flight.q, at.slot.q, at.slot.q_size, at.trial.end.q);
+    write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+    const double hit = closing_.front().share;
+    if (hit > now) {
+      for (Constraint& contact : flight.constraints) contact.shorten((hit - now) / (1.0 - now));
+      flight.end = hit;
+      if (!fly(at, flight)) return false;
+    } else {
+      --used_;
+    }
+    now = hit;
+    if (!strike(at, now, ++impacts == at.most_impacts)) return false;
+  }
+  rotate(at);
+  return true;
+}
+
+/// A phase from where the body is, without contacts.
+MotionPhase& LocatedMotion::add_phase(const At& at, double begin, double end) {
+  if (used_ == phases_.size()) phases_.emplace_back();
+  MotionPhase& phase = phases_[used_++];
+  phase.begin = begin;
+  phase.end = end;
+  read(at.trial.end.q, at.slot.q, at.slot.q_size, phase.q);
+  read(at.trial.end.v, at.slot.v, at.slot.v_size, phase.v0);
+  phase.constraints.clear();
+  return phase;
+}
+
+/// The body, at the begin of the flight, comes to its end.
+bool LocatedMotion::fly(const At& at, MotionPhase& flight) {
+  if (!flight.constraints.empty() && !solve(at, flight)) return false;
+  sweep(at, flight, flight.end);
+  read(at.trial.end.v, at.slot.v, at.slot.v_size, flight.v1);
+  return true;
+}
+
+/// Impulses of the contacts of a phase, as changes of velocity in StepTrial::dv_impulses. The loads of a
+/// flight act in its problem.
+bool LocatedMotion::solve(const At& at, MotionPhase& phase) {
+  const double half = 0.5 * (phase.end - phase.begin) * at.in.step;
+  double *const dv = at.trial.dv_impulses.data(), *const free = at.trial.free.data();
+  const double* const before = at.trial.end.v.data();
+  const Index end = at.slot.v + at.slot.v_size;
+  for (Index i = at.slot.v; i < end; ++i) {
+    dv[i] = half * (at.loads.at(i, phase.begin) + at.loads.at(i, phase.end));
+  }
+  at.kind.apply_inverse_mass({at.slot.slot, at.slot.slot + 1}, dv + at.slot.v, free + at.slot.v);
+  for (Index i = at.slot.v; i < end; ++i) {
+    free[i] += before[i];
+    dv[i] = 0.0;
+  }
+  MassResponse masses(at.in.assembly);
+  phase.problem.build(phase.constraints, before);
+  phase.problem.respond(masses);
+  phase.problem.set_free_velocity(free);
+  if (!phase.problem.solve(chain_).usable()) {
+    failed_ = &phase.problem;
+    return false;
+  }
+  phase.problem.map().add_velocities(dv);
+  return true;
+}
+
+/// Where a flight is at a share of the step: impulses of its contacts act evenly.
+void LocatedMotion::sweep(const At& at, const MotionPhase& flight, double share) const {
+  std::array<double, 6> load0{}, load1{}, response{};
+  const std::array<float, 6> nothing{};
+  const double part = (share - flight.begin) / (flight.end - flight.begin);
+  const Index v = at.slot.v, size = at.slot.v_size;
+  for (Index i = 0; i < size; ++i) {
+    load0[i] = at.loads.at(v + i, flight.begin);
+    load1[i] = at.loads.at(v + i, share);
+    if (!flight.constraints.empty()) response[i] = part * at.trial.dv_impulses[v + i];
+  }
+  const bool first = flight.begin == 0.0;
+  sweep_bodies(
+      at.kind.masses(at.slot.slot), 1, (share - flight.begin) * at.in.step,
+      {flight.q.data(), flight.v0.data(), first ? at.in.companion.rounding.data() + v : nothing.data(),
+       load0.data(), load1.data(), response.data(), at.trial.end.q.data() + at.slot.q,
+       at.trial.end.v.data() + v, at.trial.rounding.data() + v, at.rule.is_mean()});
+}
+
+/// Brings its rotation to its coordinates.
+void LocatedMotion::rotate(const At& at) {
+  if (at.slot.rotation == none) return;
+  at.kind.rotations({at.slot.slot, at.slot.slot + 1}, at.trial.end.q.data() + at.slot.q,
+                    at.trial.at_end.rotation.data() + at.slot.rotation);
+}
+
+/// Contacts of the body where it is. \param to_end time passes up to the end of the step; else none
+void LocatedMotion::observe(const At& at, double share, double margin, bool to_end) {
+  StateView view = at.trial.end.view();
+  view.time = share < 1.0 ? at.in.start.time + share * at.in.step : at.in.end_time;
+  rotate(at);
+  at.detector.place(view.time, places_);
+  if (to_end) at.detector.place(at.in.end_time, places_at_end_);
+  found_.clear();
+  at.detector.find_of(body_, {view, at.trial.at_end, places_, to_end ? &places_at_end_ : nullptr, margin},
+                      found_);
+}
+
+/// Those of the contacts that were observed which take part in what comes next.
+void LocatedMotion::take_closed(std::vector<Constraint>& out) const {
+  for (const Constraint& contact : found_) {
+    if (std::find(closed_.begin(), closed_.end(), contact.key) != closed_.end()) out.push_back(contact);
+  }
+}
+
+/// Finds what closes in a flight at whose end the body is, and adds the first to the contacts that take part.
+bool LocatedMotion::find_closing(const At& at, const MotionPhase& flight) {
+  constexpr double together = 1e-8;  // shares that differ by less are one instant
+  observe(at, flight.end, 0.0, false);
+  closing_.clear();
+  for (const Constraint& contact : found_) {
+    if (std::find(closed_.begin(), closed_.end(), contact.key) != closed_.end()) continue;
+    const double rate = contact.normal_velocity(at.trial.end.v.data());
+    if (contact.gap < 0.0 || rate < 0.0) closing_.push_back({contact.key, contact.gap, rate, flight.end});
+  }
+  if (closing_.empty()) return false;
+  for (Closing& closing : closing_) closing.share = closing_share(at, flight, closing);
+  const auto earlier = [](const Closing& a, const Closing& b) { return a.share < b.share; };
+  std::stable_sort(closing_.begin(), closing_.end(), earlier);
+  for (const Closing& closing : closing_) {
+    if (closing.share <= closing_.front().share + together) closed_.push_back(closing.key);
+  }
+  return true;
+}
+
+/// When a gap closes that is not open any more at the end of a flight: by Newton's method, kept between a
+/// time at which the gap is open and one at which it is not.
+double LocatedMotion::closing_share(const At& at, const MotionPhase& flight, const Closing& closing) {
+  constexpr int most_tries = 100;
+  constexpr double close = 1e-15;  // of the step
+  double open = flight.begin, closed = flight.end, share = flight.end;
+  double gap = closing.gap, slope = closing.rate * at.in.step;
+  for (int tries = 0; tries < most_tries && gap != 0.0; ++tries) {
+    double next = share - gap / slope;
+    if (!(next > open && next < closed)) next = 0.5 * (open + closed);
+    const bool done = std::abs(next - share) <= close || !(next > open && next < closed);
+    if (done) break;
+    share = next;
+    sweep(at, flight, share);
+    observe(at, share, std::numeric_limits<double>::infinity(), false);
+    const auto is_it = [&](const Constraint& contact) { return contact.key == closing.key; };
+    const auto contact = std::find_if(found_.begin(), found_.end(), is_it);
+    if (contact == found_.end()) break;
+    gap = contact->gap;
+    slope = contact->normal_velocity(at.trial.end.v.data()) * at.in.step;
+    (gap < 0.0 ? closed : open) = share;
+  }
+  return share;
+}
+
+/// The body is hit by all that is closed. What leaves takes no part in the flight that follows, but after the
+/// last impact that is allowed.
+bool LocatedMotion::strike(const At& at, double share, bool last) {
+  constexpr double rounding = 1e-12;  // of the velocities along a normal
+  MotionPhase& hit = add_phase(at, share, share);
+  observe(at, share, std::numeric_limits<double>::infinity(), false);
+  take_closed(hit.constraints);
+  if (!solve(at, hit)) return false;
+  closed_.clear();
+  const double* const v = at.trial.end.v.data();
+  std::vector<double>& dv = at.trial.dv_impulses;
+  const auto add = [&](double sign) {
+    for (Index i = at.slot.v; i < at.slot.v + at.slot.v_size; ++i) at.trial.end.v[i] += sign * dv[i];
+  };
+  for (const Constraint& contact : hit.constraints) {
+    const double before = contact.speed(0, v);
+    add(1.0);
+    const double size = std::max(before, contact.speed(0, v));
+    if (last || contact.velocity(0, v) <= rounding * size) closed_.push_back(contact.key);
+    write(hit.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+  }
+  add(1.0);
+  std::fill_n(at.trial.rounding.begin() + at.slot.v, at.slot.v_size, 0.0F);
+  read(at.trial.end.v, at.slot.v, at.slot.v_size, hit.v1);
+  return true;
+}
+
+Range LocatedMotion::velocities(const StepInput& in) const {
+  const BodySlot slot = in.assembly.layout()->bodies()[body_];
+  return {slot.v, slot.v + slot.v_size};
+}
+
+void LocatedMotion::show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const {
+  const Range v = velocities(in);
+  write(phase.v1, v.begin, v.size(), trial.end.v);
+}
+
+double LocatedMotion::work(const StepInput& in, const LinearLoads& loads) const {
+  const Range v = velocities(in);
+  double sum = 0.0;
+  for (const MotionPhase& phase : phases()) {
+    for (Index i = 0; i < v.size(); ++i) {
+      const double load = loads.at(v.begin + i, phase.begin) + loads.at(v.begin + i, phase.end);
+      sum += 0.25 * (phase.end - phase.begin) * in.step * load * (phase.v0[i] + phase.v1[i]);
+    }
+  }
+  return sum;
+}
+
+}  // namespace carom

@@ -1,0 +1,115 @@
+#pragma once
+
+/// \file
+/// Motion of one body through a step in which shapes on ground hit it (TimeStepping::impacts): it flies to
+/// the instant at which a gap closes, is hit there, and flies on. Every flight is a step of the rule by
+/// itself, under the part of the loads that falls into it: loads vary linearly between the ends of the step.
+/// So the impulse of the loads over the step is the same as without impacts, and momentum is passed on in
+/// full.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/island_problem.h>
+#include <carom/core/export.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_rule.h>
+#include <carom/integrators/time_stepping/step_trial.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Loads over a step, arrays over all velocities: linear between its ends.
+struct LinearLoads {
+  const double* start;  ///< [N, N m]
+  const double* end;    ///< [N, N m]
+
+  /// One of them at a share of the step.
+  [[nodiscard]] double at(Index i, double share) const { return start[i] + share * (end[i] - start[i]); }
+};
+
+/// Part of a step of one body: a flight, or an impact, which takes no time. Times are shares of the step.
+struct MotionPhase {
+  double begin = 0.0, end = 0.0;        ///< equal: an impact
+  std::array<double, 7> q{};            ///< coordinates at its begin
+  std::array<double, 6> v0{}, v1{};     ///< velocities at its begin, at its end
+  std::vector<Constraint> constraints;  ///< contacts that take part
+  IslandProblem problem;                ///< theirs, if there are any
+
+  /// True of an impact.
+  [[nodiscard]] bool is_impact() const { return begin == end; }
+};
+
+/// A step that bodies are moved through.
+struct LocatedStep {
+  const StepInput& in;
+  const StepRule& rule;
+  const Detector& detector;
+  LinearLoads loads;
+  int most_impacts;  ///< of one body, >= 1
+  StepTrial& trial;
+};
+
+/// The motion of one body. Keeps memory.
+class CAROM_API LocatedMotion {
+public:
+  /// Looks at another body, none of whose contacts is shared with others. \param contacts that take part from
+  /// the start of the step on \param struck whether one of them is closed by an impact
+  void begin(Index body, std::span<const Constraint> contacts, bool struck);
+  /// The body.
+  [[nodiscard]] Index body() const { return body_; }
+  /// Moves it through the step: writes its numbers in `trial.end` and what rounding cuts off. After the last
+  /// impact that is allowed, contacts that are closed act to the end of the step as in any other (Johansson
+  /// 1999, section 4). False if a contact problem is not solved: failed().
+  bool advance(const LocatedStep& step);
+  /// The problem that was not solved; null if none.
+  [[nodiscard]] const IslandProblem* failed() const { return failed_; }
+  /// Phases of the last advance(), in their order.
+  [[nodiscard]] std::span<const MotionPhase> phases() const { return {phases_.data(), used_}; }
+  /// Its velocities among all.
+  [[nodiscard]] Range velocities(const StepInput& in) const;
+  /// Makes its velocities at the end of a phase those of the trial.
+  void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
+  /// Work of loads over the flights [J].
+  [[nodiscard]] double work(const StepInput& in, const LinearLoads& loads) const;
+  /// Its solvers.
+  [[nodiscard]] SolverChain& chain() { return chain_; }
+
+private:
+  // The step, and the body in it.
+  struct At : LocatedStep {
+    BodySlot slot;
+    const BodyKind& kind;
+  };
+  // A contact that closes in a flight.
+  struct Closing {
+    ConstraintKey key;
+    double gap, rate;  // at the end of the flight [m, m/s]
+    double share;      // when it closes
+  };
+  [[nodiscard]] bool move(const At& at);
+  MotionPhase& add_phase(const At& at, double begin, double end);
+  [[nodiscard]] bool fly(const At& at, MotionPhase& flight);
+  [[nodiscard]] bool strike(const At& at, double share, bool last);
+  [[nodiscard]] bool solve(const At& at, MotionPhase& phase);
+  void sweep(const At& at, const MotionPhase& flight, double share) const;
+  static void rotate(const At& at);
+  void observe(const At& at, double share, double margin, bool to_end);
+  void take_closed(std::vector<Constraint>& out) const;
+  [[nodiscard]] bool find_closing(const At& at, const MotionPhase& flight);
+  [[nodiscard]] double closing_share(const At& at, const MotionPhase& flight, const Closing& closing);
+
+  Index body_ = none;
+  bool struck_ = false;
+  std::vector<Constraint> start_, found_;
+  std::vector<ConstraintKey> closed_;  // contacts that take part in what comes next
+  std::vector<Closing> closing_;       // in the flight at hand, the first first
+  std::vector<MotionPhase> phases_;
+  std::size_t used_ = 0;
+  GroundPlaces places_, places_at_end_;
+  SolverChain chain_;
+  const IslandProblem* failed_ = nullptr;
+};
+
+}  // namespace carom
