@@ -36,7 +36,8 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
     if (verdict == Verdict::failed) fail_contraction(island, in, judge);
     const bool converged = verdict == Verdict::converged || made.converged_one_early;
     // The first iterate mostly hits what the last one does; the last one says.
-    if ((judge.sweeps() == 1 || converged) && find_impacts(island, in)) {
+    if ((judge.sweeps() == 1 && find_impacts(island, in)) ||
+        (converged && (find_impacts(island, in) || loads_jump(island, in)))) {
       verdict = Verdict::go_on;
       made.converged_one_early = false;
     }
@@ -66,6 +67,17 @@ bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in
   return any;
 }
 
+/// Jumps of loads at impacts, of loads that depend on velocities: true if they change the motion. The mean
+/// loads of a rule of mean loads have them already.
+bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in) {
+  constexpr int most_updates = 20;
+  StepTrial& trial = parts_->trial;
+  if (parts_->located.empty() || !(trial.needs.dissipative || trial.needs.external)) return false;
+  if (parts_->rule.is_mean() || jump_updates_ == most_updates) return false;
+  ++jump_updates_;
+  return parts_->located.update_jumps(in, island.components, parts_->options.tolerance, trial);
+}
+
 /// Contact problems, and a first guess at the loads.
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const Index front = island.components.front();
@@ -76,7 +88,9 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   }
   parts_->contacts.state_problems(in, island, method_.is_newton() || joints != nullptr, parts_->trial);
   parts_->located.clear();
-  parts_->trial.swept = false;
+  parts_->trial.jumps.on = false;
+  jump_updates_ = 0;
+  parts_->trial.account.swept = false;
   for (const Index component : island.components) {
     const Range z = parts_->assembly->components()[component].z;
     std::copy(in.start.z.begin() + z.begin, in.start.z.begin() + z.end,
@@ -124,7 +138,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_streamed(const SweepStages& s
     made.converged_one_early = verdict == Verdict::converged;
   }
   made.change = parts_->schedule.change(stages);
-  parts_->trial.swept = true;
+  parts_->trial.account.swept = true;
   return made;
 }
 
@@ -152,7 +166,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
       parts_->errors(in, front).fail_contact(*failed);
     }
     for (const Index component : island.components) parts_->schedule.move(parts_->stages(in, component));
-    parts_->trial.swept = true;
+    parts_->trial.account.swept = true;
   }
   for (const Index component : island.components) {
     follow(in, component);

@@ -45,6 +45,7 @@ private:
   [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool find_impacts(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] bool loads_jump(const StepIsland& island, const StepInput& in);
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
                                         const FixedPointJudge& judge);
@@ -61,6 +62,7 @@ private:
   LoadIteration method_;
   std::vector<int> sweeps_;  // by component
   int local_sweeps_ = 0;
+  int jump_updates_ = 0;  // of the island at hand
 };
 
 }  // namespace carom

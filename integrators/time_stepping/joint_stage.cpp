@@ -76,8 +76,8 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
 
   rows_.place(in, trial);
   // Choosing factors the rows at the end.
-  if (!trial.swept) rows_.choose(in, trial, left_);
-  if (trial.swept || rows_.is_mixed()) rows_.factor();
+  if (!trial.account.swept) rows_.choose(in, trial, left_);
+  if (trial.account.swept || rows_.is_mixed()) rows_.factor();
   if (contacts.problem != nullptr && !struck_) rows_.at_midpoint().factor();
 
   const double half = 0.5 * in.step;
@@ -94,7 +94,7 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
   }
   for (Index i = v.begin; i < v.end; ++i) trial.dv_impulses[i] = arrays.dv_joints[i] + arrays.dv_contact[i];
   rule.move(in, all.bodies, true, trial);
-  trial.swept = true;
+  trial.account.swept = true;
   return_to_joints(in, trial);
   return true;
 }

@@ -3,6 +3,7 @@
 #include <carom/integrators/time_stepping/located_impacts.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 
@@ -53,19 +54,23 @@ bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<co
     if (contact.gap == 0.0 && !(contact.normal_velocity(end.v) < 0.0)) continue;
     const std::span<const Constraint> own = of_body(contacts, contact.body());
     const auto is_same = [&](const Constraint& other) { return other.key == contact.key; };
-    if (std::none_of(own.begin(), own.end(), is_same)) take_up(contact.body(), own, false, trial);
+    if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), own, trial);
   }
   const Range bodies = assembly_->bodies_of(components);
   for (const Constraint& contact : contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
-    if (!(contact.normal_velocity(in.start.v.data()) < -capture_speed_)) continue;
-    take_up(contact.body(), of_body(contacts, contact.body()), true, trial);
+    if (!contact.turns() && !hits(in, contact)) continue;
+    take_up(in, contact.body(), of_body(contacts, contact.body()), trial);
   }
   return in_use_ > known;
 }
 
+bool LocatedImpacts::hits(const StepInput& in, const Constraint& contact) const {
+  return contact.normal_velocity(in.start.v.data()) < -capture_speed_;
+}
+
 /// A body that shares a constraint with another keeps to the step of both.
-void LocatedImpacts::take_up(Index body, std::span<const Constraint> contacts, bool struck,
+void LocatedImpacts::take_up(const StepInput& in, Index body, std::span<const Constraint> contacts,
                              StepTrial& trial) {
   const std::size_t at = place(body);
   if (at < order_.size() && order_[at].first == body) return;
@@ -74,11 +79,13 @@ void LocatedImpacts::take_up(Index body, std::span<const Constraint> contacts, b
   if (in_use_ == motions_.size()) motions_.emplace_back();
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
+  const bool struck = std::any_of(contacts.begin(), contacts.end(),
+                                  [&](const Constraint& contact) { return hits(in, contact); });
   motions_[in_use_++].begin(body, contacts, struck);
 }
 
-void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const LinearLoads& loads,
-                             Range bodies, StepTrial& trial) {
+void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
+                             StepTrial& trial) {
   for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
     motions_[order_[at].second].advance({in, rule, *detector_, loads, most_impacts_, trial});
   }
@@ -91,24 +98,103 @@ const IslandProblem* LocatedImpacts::first_unsolved() const {
   return nullptr;
 }
 
+/// What impacts have changed of the loads at the end, as far as these depend on velocities.
+void LocatedImpacts::evaluate_jumps(const StepInput& in, Index component, bool weighted, StepTrial& trial,
+                                    std::vector<double>& out) const {
+  const Range v = assembly_->components()[component].v;
+  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].take_back(in, weighted, trial);
+  evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, {out.data(), out.data(), out.data()});
+  for (Index i = v.begin; i < v.end; ++i) out[i] = trial.loads_end.total[i] - out[i];
+  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].show_end(in, motions_[i].phases().back(), trial);
+}
+
+bool LocatedImpacts::update_jumps(const StepInput& in, std::span<const Index> components, double tolerance,
+                                  StepTrial& trial) {
+  LoadJumps& jumps = trial.jumps;
+  const std::size_t size = trial.end.v.size();
+  for (std::vector<double>* const numbers :
+       {&jumps.jump, &jumps.correction, &jumps.start, &jump_, &correction_, &change_}) {
+    numbers->resize(size);
+  }
+  double change = 0.0;
+  for (const Index component : components) {
+    evaluate_jumps(in, component, false, trial, jump_);
+    evaluate_jumps(in, component, true, trial, correction_);
+    change = std::max(change, change_by_correction(in, component, jumps));
+  }
+  // What acted stays as it is once a change is too small to go on.
+  if (!(change > tolerance)) return false;
+  for (const Index component : components) {
+    const Range v = assembly_->components()[component].v;
+    for (Index i = v.begin; i < v.end; ++i) {
+      jumps.jump[i] = jump_[i];
+      jumps.correction[i] = correction_[i];
+      jumps.start[i] = in.companion.loads.total[i] + correction_[i];
+    }
+  }
+  jumps.on = true;
+  return true;
+}
+
+/// By how much the correction at hand would move the bodies in place of the one that acted, as SweepChange
+/// [m].
+double LocatedImpacts::change_by_correction(const StepInput& in, Index component, const LoadJumps& acted) {
+  const Range v = assembly_->components()[component].v;
+  for (Index i = v.begin; i < v.end; ++i) {
+    change_[i] = correction_[i] - (acted.on ? acted.correction[i] : 0.0);
+  }
+  double largest = 0.0;
+  assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+    const double* change = change_.data() + first;
+    kind.apply_inverse_mass(slots, change, change_.data() + first);
+    for (Index slot = slots.begin; slot < slots.end; ++slot) {
+      for (Index i = 0; i < kind.v_size(); ++i) {
+        largest = std::max(largest, std::abs(*change++) * kind.length_scale(slot, i));
+      }
+    }
+  });
+  return 0.5 * in.step * in.step * largest;
+}
+
+/// Works of the loads of a cause along the flights, less those that its block has been given. Of loads that
+/// jump the correction is booked as dissipative: it is of loads that depend on velocities.
 void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Range bodies,
                                    StepTrial& trial) const {
-  const auto correction = [&](const LocatedMotion& motion, const LinearLoads& loads) {
-    return motion.work(in, loads) - rule.work(in, loads.start, loads.end, motion.velocities(in), trial);
-  };
-  const auto by_cause = [&](const std::vector<double>& start, const std::vector<double>& end,
-                            const LocatedMotion& motion) {
-    if (end.empty()) return 0.0;
-    return correction(motion, {rule.is_mean() ? end.data() : start.data(), end.data()});
-  };
   BlockWorks& sum = trial.account.works.front();
+  const LoadJumps& jumps = trial.jumps;
+  const std::vector<double>&dissipative = trial.loads_end.dissipative, &external = trial.loads_end.external;
   const PresentLoads& start = in.companion.loads;
+  const auto first = [&](const std::vector<double>& at_start, const std::vector<double>& at_end) {
+    return rule.is_mean() ? at_end.data() : at_start.data();
+  };
+  const auto of_jumps = [&](Range v) {
+    return 0.5 * rule.work(in, jumps.correction.data(), jumps.correction.data(), v, trial);
+  };
+  const bool jump = jumps.on && !dissipative.empty();
+  if (jump) {
+    const Index component = assembly_->component_of(bodies.begin);
+    sum.dissipative += of_jumps(assembly_->components()[component].v);
+  }
   for (std::size_t i = 0; i < in_use_; ++i) {
     const LocatedMotion& motion = motions_[i];
     if (motion.body() < bodies.begin || motion.body() >= bodies.end) continue;
-    sum.total += correction(motion, {rule.start_of_sum(in, trial), trial.loads_guess.data()});
-    sum.dissipative += by_cause(start.dissipative, trial.loads_end.dissipative, motion);
-    sum.external += by_cause(start.external, trial.loads_end.external, motion);
+    const Range v = motion.velocities(in);
+    const auto over_step = [&](const double* a, const double* b) { return rule.work(in, a, b, v, trial); };
+    sum.total += motion.work(in, step_loads(in, rule, trial)) -
+                 over_step(rule.start_of_sum(in, trial), trial.loads_guess.data());
+    if (!dissipative.empty()) {
+      StepLoads loads{first(start.dissipative, dissipative), dissipative.data()};
+      sum.dissipative -= over_step(loads.start, loads.end);
+      if (jump) {
+        loads.jump = jumps.jump.data();
+        loads.correction = jumps.correction.data();
+        sum.dissipative -= of_jumps(v);
+      }
+      sum.dissipative += motion.work(in, loads);
+    }
+    if (external.empty()) continue;
+    const StepLoads loads{first(start.external, external), external.data()};
+    sum.external += motion.work(in, loads) - over_step(loads.start, loads.end);
   }
 }
 

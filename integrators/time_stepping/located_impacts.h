@@ -30,12 +30,13 @@ public:
   /// True if no body was taken up.
   [[nodiscard]] bool empty() const { return in_use_ == 0; }
   /// Takes up bodies of consecutive components whose gaps are closed at the end of the iterate, though not at
-  /// its start; and those that a contact hits at its start. True if there are any that were not known.
-  /// \param contacts of their island that take part from the start on \param places ground at the end
+  /// its start; and those that a contact hits at its start, or holds where it turns. True if there are any
+  /// that were not known. \param contacts of their island that take part from the start on \param places
+  /// ground at the end
   bool take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
                const GroundPlaces& places, StepTrial& trial);
   /// Moves those of some bodies again, after the rule has moved all. Bodies may be shared out to threads.
-  void advance(const StepInput& in, const StepRule& rule, const LinearLoads& loads, Range bodies,
+  void advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                StepTrial& trial);
   /// True if a body was taken up.
   [[nodiscard]] bool contains(Index body) const;
@@ -43,6 +44,10 @@ public:
   [[nodiscard]] std::span<LocatedMotion> motions() { return {motions_.data(), in_use_}; }
   /// A problem that was not solved; null if none.
   [[nodiscard]] const IslandProblem* first_unsolved() const;
+  /// Finds the jumps of loads of some components that depend on velocities, at the iterate. False if they
+  /// move the bodies as those do that acted, but for less than the tolerance [m]: then these stay.
+  [[nodiscard]] bool update_jumps(const StepInput& in, std::span<const Index> components, double tolerance,
+                                  StepTrial& trial);
   /// Replaces, in the account of the trial, works of loads on some bodies along their mean velocities by
   /// those along their flights.
   void correct_works(const StepInput& in, const StepRule& rule, Range bodies, StepTrial& trial) const;
@@ -52,8 +57,12 @@ public:
   void forget_statistics();
 
 private:
+  void evaluate_jumps(const StepInput& in, Index component, bool weighted, StepTrial& trial,
+                      std::vector<double>& out) const;
+  [[nodiscard]] double change_by_correction(const StepInput& in, Index component, const LoadJumps& acted);
   [[nodiscard]] std::span<const Constraint> of_body(std::span<const Constraint> contacts, Index body) const;
-  void take_up(Index body, std::span<const Constraint> contacts, bool struck, StepTrial& trial);
+  void take_up(const StepInput& in, Index body, std::span<const Constraint> contacts, StepTrial& trial);
+  [[nodiscard]] bool hits(const StepInput& in, const Constraint& contact) const;
   [[nodiscard]] std::size_t place(Index body) const;
 
   const Assembly* assembly_;
@@ -65,6 +74,7 @@ private:
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
   std::vector<Constraint> found_;
+  std::vector<double> jump_, correction_, change_;  // as LoadJumps, at the iterate
 };
 
 }  // namespace carom

@@ -24,6 +24,12 @@ void write(const std::array<double, N>& from, Index first, Index count, std::vec
 
 }  // namespace
 
+StepLoads step_loads(const StepInput& in, const StepRule& rule, const StepTrial& trial) {
+  const double* const end = trial.loads_guess.data();
+  if (!trial.jumps.on) return {rule.start_of_sum(in, trial), end};
+  return {in.companion.loads.total.data(), end, trial.jumps.jump.data(), trial.jumps.correction.data()};
+}
+
 void LocatedMotion::begin(Index body, std::span<const Constraint> contacts, bool struck) {
   body_ = body;
   struck_ = struck;
@@ -37,6 +43,7 @@ bool LocatedMotion::advance(const LocatedStep& step) {
   const At at{step, slot, *step.in.assembly.body_kinds()[slot.kind]};
   used_ = 0;
   failed_ = nullptr;
+  hit_ = 2.0;
   closed_.clear();
   for (const Constraint& contact : start_) closed_.push_back(contact.key);
   const State& start = step.in.start;
@@ -86,18 +93,95 @@ MotionPhase& LocatedMotion::add_phase(const At& at, double begin, double end) {
   MotionPhase& phase = phases_[used_++];
   phase.begin = begin;
   phase.end = end;
+  phase.hit = hit_;
   read(at.trial.end.q, at.slot.q, at.slot.q_size, phase.q);
   read(at.trial.end.v, at.slot.v, at.slot.v_size, phase.v0);
   phase.constraints.clear();
   return phase;
 }
 
-/// The body, at the begin of the flight, comes to its end.
+/// The body, at the begin of the flight, comes to its end. Where contacts turn on the way their impulses act
+/// along the directions halfway, and the law holds along those at both ends: as joints are held.
 bool LocatedMotion::fly(const At& at, MotionPhase& flight) {
+  constexpr int most_tries = 20;
+  constexpr double rounding = 1e-15;
+  of_flight_.begin = flight.constraints;
+  flight.turning_work = 0.0;
+  if (!fly_once(at, flight)) return false;
+  if (std::none_of(of_flight_.begin.begin(), of_flight_.begin.end(),
+                   [](const Constraint& contact) { return contact.turns(); })) {
+    return true;
+  }
+  double last = std::numeric_limits<double>::infinity();
+  for (int tries = 0; tries < most_tries; ++tries) {
+    const std::array<double, 6> before = flight.v1;
+    turn(at, flight);
+    write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+    if (!fly_once(at, flight)) return false;
+    double change = 0.0, size = 0.0;
+    for (Index i = 0; i < at.slot.v_size; ++i) {
+      const double length = at.kind.length_scale(at.slot.slot, i);
+      change = std::max(change, length * std::abs(flight.v1[i] - before[i]));
+      size = std::max(size, length * std::abs(flight.v1[i]));
+    }
+    if (change <= rounding * size || !(change < last)) break;
+    last = change;
+  }
+  book_turning(flight);
+  return true;
+}
+
+/// Work on the motion of the ground that turn() made up.
+void LocatedMotion::book_turning(MotionPhase& flight) const {
+  for (std::size_t c = 0; c < flight.constraints.size(); ++c) {
+    const Constraint &taken = flight.constraints[c], &begin = of_flight_.begin[c], &end = of_flight_.end[c];
+    for (int i = 0; i < begin.rows; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const double made_up = taken.surface_velocity[row] - begin.surface_velocity[row] +
+                             taken.surface_velocity_after[row] - end.surface_velocity[row];
+      flight.turning_work += 0.5 * flight.problem.map().impulse(c, i) * made_up;
+    }
+  }
+}
+
+bool LocatedMotion::fly_once(const At& at, MotionPhase& flight) {
   if (!flight.constraints.empty() && !solve(at, flight)) return false;
   sweep(at, flight, flight.end);
   read(at.trial.end.v, at.slot.v, at.slot.v_size, flight.v1);
   return true;
+}
+
+/// Brings the contacts of a flight to the directions halfway. What these make of the velocities at both ends,
+/// beyond what the directions there make of them, is taken for a motion of the ground.
+void LocatedMotion::turn(const At& at, MotionPhase& flight) {
+  constexpr double any_gap = std::numeric_limits<double>::infinity();
+  const double* const v = at.trial.end.v.data();
+  const auto find = [&](double share, std::vector<Constraint>& out) {
+    sweep(at, flight, share);
+    observe(at, share, any_gap, false);
+    out.clear();
+    take_closed(out);
+  };
+  find(0.5 * (flight.begin + flight.end), of_flight_.middle);
+  find(flight.end, of_flight_.end);
+  const std::size_t count = flight.constraints.size();
+  if (of_flight_.middle.size() != count || of_flight_.end.size() != count) return;  // a shape without an end
+  for (std::size_t c = 0; c < count; ++c) {
+    flight.constraints[c].jacobian = of_flight_.middle[c].jacobian;
+    for (int i = 0; i < of_flight_.begin[c].rows; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      flight.constraints[c].surface_velocity_after[row] =
+          of_flight_.middle[c].times(i, v) - of_flight_.end[c].velocity(i, v);
+    }
+  }
+  write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (int i = 0; i < of_flight_.begin[c].rows; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      flight.constraints[c].surface_velocity[row] =
+          of_flight_.middle[c].times(i, v) - of_flight_.begin[c].velocity(i, v);
+    }
+  }
 }
 
 /// Impulses of the contacts of a phase, as changes of velocity in StepTrial::dv_impulses. The loads of a
@@ -108,7 +192,7 @@ bool LocatedMotion::solve(const At& at, MotionPhase& phase) {
   const double* const before = at.trial.end.v.data();
   const Index end = at.slot.v + at.slot.v_size;
   for (Index i = at.slot.v; i < end; ++i) {
-    dv[i] = half * (at.loads.at(i, phase.begin) + at.loads.at(i, phase.end));
+    dv[i] = half * (at.loads.at(i, phase.begin, phase.hit) + at.loads.at(i, phase.end, phase.hit));
   }
   at.kind.apply_inverse_mass({at.slot.slot, at.slot.slot + 1}, dv + at.slot.v, free + at.slot.v);
   for (Index i = at.slot.v; i < end; ++i) {
@@ -134,8 +218,8 @@ void LocatedMotion::sweep(const At& at, const MotionPhase& flight, double share)
   const double part = (share - flight.begin) / (flight.end - flight.begin);
   const Index v = at.slot.v, size = at.slot.v_size;
   for (Index i = 0; i < size; ++i) {
-    load0[i] = at.loads.at(v + i, flight.begin);
-    load1[i] = at.loads.at(v + i, share);
+    load0[i] = at.loads.at(v + i, flight.begin, flight.hit);
+    load1[i] = at.loads.at(v + i, share, flight.hit);
     if (!flight.constraints.empty()) response[i] = part * at.trial.dv_impulses[v + i];
   }
   const bool first = flight.begin == 0.0;
@@ -221,6 +305,7 @@ double LocatedMotion::closing_share(const At& at, const MotionPhase& flight, con
 /// last impact that is allowed.
 bool LocatedMotion::strike(const At& at, double share, bool last) {
   constexpr double rounding = 1e-12;  // of the velocities along a normal
+  if (hit_ > 1.0) hit_ = share;
   MotionPhase& hit = add_phase(at, share, share);
   observe(at, share, std::numeric_limits<double>::infinity(), false);
   take_closed(hit.constraints);
@@ -254,12 +339,22 @@ void LocatedMotion::show_end(const StepInput& in, const MotionPhase& phase, Step
   write(phase.v1, v.begin, v.size(), trial.end.v);
 }
 
-double LocatedMotion::work(const StepInput& in, const LinearLoads& loads) const {
+void LocatedMotion::take_back(const StepInput& in, bool weighted, StepTrial& trial) const {
+  const Range v = velocities(in);
+  for (const MotionPhase& phase : phases()) {
+    if (!phase.is_impact()) continue;
+    const double weight = weighted ? 1.0 - 2.0 * phase.begin : 1.0;
+    for (Index i = 0; i < v.size(); ++i) trial.end.v[v.begin + i] -= weight * (phase.v1[i] - phase.v0[i]);
+  }
+}
+
+double LocatedMotion::work(const StepInput& in, const StepLoads& loads) const {
   const Range v = velocities(in);
   double sum = 0.0;
   for (const MotionPhase& phase : phases()) {
     for (Index i = 0; i < v.size(); ++i) {
-      const double load = loads.at(v.begin + i, phase.begin) + loads.at(v.begin + i, phase.end);
+      const double load =
+          loads.at(v.begin + i, phase.begin, phase.hit) + loads.at(v.begin + i, phase.end, phase.hit);
       sum += 0.25 * (phase.end - phase.begin) * in.step * load * (phase.v0[i] + phase.v1[i]);
     }
   }

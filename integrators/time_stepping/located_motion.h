@@ -20,18 +20,36 @@
 
 namespace carom {
 
-/// Loads over a step, arrays over all velocities: linear between its ends.
-struct LinearLoads {
-  const double* start;  ///< [N, N m]
-  const double* end;    ///< [N, N m]
+/// Loads over a step, arrays over all velocities [N, N m]: linear between its ends. Where impacts make loads
+/// jump, since these depend on velocities, `jump` is by how much, and `correction` what is to be added to the
+/// sum of the loads at both ends, so that half of it is the mean over the step.
+struct StepLoads {
+  const double* start;                 ///< F0
+  const double* end;                   ///< F1
+  const double* jump = nullptr;        ///< J; null: none
+  const double* correction = nullptr;  ///< null: none
 
-  /// One of them at a share of the step.
-  [[nodiscard]] double at(Index i, double share) const { return start[i] + share * (end[i] - start[i]); }
+  /// One of them at a share of the step. \param hit share at which it jumps, if that is behind: else above 1
+  [[nodiscard]] double at(Index i, double share, double hit) const {
+    if (jump == nullptr) return start[i] + share * (end[i] - start[i]);
+    const double slope = end[i] - start[i] - jump[i];
+    const double before = start[i] + share * slope;
+    if (!(hit < 1.0)) return before;
+    const double left = 0.5 * correction[i] - (0.5 - hit) * jump[i];  // of the impulse, by other impacts
+    return before + jump[i] + left / (1.0 - hit);
+  }
 };
+
+/// The loads that the guess of a trial leads along.
+[[nodiscard]] CAROM_API StepLoads step_loads(const StepInput& in, const StepRule& rule,
+                                             const StepTrial& trial);
 
 /// Part of a step of one body: a flight, or an impact, which takes no time. Times are shares of the step.
 struct MotionPhase {
-  double begin = 0.0, end = 0.0;        ///< equal: an impact
+  double begin = 0.0, end = 0.0;  ///< equal: an impact
+  double hit = 2.0;               ///< share of the first impact before it; above 1: none
+  /// Work of contacts by the turning of their directions, an error of the step [J].
+  double turning_work = 0.0;
   std::array<double, 7> q{};            ///< coordinates at its begin
   std::array<double, 6> v0{}, v1{};     ///< velocities at its begin, at its end
   std::vector<Constraint> constraints;  ///< contacts that take part
@@ -46,7 +64,7 @@ struct LocatedStep {
   const StepInput& in;
   const StepRule& rule;
   const Detector& detector;
-  LinearLoads loads;
+  StepLoads loads;
   int most_impacts;  ///< of one body, >= 1
   StepTrial& trial;
 };
@@ -71,8 +89,11 @@ public:
   [[nodiscard]] Range velocities(const StepInput& in) const;
   /// Makes its velocities at the end of a phase those of the trial.
   void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
+  /// Takes the changes of velocity by impacts back from the velocities of the trial. \param weighted times
+  /// 1 - 2 t of an impact at the share t of the step
+  void take_back(const StepInput& in, bool weighted, StepTrial& trial) const;
   /// Work of loads over the flights [J].
-  [[nodiscard]] double work(const StepInput& in, const LinearLoads& loads) const;
+  [[nodiscard]] double work(const StepInput& in, const StepLoads& loads) const;
   /// Its solvers.
   [[nodiscard]] SolverChain& chain() { return chain_; }
 
@@ -92,7 +113,10 @@ private:
   MotionPhase& add_phase(const At& at, double begin, double end);
   [[nodiscard]] bool fly(const At& at, MotionPhase& flight);
   [[nodiscard]] bool strike(const At& at, double share, bool last);
+  [[nodiscard]] bool fly_once(const At& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const At& at, MotionPhase& phase);
+  void turn(const At& at, MotionPhase& flight);
+  void book_turning(MotionPhase& flight) const;
   void sweep(const At& at, const MotionPhase& flight, double share) const;
   static void rotate(const At& at);
   void observe(const At& at, double share, double margin, bool to_end);
@@ -103,10 +127,14 @@ private:
   Index body_ = none;
   bool struck_ = false;
   std::vector<Constraint> start_, found_;
+  struct {
+    std::vector<Constraint> begin, middle, end;
+  } of_flight_;                        // its contacts then
   std::vector<ConstraintKey> closed_;  // contacts that take part in what comes next
   std::vector<Closing> closing_;       // in the flight at hand, the first first
   std::vector<MotionPhase> phases_;
   std::size_t used_ = 0;
+  double hit_ = 2.0;  // share of the first impact; above 1: none
   GroundPlaces places_, places_at_end_;
   SolverChain chain_;
   const IslandProblem* failed_ = nullptr;

@@ -202,6 +202,11 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   return entry;
 }
 
+void StepBalance::book_turning(double work) {
+  result_.flows[EnergyFlow::external] -= work;
+  coupling_work_.add(work);
+}
+
 void StepBalance::book_projection(const GapProjection::Result& result, const StoredEnergies& before,
                                   const StoredEnergies& after) {
   result_.report.projected = std::max(result_.report.projected, result.shift);

@@ -49,6 +49,9 @@ public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   double book_contacts(const IslandProblem& problem, const double* after, double time,
                        const StepTrial& trial);
+  /// Books work of contacts that is an error of the step: it was booked as work of moving ground. \param work
+  /// [J]
+  void book_turning(double work);
   /// Books that bodies were moved out of ground shapes. \param before potentials of their component before it
   /// \param after likewise
   void book_projection(const GapProjection::Result& result, const StoredEnergies& before,

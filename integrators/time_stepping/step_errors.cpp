@@ -189,7 +189,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   // Loads that are not finite reach the contact first; the iterate before, if there was one, is still there.
   if (!finite) {
     demand_finite_loads(in_.start.view());
-    if (trial_.swept) demand_finite_loads(trial_.end.view());
+    if (trial_.account.swept) demand_finite_loads(trial_.end.view());
   }
   std::string message = place(in_) + "contact problem of " + listed(failure.parts) + ": ";
   if (problem.report().usable()) {

@@ -34,11 +34,21 @@ struct BlockWorks {
   double kinetic = 0.0, total = 0.0, dissipative = 0.0, external = 0.0;
 };
 
+/// Jumps of loads that depend on velocities, at impacts within the step: arrays over all velocities [N, N m],
+/// of the island at hand. One at a share t of the step is J, and (F0 + F1 + (1 - 2 t) J)/2 the mean load.
+struct LoadJumps {
+  bool on = false;                 ///< there are any
+  std::vector<double> jump;        ///< sum of J
+  std::vector<double> correction;  ///< sum of (1 - 2 t) J
+  std::vector<double> start;       ///< F0 with the correction
+};
+
 /// Works and energies of the last iterate of a component.
 struct CAROM_API TrialAccount {
   std::vector<BlockWorks> works;          ///< by block, or by part of a batch
   std::vector<StoredEnergies> of_fields;  ///< potentials, by part of a batch
   StoredEnergies potentials;              ///< all, by cause
+  bool swept = false;                     ///< StepTrial::end is an iterate of the component at hand
 
   /// Forgets what was, and makes room. \param parts blocks, or parts of a batch
   void start(Index parts);
@@ -95,7 +105,7 @@ struct CAROM_API StepTrial {
   TrialAccount account;                ///< of the component at hand
   LoadHistory history;                 ///< of the companion, during a step in which loads are guessed
   std::vector<std::uint8_t> recorded;  ///< by block: its part of the last change, where that is pending
-  bool swept = false;                  ///< `end` is an iterate of the component at hand
+  LoadJumps jumps;                     ///< where impacts are located
 
 private:
   void record_change(const StepInput& in, Index block);

@@ -39,8 +39,7 @@ struct SweepStages {
   void move(const Block& block, Index part) const {
     rule.move(in, block.bodies, jointed || contacts.touches(part), trial);
     if (located == nullptr || located->empty()) return;
-    const LinearLoads loads{rule.start_of_sum(in, trial), trial.loads_guess.data()};
-    located->advance(in, rule, loads, block.bodies, trial);
+    located->advance(in, rule, step_loads(in, rule, trial), block.bodies, trial);
   }
   /// Change that the next sweep would make.
   [[nodiscard]] SweepChange change(const Block& block) const {

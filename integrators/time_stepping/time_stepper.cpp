@@ -131,14 +131,15 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
 
 /// The step whose loads at its end are those at its start, of which none is dissipative or external.
 void TimeStepper::advance_under_constant_loads(const StepIsland& island, const StepInput& in) {
-  parts_.trial.swept = false;
+  parts_.trial.account.swept = false;
   parts_.located.clear();
+  parts_.trial.jumps.on = false;
   if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
     parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
   }
   for (const Range components : island.batches) {
     parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
-    parts_.trial.swept = true;
+    parts_.trial.account.swept = true;
     if (parts_.located.on()) locate_under_constant_loads(components, island, in);
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   }
@@ -219,6 +220,7 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
       if (phase.constraints.empty()) continue;
       const double time = phase.end < 1.0 ? in.start.time + phase.end * in.step : in.end_time;
       book_contact_problem(phase.problem, after, time, in);
+      balance_.book_turning(phase.turning_work);
     }
   }
 }
