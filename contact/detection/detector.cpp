@@ -22,8 +22,8 @@ void Detector::find(Range components, const ContactQuery& query, std::vector<Con
 }
 
 void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
-                        LastingContacts& out) const {
-  out.start(step);
+                        double slack, LastingContacts& out) const {
+  out.start(step, slack);
   const Layout& layout = *assembly_->layout();
   const GroundShapes& shapes = ground_.shapes();
   for (const auto& entry : contacts) {
@@ -32,11 +32,12 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
       out.add(key);
       continue;
     }
-    // A centre of mass has no arm: only a shape that turns can open such a contact.
-    if (!shapes.any_moves()) continue;
+    // A centre of mass has no arm: but for slack only a shape that turns can open such a contact.
+    if (slack == 0.0 && !shapes.any_moves()) continue;
     const Index shape = shapes.find(key.b.serial);
     const BodyId body{key.a.serial, layout.token()};
-    if (shape == none || !shapes.moves(shape) || !layout.contains(body)) continue;
+    if (shape == none || !layout.contains(body)) continue;
+    if (slack == 0.0 && !shapes.moves(shape)) continue;
     out.add(key, layout.index(body));
   }
   out.finish();

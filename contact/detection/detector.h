@@ -61,7 +61,8 @@ public:
   }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
-  void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
+  /// \param slack opening of any contact that is none [m]
+  void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step, double slack,
                 LastingContacts& out) const;
 
   /// All pairs of one component, in the order of find(). Made at each call.

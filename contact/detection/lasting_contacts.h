@@ -26,8 +26,10 @@ public:
   static constexpr double most_opening = 8.0;
 
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
-  void start(double step) {
+  /// \param slack opening that is none [m]
+  void start(double step, double slack = 0.0) {
     step_ = step;
+    slack_ = slack;
     keys_.clear();
     centres_.clear();
   }
@@ -51,7 +53,7 @@ public:
   [[nodiscard]] double step() const { return step_; }
   /// True if a contact is among them and turning explains its gap. \param turning bound on |d| [m/s^2]
   [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
-    return gap <= reach(turning) && contains(key);
+    return gap <= reach(turning) + slack_ && contains(key);
   }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
@@ -59,7 +61,7 @@ public:
 private:
   void put_in_order();
 
-  double step_ = 0.0;
+  double step_ = 0.0, slack_ = 0.0;
   std::vector<ConstraintKey> keys_;  // ascending
   std::vector<Index> centres_;       // likewise
 };

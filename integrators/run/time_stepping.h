@@ -86,8 +86,9 @@ struct TimeStepping {
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
-  /// restitution of the contact; on nothing else of the motion [m/s]. Of a limit: the rate of its
-  /// coordinate, rad/s where that is an angle.
+  /// restitution of the contact; and where impacts are located, which of them are: a contact that closes more
+  /// slowly begins to last when its gap closes. On nothing else of the motion [m/s]. Of a limit: the rate of
+  /// its coordinate, rad/s where that is an angle.
   double capture_speed = 1e-2;
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;

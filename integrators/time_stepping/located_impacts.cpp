@@ -87,7 +87,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, std::span<const Co
 void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                              StepTrial& trial) {
   for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
-    motions_[order_[at].second].advance({in, rule, *detector_, loads, most_impacts_, trial});
+    motions_[order_[at].second].advance({in, rule, *detector_, loads, most_impacts_, capture_speed_, trial});
   }
 }
 

@@ -81,7 +81,8 @@ bool LocatedMotion::move(const At& at) {
       --used_;
     }
     now = hit;
-    if (!strike(at, now, ++impacts == at.most_impacts)) return false;
+    const bool fast = std::any_of(closing_.begin(), closing_.end(), [](const Closing& c) { return c.fast; });
+    if (fast && !strike(at, now, ++impacts == at.most_impacts)) return false;
   }
   rotate(at);
   return true;
@@ -264,27 +265,28 @@ bool LocatedMotion::find_closing(const At& at, const MotionPhase& flight) {
   for (const Constraint& contact : found_) {
     if (std::find(closed_.begin(), closed_.end(), contact.key) != closed_.end()) continue;
     const double rate = contact.normal_velocity(at.trial.end.v.data());
-    if (contact.gap < 0.0 || rate < 0.0) closing_.push_back({contact.key, contact.gap, rate, flight.end});
+    if (contact.gap < 0.0 || rate < 0.0)
+      closing_.push_back({contact.key, contact.gap, rate, flight.end, false});
   }
   if (closing_.empty()) return false;
-  for (Closing& closing : closing_) closing.share = closing_share(at, flight, closing);
+  for (Closing& closing : closing_) locate(at, flight, closing);
   const auto earlier = [](const Closing& a, const Closing& b) { return a.share < b.share; };
   std::stable_sort(closing_.begin(), closing_.end(), earlier);
-  for (const Closing& closing : closing_) {
-    if (closing.share <= closing_.front().share + together) closed_.push_back(closing.key);
-  }
+  const double last = closing_.front().share + together;
+  std::erase_if(closing_, [&](const Closing& closing) { return closing.share > last; });
+  for (const Closing& closing : closing_) closed_.push_back(closing.key);
   return true;
 }
 
 /// When a gap closes that is not open any more at the end of a flight: by Newton's method, kept between a
 /// time at which the gap is open and one at which it is not.
-double LocatedMotion::closing_share(const At& at, const MotionPhase& flight, const Closing& closing) {
+void LocatedMotion::locate(const At& at, const MotionPhase& flight, Closing& closing) {
   constexpr int most_tries = 100;
   constexpr double close = 1e-15;  // of the step
   double open = flight.begin, closed = flight.end, share = flight.end;
-  double gap = closing.gap, slope = closing.rate * at.in.step;
+  double gap = closing.gap, rate = closing.rate;
   for (int tries = 0; tries < most_tries && gap != 0.0; ++tries) {
-    double next = share - gap / slope;
+    double next = share - gap / (rate * at.in.step);
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     const bool done = std::abs(next - share) <= close || !(next > open && next < closed);
     if (done) break;
@@ -295,10 +297,11 @@ double LocatedMotion::closing_share(const At& at, const MotionPhase& flight, con
     const auto contact = std::find_if(found_.begin(), found_.end(), is_it);
     if (contact == found_.end()) break;
     gap = contact->gap;
-    slope = contact->normal_velocity(at.trial.end.v.data()) * at.in.step;
+    rate = contact->normal_velocity(at.trial.end.v.data());
     (gap < 0.0 ? closed : open) = share;
   }
-  return share;
+  closing.share = share;
+  closing.fast = rate < -at.capture_speed;
 }
 
 /// The body is hit by all that is closed. What leaves takes no part in the flight that follows, but after the

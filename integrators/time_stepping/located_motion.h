@@ -65,7 +65,8 @@ struct LocatedStep {
   const StepRule& rule;
   const Detector& detector;
   StepLoads loads;
-  int most_impacts;  ///< of one body, >= 1
+  int most_impacts;      ///< of one body, >= 1
+  double capture_speed;  ///< a contact that closes more slowly is no impact [m/s]
   StepTrial& trial;
 };
 
@@ -108,6 +109,7 @@ private:
     ConstraintKey key;
     double gap, rate;  // at the end of the flight [m, m/s]
     double share;      // when it closes
+    bool fast;         // faster than the capture speed
   };
   [[nodiscard]] bool move(const At& at);
   MotionPhase& add_phase(const At& at, double begin, double end);
@@ -122,7 +124,7 @@ private:
   void observe(const At& at, double share, double margin, bool to_end);
   void take_closed(std::vector<Constraint>& out) const;
   [[nodiscard]] bool find_closing(const At& at, const MotionPhase& flight);
-  [[nodiscard]] double closing_share(const At& at, const MotionPhase& flight, const Closing& closing);
+  void locate(const At& at, const MotionPhase& flight, Closing& closing);
 
   Index body_ = none;
   bool struck_ = false;

@@ -8,8 +8,18 @@
 
 namespace carom {
 
+namespace {
+
+/// A body that was hit where a gap closed stands on the ground to rounding: on either side of it [m].
+constexpr double rounding = 1e-12;
+
+}  // namespace
+
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : detector_(assembly), capture_speed_(options.capture_speed), islands_(assembly) {}
+    : detector_(assembly),
+      capture_speed_(options.capture_speed),
+      slack_(options.impacts == ImpactTimes::located ? rounding : 0.0),
+      islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
@@ -21,7 +31,7 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
-  detector_.remember(in.companion.modes, std::max(in.step, last_step), lasting_);
+  detector_.remember(in.companion.modes, std::max(in.step, last_step), slack_, lasting_);
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : in.companion.modes) {

@@ -45,6 +45,7 @@ private:
 
   Detector detector_;
   double capture_speed_;
+  double slack_;                         // opening of lasting contacts that is none [m]
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
