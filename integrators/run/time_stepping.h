@@ -86,17 +86,17 @@ struct TimeStepping {
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
-  /// restitution of the contact; and where impacts are located, which of them are: a contact that closes more
-  /// slowly begins to last when its gap closes. On nothing else of the motion [m/s]. Of a limit: the rate of
+  /// restitution of the contact; and where impacts are located, which end: a contact that closes more slowly
+  /// does not rebound (e = 0). On nothing else of the motion [m/s]. Of a limit: the rate of
   /// its coordinate, rad/s where that is an angle.
   double capture_speed = 1e-2;
   /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
   bool refuse_energy_gain = false;
 
   ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
-  /// Of impacts that are located: the most of one body in one step, >= 1. After them its closed contacts act
-  /// to the end of the step as they do where impacts are not located; so the step ends although bounces may
-  /// accumulate in it.
+  /// Of impacts that are located: the most of one body in one step, >= 1, slow ones apart. After them
+  /// contacts that close act to the end of the step as they do where impacts are not located; so the step
+  /// ends although bounces may accumulate in it.
   int most_impacts = 10;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements

@@ -56,17 +56,20 @@ bool LocatedMotion::advance(const LocatedStep& step) {
 bool LocatedMotion::move(const At& at) {
   int impacts = 0;
   double now = 0.0;
-  if (struck_ && !strike(at, now, ++impacts == at.most_impacts)) return false;
+  if (struck_) {
+    if (!strike(at, now, true)) return false;
+    ++impacts;
+  }
   while (now < 1.0) {
     MotionPhase& flight = add_phase(at, now, 1.0);
-    if (impacts == 0) {
+    if (now == 0.0 && !struck_) {
       flight.constraints = start_;
     } else if (!closed_.empty()) {
       observe(at, now, std::numeric_limits<double>::infinity(), true);
       take_closed(flight.constraints);
     }
     if (!fly(at, flight)) return false;
-    if (impacts == at.most_impacts || !find_closing(at, flight)) {
+    if (!find_closing(at, flight)) {
       rotate(at);
       return true;
     }
@@ -82,7 +85,9 @@ bool LocatedMotion::move(const At& at) {
     }
     now = hit;
     const bool fast = std::any_of(closing_.begin(), closing_.end(), [](const Closing& c) { return c.fast; });
-    if (fast && !strike(at, now, ++impacts == at.most_impacts)) return false;
+    if (fast && impacts == at.most_impacts) continue;
+    if (!strike(at, now, fast)) return false;
+    if (fast) ++impacts;
   }
   rotate(at);
   return true;
@@ -270,8 +275,10 @@ bool LocatedMotion::find_closing(const At& at, const MotionPhase& flight) {
   }
   if (closing_.empty()) return false;
   for (Closing& closing : closing_) locate(at, flight, closing);
-  const auto earlier = [](const Closing& a, const Closing& b) { return a.share < b.share; };
-  std::stable_sort(closing_.begin(), closing_.end(), earlier);
+  const auto earlier = [](const Closing& a, const Closing& b) {
+    return a.share < b.share || (a.share == b.share && a.key < b.key);
+  };
+  std::sort(closing_.begin(), closing_.end(), earlier);
   const double last = closing_.front().share + together;
   std::erase_if(closing_, [&](const Closing& closing) { return closing.share > last; });
   for (const Closing& closing : closing_) closed_.push_back(closing.key);
@@ -304,31 +311,35 @@ void LocatedMotion::locate(const At& at, const MotionPhase& flight, Closing& clo
   closing.fast = rate < -at.capture_speed;
 }
 
-/// The body is hit by all that is closed. What leaves takes no part in the flight that follows, but after the
-/// last impact that is allowed.
-bool LocatedMotion::strike(const At& at, double share, bool last) {
+/// The body is hit by all that is closed. What leaves takes no part in the flight that follows. Where nothing
+/// closes fast, nothing rebounds: so bounces that accumulate come to an end.
+bool LocatedMotion::strike(const At& at, double share, bool fast) {
   constexpr double rounding = 1e-12;  // of the velocities along a normal
   if (hit_ > 1.0) hit_ = share;
   MotionPhase& hit = add_phase(at, share, share);
   observe(at, share, std::numeric_limits<double>::infinity(), false);
   take_closed(hit.constraints);
-  if (!solve(at, hit)) return false;
-  closed_.clear();
-  const double* const v = at.trial.end.v.data();
-  std::vector<double>& dv = at.trial.dv_impulses;
-  const auto add = [&](double sign) {
-    for (Index i = at.slot.v; i < at.slot.v + at.slot.v_size; ++i) at.trial.end.v[i] += sign * dv[i];
-  };
-  for (const Constraint& contact : hit.constraints) {
-    const double before = contact.speed(0, v);
-    add(1.0);
-    const double size = std::max(before, contact.speed(0, v));
-    if (last || contact.velocity(0, v) <= rounding * size) closed_.push_back(contact.key);
-    write(hit.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+  if (!fast) {
+    for (Constraint& contact : hit.constraints) {
+      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    }
   }
-  add(1.0);
-  std::fill_n(at.trial.rounding.begin() + at.slot.v, at.slot.v_size, 0.0F);
-  read(at.trial.end.v, at.slot.v, at.slot.v_size, hit.v1);
+  if (!solve(at, hit)) return false;
+  const Range v{at.slot.v, at.slot.v + at.slot.v_size};
+  for (Index i = v.begin; i < v.end; ++i) {
+    hit.v1[i - v.begin] = at.trial.end.v[i] + at.trial.dv_impulses[i];
+    at.trial.rounding[i] = 0.0F;
+  }
+  const double* const now = at.trial.end.v.data();
+  closed_.clear();
+  for (const Constraint& contact : hit.constraints) {
+    write(hit.v0, v.begin, v.size(), at.trial.end.v);
+    const double before = contact.speed(0, now);
+    write(hit.v1, v.begin, v.size(), at.trial.end.v);
+    const double size = std::max(before, contact.speed(0, now));
+    if (contact.velocity(0, now) <= rounding * size) closed_.push_back(contact.key);
+  }
+  write(hit.v1, v.begin, v.size(), at.trial.end.v);
   return true;
 }
 

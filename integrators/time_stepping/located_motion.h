@@ -65,8 +65,8 @@ struct LocatedStep {
   const StepRule& rule;
   const Detector& detector;
   StepLoads loads;
-  int most_impacts;      ///< of one body, >= 1
-  double capture_speed;  ///< a contact that closes more slowly is no impact [m/s]
+  int most_impacts;      ///< of one body that are fast, >= 1
+  double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
   StepTrial& trial;
 };
 
@@ -79,8 +79,8 @@ public:
   /// The body.
   [[nodiscard]] Index body() const { return body_; }
   /// Moves it through the step: writes its numbers in `trial.end` and what rounding cuts off. After the last
-  /// impact that is allowed, contacts that are closed act to the end of the step as in any other (Johansson
-  /// 1999, section 4). False if a contact problem is not solved: failed().
+  /// impact that is allowed, contacts that close act to the end of the step as in any other (Johansson 1999,
+  /// section 4). False if a contact problem is not solved: failed().
   bool advance(const LocatedStep& step);
   /// The problem that was not solved; null if none.
   [[nodiscard]] const IslandProblem* failed() const { return failed_; }
@@ -114,7 +114,7 @@ private:
   [[nodiscard]] bool move(const At& at);
   MotionPhase& add_phase(const At& at, double begin, double end);
   [[nodiscard]] bool fly(const At& at, MotionPhase& flight);
-  [[nodiscard]] bool strike(const At& at, double share, bool last);
+  [[nodiscard]] bool strike(const At& at, double share, bool fast);
   [[nodiscard]] bool fly_once(const At& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const At& at, MotionPhase& phase);
   void turn(const At& at, MotionPhase& flight);
