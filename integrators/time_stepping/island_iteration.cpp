@@ -35,9 +35,7 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
     if (method_.is_newton() && judge.sweeps() == 1 && verdict == Verdict::converged) verdict = Verdict::go_on;
     if (verdict == Verdict::failed) fail_contraction(island, in, judge);
     const bool converged = verdict == Verdict::converged || made.converged_one_early;
-    // The first iterate mostly hits what the last one does; the last one says.
-    if ((judge.sweeps() == 1 && find_impacts(island, in)) ||
-        (converged && (find_impacts(island, in) || loads_jump(island, in)))) {
+    if (converged && (find_impacts(island, in) || loads_jump(island, in, false))) {
       verdict = Verdict::go_on;
       made.converged_one_early = false;
     }
@@ -68,14 +66,19 @@ bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in
 }
 
 /// Jumps of loads at impacts, of loads that depend on velocities: true if they change the motion. The mean
-/// loads of a rule of mean loads have them already.
-bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in) {
+/// loads of a rule of mean loads have them already. \param local looks only where the blocks concerned are
+/// few
+bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, bool local) {
   constexpr int most_updates = 20;
   StepTrial& trial = parts_->trial;
-  if (parts_->located.empty() || !(trial.needs.dissipative || trial.needs.external)) return false;
-  if (parts_->rule.is_mean() || jump_updates_ == most_updates) return false;
+  if (!(trial.needs.dissipative || trial.needs.external) || parts_->rule.is_mean()) return false;
+  if (jump_updates_ == most_updates || !(parts_->located.any_hit() || trial.jumps.on)) return false;
   ++jump_updates_;
-  return parts_->located.update_jumps(in, island.components, parts_->options.tolerance, trial);
+  bool any = false;
+  for (const Index component : island.components) {
+    any = parts_->located.update_jumps(in, component, local, parts_->options.tolerance, trial) || any;
+  }
+  return any;
 }
 
 /// Contact problems, and a first guess at the loads.
@@ -99,15 +102,30 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   JointContacts contacts = contacts_of(island);
   if (joints != nullptr) joints->start(in, contacts, parts_->trial);
   method_.start(front);
+  if (parts_->located.on() && joints == nullptr && !method_.is_newton()) {
+    for (const Index component : island.components) {
+      parts_->located.expect(in, component, island.constraints, parts_->constraints.places_at_start(),
+                             parts_->trial);
+    }
+  }
   if (is_streamed(island)) {
-    const int sweeps =
-        parts_->schedule.presolve(parts_->stages(in, front), method_.current(), parts_->options.tolerance);
-    local_sweeps_ = std::max(local_sweeps_, sweeps);
+    presolve(island, in);
   } else {
     for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
   }
   if (!method_.is_newton()) return;
   demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
+}
+
+/// Sweeps around contacts alone, and again where loads jump there.
+void IslandIteration::presolve(const StepIsland& island, const StepInput& in) {
+  const SweepStages stages = parts_->stages(in, island.components.front());
+  const double tolerance = parts_->options.tolerance;
+  int sweeps = parts_->schedule.presolve(stages, method_.current(), tolerance, false);
+  while (sweeps > 0 && loads_jump(island, in, true)) {
+    sweeps += parts_->schedule.presolve(stages, method_.current(), tolerance, true);
+  }
+  local_sweeps_ = std::max(local_sweeps_, sweeps);
 }
 
 /// Bodies and loads block by block: the loads by cause, with potentials, cost more than their sum; they are

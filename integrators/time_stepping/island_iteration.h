@@ -45,7 +45,8 @@ private:
   [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool find_impacts(const StepIsland& island, const StepInput& in);
-  [[nodiscard]] bool loads_jump(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] bool loads_jump(const StepIsland& island, const StepInput& in, bool local);
+  void presolve(const StepIsland& island, const StepInput& in);
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
                                         const FixedPointJudge& judge);

@@ -26,9 +26,9 @@ std::size_t LocatedImpacts::place(Index body) const {
                                   order_.begin());
 }
 
-bool LocatedImpacts::contains(Index body) const {
-  const std::size_t at = place(body);
-  return at < order_.size() && order_[at].first == body;
+bool LocatedImpacts::contains_any(Range bodies) const {
+  const std::size_t at = place(bodies.begin);
+  return at < order_.size() && order_[at].first < bodies.end;
 }
 
 std::span<const Constraint> LocatedImpacts::of_body(std::span<const Constraint> contacts, Index body) const {
@@ -37,6 +37,22 @@ std::span<const Constraint> LocatedImpacts::of_body(std::span<const Constraint> 
   auto last = first;
   while (last != contacts.end() && last->body() == body) ++last;
   return {first, last};
+}
+
+void LocatedImpacts::expect(const StepInput& in, Index component, std::span<const Constraint> contacts,
+                            const GroundPlaces& places, StepTrial& trial) {
+  const Component& all = assembly_->components()[component];
+  double fastest = 0.0;
+  for (Index i = all.v.begin; i < all.v.end; ++i) fastest = std::max(fastest, std::abs(in.start.v[i]));
+  const StateView start = in.start.view();
+  found_.clear();
+  detector_->find({component, component + 1},
+                  {start, trial.at_start, places, nullptr, 2.0 * in.step * fastest}, found_);
+  for (const Constraint& contact : found_) {
+    if (contact.gap + in.step * contact.normal_velocity(start.v) < 0.0)
+      take_up_new(in, contact, contacts, trial);
+  }
+  take_up_held(in, all.bodies, contacts, trial);
 }
 
 bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
@@ -52,17 +68,28 @@ bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<co
   const std::size_t known = in_use_;
   for (const Constraint& contact : found_) {
     if (contact.gap == 0.0 && !(contact.normal_velocity(end.v) < 0.0)) continue;
-    const std::span<const Constraint> own = of_body(contacts, contact.body());
-    const auto is_same = [&](const Constraint& other) { return other.key == contact.key; };
-    if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), own, trial);
+    take_up_new(in, contact, contacts, trial);
   }
-  const Range bodies = assembly_->bodies_of(components);
+  take_up_held(in, assembly_->bodies_of(components), contacts, trial);
+  return in_use_ > known;
+}
+
+/// The body of a contact, unless that takes part from the start on.
+void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact,
+                                 std::span<const Constraint> contacts, StepTrial& trial) {
+  const std::span<const Constraint> own = of_body(contacts, contact.body());
+  const auto is_same = [&](const Constraint& other) { return other.key == contact.key; };
+  if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), own, trial);
+}
+
+/// Bodies that contacts hit at the start, or hold where they turn.
+void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, std::span<const Constraint> contacts,
+                                  StepTrial& trial) {
   for (const Constraint& contact : contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
     if (!contact.turns() && !hits(in, contact)) continue;
     take_up(in, contact.body(), of_body(contacts, contact.body()), trial);
   }
-  return in_use_ > known;
 }
 
 bool LocatedImpacts::hits(const StepInput& in, const Constraint& contact) const {
@@ -98,60 +125,104 @@ const IslandProblem* LocatedImpacts::first_unsolved() const {
   return nullptr;
 }
 
-/// What impacts have changed of the loads at the end, as far as these depend on velocities.
-void LocatedImpacts::evaluate_jumps(const StepInput& in, Index component, bool weighted, StepTrial& trial,
-                                    std::vector<double>& out) const {
-  const Range v = assembly_->components()[component].v;
-  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].take_back(in, weighted, trial);
-  evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, {out.data(), out.data(), out.data()});
-  for (Index i = v.begin; i < v.end; ++i) out[i] = trial.loads_end.total[i] - out[i];
-  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].show_end(in, motions_[i].phases().back(), trial);
+/// Finds the blocks on which loads may jump. Returns false if these are not a small part of the component.
+bool LocatedImpacts::surround_hit(Index component) {
+  constexpr Index small_part = 4;
+  const BlockTable& blocks = assembly_->blocks();
+  const Range all = assembly_->components()[component].blocks;
+  around_.inner.clear();
+  Index block = all.begin;
+  for (const auto& [body, motion] : order_) {
+    while (block < all.end && blocks[block].bodies.end <= body) ++block;
+    if (block == all.end || body < blocks[block].bodies.begin) continue;
+    if (around_.inner.empty() || around_.inner.back() != block) around_.inner.push_back(block);
+  }
+  return blocks.surround(around_) && small_part * around_.touched.size() <= all.size();
 }
 
-bool LocatedImpacts::update_jumps(const StepInput& in, std::span<const Index> components, double tolerance,
+/// What impacts have changed of the loads at the end, as far as these depend on velocities.
+void LocatedImpacts::evaluate_jumps(const StepInput& in, Index component, bool local, bool weighted,
+                                    StepTrial& trial, std::vector<double>& out) {
+  const auto evaluate = [&](std::vector<double>& loads) {
+    const Loads to{loads.data(), loads.data(), loads.data()};
+    if (local) {
+      evaluate_loads_within(*assembly_, component, around_, trial.end.view(), trial.at_end, to);
+    } else {
+      evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, to);
+    }
+  };
+  if (local) evaluate(change_);
+  const std::vector<double>& base = local ? change_ : trial.loads_end.total;
+  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].take_back(in, weighted, trial);
+  evaluate(out);
+  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].show_end(in, motions_[i].phases().back(), trial);
+  for_jumps(component, local, [&](Range, Range v) {
+    for (Index i = v.begin; i < v.end; ++i) out[i] = base[i] - out[i];
+  });
+}
+
+/// Calls f(bodies, their velocities) for those whose loads may jump.
+template <class F>
+void LocatedImpacts::for_jumps(Index component, bool local, F&& f) const {
+  const Component& all = assembly_->components()[component];
+  if (!local) return f(all.bodies, all.v);
+  for (const Index block : around_.touched) {
+    f(assembly_->blocks()[block].bodies, assembly_->blocks()[block].v);
+  }
+}
+
+bool LocatedImpacts::any_hit() const {
+  return std::any_of(motions_.begin(), motions_.begin() + static_cast<std::ptrdiff_t>(in_use_),
+                     [](const LocatedMotion& motion) { return motion.is_hit(); });
+}
+
+bool LocatedImpacts::update_jumps(const StepInput& in, Index component, bool only_local, double tolerance,
                                   StepTrial& trial) {
   LoadJumps& jumps = trial.jumps;
-  const std::size_t size = trial.end.v.size();
-  for (std::vector<double>* const numbers :
-       {&jumps.jump, &jumps.correction, &jumps.start, &jump_, &correction_, &change_}) {
-    numbers->resize(size);
+  const bool local = surround_hit(component);
+  if (only_local && !local) return false;
+  for (std::vector<double>* const numbers : {&jump_, &correction_, &change_}) {
+    numbers->resize(trial.end.v.size());
   }
-  double change = 0.0;
-  for (const Index component : components) {
-    evaluate_jumps(in, component, false, trial, jump_);
-    evaluate_jumps(in, component, true, trial, correction_);
-    change = std::max(change, change_by_correction(in, component, jumps));
-  }
+  evaluate_jumps(in, component, local, false, trial, jump_);
+  evaluate_jumps(in, component, local, true, trial, correction_);
   // What acted stays as it is once a change is too small to go on.
-  if (!(change > tolerance)) return false;
-  for (const Index component : components) {
-    const Range v = assembly_->components()[component].v;
+  if (!(change_by_correction(in, component, local, jumps) > tolerance)) return false;
+  const std::vector<double>& start = in.companion.loads.total;
+  if (!jumps.on) {
+    jumps.jump.assign(start.size(), 0.0);
+    jumps.correction.assign(start.size(), 0.0);
+    jumps.start.assign(start.begin(), start.end());
+    jumps.on = true;
+  }
+  for_jumps(component, local, [&](Range, Range v) {
     for (Index i = v.begin; i < v.end; ++i) {
       jumps.jump[i] = jump_[i];
       jumps.correction[i] = correction_[i];
-      jumps.start[i] = in.companion.loads.total[i] + correction_[i];
+      jumps.start[i] = start[i] + correction_[i];
     }
-  }
-  jumps.on = true;
+  });
   return true;
 }
 
 /// By how much the correction at hand would move the bodies in place of the one that acted, as SweepChange
 /// [m].
-double LocatedImpacts::change_by_correction(const StepInput& in, Index component, const LoadJumps& acted) {
-  const Range v = assembly_->components()[component].v;
-  for (Index i = v.begin; i < v.end; ++i) {
-    change_[i] = correction_[i] - (acted.on ? acted.correction[i] : 0.0);
-  }
+double LocatedImpacts::change_by_correction(const StepInput& in, Index component, bool local,
+                                            const LoadJumps& acted) {
   double largest = 0.0;
-  assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-    const double* change = change_.data() + first;
-    kind.apply_inverse_mass(slots, change, change_.data() + first);
-    for (Index slot = slots.begin; slot < slots.end; ++slot) {
-      for (Index i = 0; i < kind.v_size(); ++i) {
-        largest = std::max(largest, std::abs(*change++) * kind.length_scale(slot, i));
-      }
+  for_jumps(component, local, [&](Range bodies, Range v) {
+    for (Index i = v.begin; i < v.end; ++i) {
+      change_[i] = correction_[i] - (acted.on ? acted.correction[i] : 0.0);
     }
+    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+      const double* change = change_.data() + first;
+      kind.apply_inverse_mass(slots, change, change_.data() + first);
+      for (Index slot = slots.begin; slot < slots.end; ++slot) {
+        for (Index i = 0; i < kind.v_size(); ++i) {
+          largest = std::max(largest, std::abs(*change++) * kind.length_scale(slot, i));
+        }
+      }
+    });
   });
   return 0.5 * in.step * in.step * largest;
 }

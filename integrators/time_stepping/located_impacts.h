@@ -29,6 +29,10 @@ public:
   void clear();
   /// True if no body was taken up.
   [[nodiscard]] bool empty() const { return in_use_ == 0; }
+  /// Takes up bodies of a component that will be hit if their velocities at the start change little.
+  /// \param contacts as in take_up() \param places ground at the start
+  void expect(const StepInput& in, Index component, std::span<const Constraint> contacts,
+              const GroundPlaces& places, StepTrial& trial);
   /// Takes up bodies of consecutive components whose gaps are closed at the end of the iterate, though not at
   /// its start; and those that a contact hits at its start, or holds where it turns. True if there are any
   /// that were not known. \param contacts of their island that take part from the start on \param places
@@ -38,15 +42,18 @@ public:
   /// Moves those of some bodies again, after the rule has moved all. Bodies may be shared out to threads.
   void advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                StepTrial& trial);
-  /// True if a body was taken up.
-  [[nodiscard]] bool contains(Index body) const;
+  /// True if any of some bodies was taken up.
+  [[nodiscard]] bool contains_any(Range bodies) const;
   /// Motions of all that were, in no order.
   [[nodiscard]] std::span<LocatedMotion> motions() { return {motions_.data(), in_use_}; }
   /// A problem that was not solved; null if none.
   [[nodiscard]] const IslandProblem* first_unsolved() const;
-  /// Finds the jumps of loads of some components that depend on velocities, at the iterate. False if they
-  /// move the bodies as those do that acted, but for less than the tolerance [m]: then these stay.
-  [[nodiscard]] bool update_jumps(const StepInput& in, std::span<const Index> components, double tolerance,
+  /// True if any body is hit within the step.
+  [[nodiscard]] bool any_hit() const;
+  /// Finds the jumps of loads of a component that depend on velocities, at the iterate. False if they move
+  /// the bodies as those do that acted, but for less than the tolerance [m]: then these stay. \param
+  /// only_local does nothing unless few blocks are concerned; of the iterate loads are not asked then
+  [[nodiscard]] bool update_jumps(const StepInput& in, Index component, bool only_local, double tolerance,
                                   StepTrial& trial);
   /// Replaces, in the account of the trial, works of loads on some bodies along their mean velocities by
   /// those along their flights.
@@ -57,9 +64,17 @@ public:
   void forget_statistics();
 
 private:
-  void evaluate_jumps(const StepInput& in, Index component, bool weighted, StepTrial& trial,
-                      std::vector<double>& out) const;
-  [[nodiscard]] double change_by_correction(const StepInput& in, Index component, const LoadJumps& acted);
+  void take_up_new(const StepInput& in, const Constraint& contact, std::span<const Constraint> contacts,
+                   StepTrial& trial);
+  void take_up_held(const StepInput& in, Range bodies, std::span<const Constraint> contacts,
+                    StepTrial& trial);
+  [[nodiscard]] bool surround_hit(Index component);
+  template <class F>
+  void for_jumps(Index component, bool local, F&& f) const;
+  void evaluate_jumps(const StepInput& in, Index component, bool local, bool weighted, StepTrial& trial,
+                      std::vector<double>& out);
+  [[nodiscard]] double change_by_correction(const StepInput& in, Index component, bool local,
+                                            const LoadJumps& acted);
   [[nodiscard]] std::span<const Constraint> of_body(std::span<const Constraint> contacts, Index body) const;
   void take_up(const StepInput& in, Index body, std::span<const Constraint> contacts, StepTrial& trial);
   [[nodiscard]] bool hits(const StepInput& in, const Constraint& contact) const;
@@ -74,6 +89,7 @@ private:
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
   std::vector<Constraint> found_;
+  Surroundings around_;                             // blocks on which loads may jump
   std::vector<double> jump_, correction_, change_;  // as LoadJumps, at the iterate
 };
 

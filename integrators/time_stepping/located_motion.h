@@ -90,6 +90,8 @@ public:
   [[nodiscard]] Range velocities(const StepInput& in) const;
   /// Makes its velocities at the end of a phase those of the trial.
   void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
+  /// True if an impact is among the phases.
+  [[nodiscard]] bool is_hit() const { return hit_ <= 1.0; }
   /// Takes the changes of velocity by impacts back from the velocities of the trial. \param weighted times
   /// 1 - 2 t of an impact at the share t of the step
   void take_back(const StepInput& in, bool weighted, StepTrial& trial) const;

@@ -26,7 +26,9 @@ public:
 
   /// Its detector.
   [[nodiscard]] const Detector& detector() const { return detector_; }
-  /// Ground shapes that move, at the end of the step.
+  /// Ground shapes that move, at the start of the step;
+  [[nodiscard]] const GroundPlaces& places_at_start() const { return places_; }
+  /// at its end.
   [[nodiscard]] const GroundPlaces& places_at_end() const { return places_after_; }
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
   void place_surfaces(const StepInput& in);

@@ -177,8 +177,8 @@ void SweepSchedule::fuse(const SweepStages& stages, bool guessing) {
                        workers_);
 }
 
-int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, double tolerance) {
-  std::fill_n(local_.begin(), stages.blocks().size(), std::uint8_t{untouched});
+int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again) {
+  if (!again) std::fill_n(local_.begin(), stages.blocks().size(), std::uint8_t{untouched});
   return iteration == Iteration::fixed_point ? presolve_around_contacts(stages, tolerance) : 0;
 }
 
@@ -216,10 +216,13 @@ int SweepSchedule::presolve_around_contacts(const SweepStages& stages, double to
   constexpr Index least_blocks = 4;
   constexpr int most_sweeps = 8;
   const Range blocks = stages.blocks();
-  if (stages.contacts.problems().empty() || blocks.size() < least_blocks) return 0;
+  const bool any =
+      !stages.contacts.problems().empty() || (stages.located != nullptr && !stages.located->empty());
+  if (!any || blocks.size() < least_blocks) return 0;
   upset_.inner.clear();
   for (Index part = 0; part < blocks.size(); ++part) {
-    if (stages.contacts.touches(part)) upset_.inner.push_back(blocks.begin + part);
+    if (stages.contact_upsets(assembly_->blocks()[blocks.begin + part], part))
+      upset_.inner.push_back(blocks.begin + part);
   }
   FixedPointJudge judge(tolerance, most_sweeps);
   while (!upset_.inner.empty() && surround_upset(blocks.size())) {

@@ -66,8 +66,8 @@ public:
   /// loads are not finite is left as the first sweep made it.
   void fuse(const SweepStages& stages, bool guessing);
   /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
-  /// fixed-point iteration. Returns how many sweeps it made.
-  int presolve(const SweepStages& stages, Iteration iteration, double tolerance);
+  /// fixed-point iteration. Returns how many sweeps it made. \param again goes on from the last call
+  int presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again);
 
   /// Change that another sweep would make, the largest over all blocks;
   [[nodiscard]] SweepChange change(const SweepStages& stages) const { return largest(changes_, stages); }

@@ -31,6 +31,10 @@ struct SweepStages {
   [[nodiscard]] Range bodies() const { return in.assembly.components()[component].bodies; }
   /// Blocks of the component.
   [[nodiscard]] Range blocks() const { return in.assembly.components()[component].blocks; }
+  /// True if contact may make its loads differ from what the steps before lead to expect.
+  [[nodiscard]] bool contact_upsets(const Block& block, Index part) const {
+    return contacts.touches(part) || (located != nullptr && located->contains_any(block.bodies));
+  }
   /// Loads at the end by those of the steps before.
   void guess(Index part) const { trial.guess_loads(in, blocks().begin + part); }
   /// Impulses of what touches a block.

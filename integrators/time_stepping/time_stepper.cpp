@@ -211,7 +211,8 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
                                   ? joints->velocities_of_contact(parts_.trial)
                                   : parts_.trial.end.v.data();
   for (const IslandProblem& problem : parts_.contacts.problems()) {
-    if (parts_.located.contains(problem.constraints().front().body())) continue;
+    const Index body = problem.constraints().front().body();
+    if (parts_.located.contains_any({body, body + 1})) continue;
     book_contact_problem(problem, after, in.end_time, in);
   }
   for (const LocatedMotion& motion : parts_.located.motions()) {
