@@ -360,7 +360,13 @@ def convergence(data):
     problems = (("andrews", "Andrews' mechanism (smooth)", 2), ("bar", "bar on the incline", 1), ("pair", "pair on the incline", 1))
     figure, axes = plt.subplots(2, 3, figsize=(10.5, 6.4), layout="constrained", sharey="col")
     for (above, below), (name, title, slope) in zip(zip(*axes), problems):
-        for mode, color, marker, label in (("stepping", ORANGE, "o", "time stepping"), ("events", BLUE, "s", "event-driven")):
+        for mode, color, marker, label in (
+            ("stepping", ORANGE, "o", "time stepping"),
+            ("located", GREEN, "^", "impacts located"),
+            ("events", BLUE, "s", "event-driven"),
+        ):
+            if mode == "located" and name == "andrews":
+                continue  # nothing is hit
             run = columns_of(data / f"convergence_{name}_{mode}.csv")
             shown = dict(color=color, marker=marker, markersize=4, linestyle="none", label=label)
             above.loglog(run["step"], run["error"], **shown)

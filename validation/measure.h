@@ -89,7 +89,10 @@ inline std::string short_text(double value) {
 inline std::string setting(const EventDriven& options) {
   return "rtol " + short_text(options.relative_tolerance);
 }
-inline std::string setting(const TimeStepping& options) { return "h = " + short_text(options.step) + " s"; }
+inline std::string setting(const TimeStepping& options) {
+  const bool located = options.impacts == ImpactTimes::located;
+  return "h = " + short_text(options.step) + (located ? " s, impacts located" : " s");
+}
 
 /// Name and setting of a mode.
 inline std::pair<std::string, std::string> described(const Mode& mode) {
