@@ -113,7 +113,6 @@ def impact_table(impact):
 def tables_table(tables):
     rows = [[title, f"{1e3 * seconds(tables[key]):.3g}"]
             for key, title in (("second_by_hand", "loop by hand"), ("second_by_library", "library"))]
-    rows += [["ODE (measured)", "7"], ["Siconos (measured)", "32"]]
     return table(["one simulated second", "ms of CPU"], rows)
 
 
@@ -309,6 +308,17 @@ def machine(context, compiler, began, idle=1.2):
             + (" The machine was busy: a run on an idle one is due." if load > idle else ""))
 
 
+def replace_parts(page, parts):
+    """Writes each part between its marks on a page."""
+    text = page.read_text()
+    for name, part in parts.items():
+        text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
+                              lambda match: match.group(1) + part + match.group(2), text, flags=re.DOTALL)
+        if count != 1:
+            sys.exit(f"{page}: section '{name}' is there {count} times")
+    page.write_text(text)
+
+
 def main():
     if len(sys.argv) != 4:
         sys.exit(__doc__)
@@ -347,13 +357,7 @@ def main():
     if description:
         parts |= {"description_machine": machine(description_context, compiler, "the descriptions"),
                   "description": description_table(description)}
-    text = page.read_text()
-    for name, part in parts.items():
-        text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
-                              lambda match: match.group(1) + part + match.group(2), text, flags=re.DOTALL)
-        if count != 1:
-            sys.exit(f"{page}: section '{name}' is there {count} times")
-    page.write_text(text)
+    replace_parts(page, parts)
 
 
 if __name__ == "__main__":
