@@ -28,7 +28,7 @@ esac
 
 scripts/setup.sh
 
-# One name of a package per engine; that of the libraries of several is found by pkg-config.
+# The engines, and what finds the libraries of some of them.
 packages=(pkg-config libode-dev libchipmunk-dev libbox2d-dev libmujoco-dev libbullet-dev libsimbody-dev
   libsiconos-kernel-dev)
 as_root=()
@@ -49,6 +49,8 @@ cmake --preset release >/dev/null
 cmake --build --preset release --parallel "$(nproc)" --target carom
 programs=build/compare
 cmake -S benchmarks/compare -B "$programs" -G Ninja -DCMAKE_PREFIX_PATH="$PWD/build/release" | sed -n 's/^-- compare: /compare: /p'
+# Nothing of an earlier build may pass for a driver of this one.
+rm -f "$programs"/compare_*
 # An engine of another version may not build; the others are compared without it.
 cmake --build "$programs" --parallel "$(nproc)" -- -k 0 || echo "compare: not every driver builds" >&2
 

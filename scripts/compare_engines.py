@@ -17,6 +17,8 @@ from performance_tables import figure, machine, replace_parts, table
 ENGINES = ("carom", "ode", "chipmunk", "box2d", "bullet", "mujoco", "simbody", "siconos")
 SCENES = ("tables", "net", "balls", "chain", "bar")
 LONGEST = 600  # of one run [s]
+# One thread for all; libraries of linear algebra would take more, and wait in them.
+ENVIRONMENT = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 class Case:
@@ -32,7 +34,7 @@ class Case:
             return
         try:
             done = subprocess.run([self.program, "run", self.number, reference, *quick], capture_output=True,
-                                  text=True, timeout=LONGEST, check=False)
+                                  text=True, timeout=LONGEST, check=False, env=ENVIRONMENT)
         except subprocess.TimeoutExpired:
             self.failure = f"takes more than {LONGEST} s"
             return

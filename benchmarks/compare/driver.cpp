@@ -111,7 +111,7 @@ Bound bound_of(Scene scene, const Scale& scale) {
     case Scene::balls:
       return {0.02, 0.2 * scale.balls * balls::mass * gravity * balls::start(1, 0).y};
     case Scene::chain:
-      return {1.0, 0.05 * chain::rods * chain::mass * gravity * 0.5 * chain::rods * chain::length};
+      return {1.0, 0.25 * chain::rods * chain::mass * gravity * 0.5 * chain::rods * chain::length};
     case Scene::bar:
       return {1.0, 0.05 * energy(bar::of_bar, bar::start(0))};
   }

@@ -203,7 +203,6 @@ Engine engine() {
   for (const Scene scene : {Scene::net, Scene::balls}) {
     mujoco.cases.push_back(rigid_case(scene, "`Euler`" + contact, false, world_of("Euler")));
   }
-  mujoco.cases.push_back(rigid_case(Scene::balls, "`RK4`" + contact, false, world_of("RK4")));
   // Tried: 1.4 m and 6.8 m from the exact motion. Damping and the time of a rebound scale alike with the
   // stiffness, so that no other one takes more of the sliding.
   for (const Scene scene : {Scene::tables, Scene::bar}) {
