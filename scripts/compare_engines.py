@@ -82,7 +82,7 @@ def scene_tables(cases, carom, reference, quick):
     lost = {scene: float(loss) for scene, loss in (line.split("\t") for line in about.splitlines())}
     parts = {}
     for scene in SCENES:
-        head = ["engine", "options", "", "ms of CPU", "error of places [m]", "error of energy [J]"]
+        head = ["engine", "options", "kind", "ms of CPU", "error of places [m]", "error of energy [J]"]
         text = table(head, [case.row() for case in cases if case.scene == scene])
         # A rest of rounding is no loss.
         loss = f"loses {lost[scene]:.3g} J" if lost[scene] > 1e-6 else "keeps its energy"

@@ -3,7 +3,7 @@
 /// \file
 /// The scenes that other engines are compared over: numbers alone, without any engine. Planar, y upwards,
 /// angles counter-clockwise; the bodies of 3D engines move in the plane z = 0. The tangential coefficient of
-/// restitution is 0 in all of them: no other engine of a distribution has one.
+/// restitution is 0 in all of them: hardly any other engine has one.
 
 #include <cmath>
 #include <cstddef>
