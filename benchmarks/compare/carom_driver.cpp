@@ -179,8 +179,11 @@ void add_cases(Engine& engine, Scene scene) {
     add("time stepping, `force_rule = energy_momentum`", false,
         TimeStepping{.step = step, .force_rule = carom::ForceRule::energy_momentum});
   } else {
-    add("time stepping, `impacts = located`", false,
-        TimeStepping{.step = step, .impacts = carom::ImpactTimes::located});
+    using carom::ImpactTimes;
+    const bool is_located = TimeStepping{}.impacts == ImpactTimes::located;
+    const ImpactTimes other = is_located ? ImpactTimes::at_step_start : ImpactTimes::located;
+    add("time stepping, `impacts = " + std::string(to_string(other)) + "`", false,
+        TimeStepping{.step = step, .impacts = other});
   }
   add("event-driven", true, EventDriven{});
   if (scene == Scene::net || scene == Scene::chain) {
