@@ -26,6 +26,8 @@ case "${1:-}" in
     ;;
 esac
 
+# Before anything is built, so that it tells of others.
+load=$(cut -d " " -f 1 /proc/loadavg)
 scripts/setup.sh
 
 # The engines, and what finds the libraries of some of them.
@@ -56,4 +58,4 @@ cmake --build "$programs" --parallel "$(nproc)" -- -k 0 || echo "compare: not ev
 
 compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[^=]*=//p' "$programs/CMakeCache.txt")
 python3 scripts/compare_engines.py "$programs" docs/comparison.md "$rounds" \
-  "$("$compiler" --version | head -n 1)" "${quick[@]}"
+  "$("$compiler" --version | head -n 1)" "$load" "${quick[@]}"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the drivers of benchmarks/compare in turn and writes their times and errors into the tables of a page.
 
-usage: compare_engines.py <folder of programs> <page> <rounds> <compiler> [--quick]
+usage: compare_engines.py <folder of programs> <page> <rounds> <compiler> <load> [--quick]
 
-With --quick scenes are small and the tables are printed.
+<load> is that of the machine before the drivers were built. With --quick scenes are small and the tables are printed.
 """
 
 import datetime
@@ -94,14 +94,14 @@ def main():
     arguments = sys.argv[1:]
     quick = ["--quick"] if "--quick" in arguments else []
     arguments = [argument for argument in arguments if argument != "--quick"]
-    if len(arguments) != 4:
+    if len(arguments) != 5:
         sys.exit(__doc__)
     folder, page, rounds, compiler = Path(arguments[0]).resolve(), Path(arguments[1]), int(arguments[2]), arguments[3]
+    load = float(arguments[4])
     cases, absent = list_cases(folder)
     if "carom" in absent:
         sys.exit("compare: there is no driver of carom")
     carom, reference = folder / "compare_carom", folder / f"reference{''.join(quick)}.txt"
-    load = os.getloadavg()[0]
     subprocess.run([carom, "reference", reference, *quick], check=True)
     for count in range(rounds):
         print(f"compare: round {count + 1} of {rounds}", file=sys.stderr)
