@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What all drivers share: a driver makes worlds of its engine; the program around it runs them, takes the
-/// time and compares with the exact motion.
+/// The common part of all drivers: a driver makes worlds of its engine; the program around it runs them,
+/// takes the time and compares with the exact motion.
 
 #include "scenes.h"
 

@@ -12,7 +12,7 @@ namespace compare {
 /// Whether a scene is known in closed form; the others have a run to tight tolerances beside them.
 [[nodiscard]] bool has_closed_form(Scene scene);
 
-/// What is to be seen of a scene that is known in closed form.
+/// Places and energies of a scene that is known in closed form.
 [[nodiscard]] Seen exact(Scene scene, const Scale& scale);
 
 }  // namespace compare

@@ -146,8 +146,8 @@ struct Look {
 };
 [[nodiscard]] std::vector<Look> looks(Scene scene, const Scale& scale);
 
-/// What is compared of a motion: of each start and look the places [m] (x and y in turn; of the net its
-/// centre of mass, of the chain its last rod) and the energies [J].
+/// The numbers of a motion that are compared: of each start and look the places [m] (x and y in turn; of the
+/// net its centre of mass, of the chain its last rod) and the energies [J].
 struct Seen {
   std::vector<double> places, energies;
 };

@@ -140,7 +140,7 @@ bool LocatedImpacts::surround_hit(Index component) {
   return blocks.surround(around_) && small_part * around_.touched.size() <= all.size();
 }
 
-/// What impacts have changed of the loads at the end, as far as these depend on velocities.
+/// Changes of the loads at the end by impacts, as far as loads depend on velocities.
 void LocatedImpacts::evaluate_jumps(const StepInput& in, Index component, bool local, bool weighted,
                                     StepTrial& trial, std::vector<double>& out) {
   const auto evaluate = [&](std::vector<double>& loads) {
@@ -186,7 +186,7 @@ bool LocatedImpacts::update_jumps(const StepInput& in, Index component, bool onl
   }
   evaluate_jumps(in, component, local, false, trial, jump_);
   evaluate_jumps(in, component, local, true, trial, correction_);
-  // What acted stays as it is once a change is too small to go on.
+  // The correction stays as it is once a change is too small to go on.
   if (!(change_by_correction(in, component, local, jumps) > tolerance)) return false;
   const std::vector<double>& start = in.companion.loads.total;
   if (!jumps.on) {
