@@ -3,25 +3,17 @@
 
 Usage: plot_incline.py <data folder> <figure folder>
 """
-import csv
 import math
 import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 
+from plotting import columns_of
+
 SLOPE = 0.1  # rad, of the plane through the origin
 DRAWN_EVERY = 100  # steps between two drawn positions, as in the paper
 HALF_LENGTH = 1.0  # m, of the bar
-
-
-def read(path):
-    """Columns of a recorded run by name, without units."""
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    names = [name.split(" [")[0] for name in rows[0]]
-    columns = zip(*([float(text) for text in row] for row in rows[1:]))
-    return dict(zip(names, columns))
 
 
 def ends_of_bar(bar, i):
@@ -72,7 +64,7 @@ def save(figure, folder, name):
 def main():
     data, figures = Path(sys.argv[1]), Path(sys.argv[2])
     plt.rcParams["svg.hashsalt"] = "carom"  # equal pictures are equal files
-    bar, pair = read(data / "bar.csv"), read(data / "pair.csv")
+    bar, pair = columns_of(data / "bar.csv"), columns_of(data / "pair.csv")
 
     bar_style = dict(color="tab:blue", linewidth=1.5, linestyle="-")
     pair_style = dict(color="tab:blue", linewidth=0.7, linestyle=":", marker="o", markersize=2.5)

@@ -3,12 +3,13 @@
 
 Usage: plot_tables.py <data folder> <figure folder>
 """
-import csv
 import math
 import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+
+from plotting import columns_of
 
 RADIUS = 0.0131  # m
 DISTANCE = 0.530  # m, between the tables
@@ -18,13 +19,6 @@ RUNS = {  # name of the figure: (e_t, horizontal speeds that the printed spin al
     "figure3_tables": ("0.91", ("5.44", "6.19")),
     "figure4_tables": ("0.68", ("5.44", "6.19")),
 }
-
-
-def read(path):
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    names = [name.split(" [")[0] for name in rows[0]]
-    return dict(zip(names, zip(*([float(text) for text in row] for row in rows[1:]))))
 
 
 def nearest(times, time):
@@ -61,7 +55,7 @@ def main():
     plt.rcParams["svg.hashsalt"] = "carom"  # equal pictures are equal files
     for name, (restitution, speeds) in RUNS.items():
         figure, axes = plt.subplots(1, len(speeds), figsize=(12, 5.8), layout="constrained")
-        runs = [read(data / f"tables_et{restitution}_vx{speed}.csv") for speed in speeds]
+        runs = [columns_of(data / f"tables_et{restitution}_vx{speed}.csv") for speed in speeds]
         left = min(min(run["ball.x"]) for run in runs) - 0.08
         right = max(max(run["ball.x"]) for run in runs) + 0.08
         for one, run, speed in zip(axes, runs, speeds):

@@ -1,4 +1,4 @@
-"""What the plot scripts of the examples share: tables in, pictures out."""
+"""Common to the plot scripts: tables in, pictures out."""
 import csv
 
 import matplotlib.pyplot as plt
