@@ -1,10 +1,10 @@
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/numerics/sparse_factors.h>
 #include <carom/joints/driver.h>
-#include <carom/joints/prismatic.h>
 #include <carom/joints/revolute.h>
 #include <carom/joints/rod.h>
 
+#include "tests/core/dynamics/random_mechanism.h"
 #include "tests/joints/joint_model.h"
 
 #include <carom/bodies/particle.h>
@@ -14,7 +14,6 @@
 #include <Eigen/QR>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -23,65 +22,7 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using namespace carom_test;
-
-constexpr std::array levels{JointLevel::displacement, JointLevel::velocity, JointLevel::acceleration,
-                            JointLevel::change};
-
-BodyId random_plate(System& system, Random& random) {
-  return system.add(RigidBody{.mass = disc(random.uniform(0.5, 2.0), random.uniform(0.5, 1.0)),
-                              .position = random.vec<2>(3.0),
-                              .angle = random.uniform(-3.0, 3.0),
-                              .velocity = random.vec<2>(),
-                              .spin = random.uniform(-1.0, 1.0)});
-}
-
-/// A random tree of bodies with a loop, an extra rod, a driver, and a second component.
-System random_scene(Random& random) {
-  System system;
-  std::vector<BodyId> bodies;
-  for (int i = 0; i < 8; ++i) {
-    const BodyId body = random_plate(system, random);
-    const BodyId onto = bodies.empty() ? ground : bodies[random.below(static_cast<unsigned>(bodies.size()))];
-    const End<2> from(onto, random.vec<2>()), to(body, random.vec<2>());
-    switch (random.below(4)) {
-      case 0:
-        system.add(Weld{.from = from, .to = to});
-        break;
-      case 1:
-        system.add(Prismatic{.from = from, .to = to, .axis = random.vec<2>()});
-        break;
-      case 2:
-        system.add(PointOnLine{.from = from, .to = to, .axis = random.vec<2>()});
-        break;
-      default:
-        system.add(Driver{.joint = system.add(Revolute{.from = from, .to = to}),
-                          .position = [](double t) { return std::sin(t); },
-                          .velocity = [](double t) { return std::cos(t); },
-                          .acceleration = [](double t) { return -std::sin(t); }});
-    }
-    bodies.push_back(body);
-  }
-  const BodyId dot = system.add(Particle{.mass = 0.5, .position = random.vec<2>(3.0)});
-  system.add(Rod{.from = bodies[2], .to = dot});
-  const BodyId a = random_plate(system, random), b = random_plate(system, random);
-  system.add(Gear{.from = a, .to = b, .ratio = 0.5});
-  system.add(Rolling{.from = {a, random.vec<2>()}, .to = b, .normal = random.vec<2>(), .radius = 0.5});
-  return system;
-}
-
-std::vector<double> random_numbers(std::size_t size, Random& random) {
-  std::vector<double> numbers(size);
-  for (double& x : numbers) x = random.uniform(-1.0, 1.0);
-  return numbers;
-}
-
-double largest_residual(const JointConstraints& joints, JointLevel level, const std::vector<double>& x) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    largest = std::max(largest, std::abs(residual(level, joints.row(i), x.data())));
-  }
-  return largest;
-}
+using namespace random_mechanism;
 
 /// Rows as a matrix.
 Eigen::MatrixXd matrix_of(const JointConstraints& joints, std::size_t columns) {
@@ -215,94 +156,6 @@ TEST(JointConstraints, TheSmallestChangeOfTwoParticlesOnARod) {
   EXPECT_EQ(v[1], 1.0);
   EXPECT_EQ(v[3], 2.0);
   EXPECT_NEAR(impulse, 6.0, 1e-13);  // on the second, away from the first
-}
-
-/// A beam on parallel links of one length.
-struct Swing {
-  System system;
-  BodyId beam;
-  explicit Swing(int links, double turn = 0.0, Vec<2> velocity = {0, 0}) {
-    beam = system.add(RigidBody{.mass = rod(2.0, 4.0), .velocity = velocity});
-    const Vec<2> link(-1.5 * std::sin(turn), 1.5 * std::cos(turn));
-    for (int i = 0; i < links; ++i) {
-      const Vec<2> end(-2.0 + 4.0 * i / (links - 1), 0.0);
-      system.add(Rod{.from = {ground, Vec<2>(end + link)}, .to = {beam, end}});
-    }
-  }
-};
-
-TEST(JointConstraints, AThirdParallelLinkChangesNothing) {
-  for (const double turn : {0.0, 0.3, -1.2}) {
-    const Vec<2> along(std::cos(turn), std::sin(turn));
-    Swing two(2, turn, Vec<2>(0.7 * along)), three(3, turn, Vec<2>(0.7 * along)),
-        seven(7, turn, Vec<2>(0.7 * along));
-    const JointModel first(two.system);
-    JointConstraints expected(first.assembly, 0);
-    expected.update_and_factor(first.view());
-    for (const Swing* const swing : {&three, &seven}) {
-      const JointModel model(swing->system);
-      JointConstraints joints(model.assembly, 0);
-      joints.update_and_factor(model.view());
-      std::size_t left_out = 0;
-      for (std::size_t row = 0; row < joints.size(); ++row) {
-        if (joints.factors().pivot(row) <= dependent_pivot) ++left_out;
-      }
-      EXPECT_EQ(left_out, joints.size() - 2);
-      for (const JointLevel level : levels) {
-        const std::vector<double> before{0.3, -9.81, 0.7};
-        std::vector<double> x = before, y = before, multipliers(joints.size());
-        joints.project(level, x.data(), multipliers.data());
-        expected.project(level, y.data());
-        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], y[i], 1e-12) << i;
-        EXPECT_LE(largest_residual(joints, level, x), 1e-12);
-        for (const double multiplier : multipliers) EXPECT_LE(std::abs(multiplier), 100.0);
-      }
-    }
-  }
-}
-
-TEST(JointConstraints, OfRedundantLinksOneCarriesNothing) {
-  // Three links under a weight in the middle: forces and moments balance, one multiplier is zero.
-  Swing swing(3);
-  const JointModel model(swing.system);
-  JointConstraints joints(model.assembly, 0);
-  joints.update_and_factor(model.view());
-  std::vector<double> a{0.0, -9.81, 0.0}, multipliers(3);
-  joints.project(JointLevel::acceleration, a.data(), multipliers.data());
-  EXPECT_NEAR(multipliers[0] + multipliers[1] + multipliers[2], -2.0 * 9.81, 1e-12);
-  EXPECT_NEAR(multipliers[0], multipliers[2], 1e-12);
-  EXPECT_EQ(std::count(multipliers.begin(), multipliers.end(), 0.0), multipliers[1] == 0.0 ? 1 : 2);
-}
-
-TEST(JointConstraints, EveryJointTwiceIsAsEveryJointOnce) {
-  Random random(413);
-  for (int repeat = 0; repeat < 20; ++repeat) {
-    System once;
-    BodyId onto = ground;
-    std::vector<std::pair<End<2>, End<2>>> ends;
-    for (int i = 0; i < 6; ++i) {
-      const BodyId body = random_plate(once, random);
-      ends.emplace_back(End<2>(onto, random.vec<2>()), End<2>(body, random.vec<2>()));
-      onto = body;
-    }
-    const auto join = [&ends](System& system) {
-      for (const auto& [from, to] : ends) system.add(Revolute{.from = from, .to = to});
-    };
-    join(once);
-    System twice = once;
-    join(twice);
-    const JointModel a(once), b(twice);
-    JointConstraints first(a.assembly, 0), second(b.assembly, 0);
-    EXPECT_EQ(second.size(), 2 * first.size());
-    first.update_and_factor(a.view());
-    second.update_and_factor(b.view());
-    for (const JointLevel level : levels) {
-      std::vector<double> x = random_numbers(a.state.v.size(), random), y = x;
-      first.project(level, x.data());
-      second.project(level, y.data());
-      for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-11);
-    }
-  }
 }
 
 TEST(JointConstraints, ManyJointsOnOneBody) {
