@@ -28,7 +28,7 @@ ContactMotion motion_of(const PairSide& a, const PairSide& b, const GapPoint& at
     case GapKind::vertices: {
       const double distance = at.gap + (a.radius + b.radius);
       // Of two centres in one place the direction is a choice, which does not move.
-      if (distance > 0.0) turning = -t.dot(a.velocity_at(vertex_a) - b.velocity_at(vertex_b)) / distance;
+      if (distance != 0.0) turning = -t.dot(a.velocity_at(vertex_a) - b.velocity_at(vertex_b)) / distance;
     }
   }
   // From the vertex that is fixed to its body, along the normal to the middle of the gap.

@@ -11,6 +11,7 @@
 
 #include <carom/contact/detection/gap_point.h>
 #include <carom/core/constraint.h>
+#include <carom/core/export.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/layout.h>
 #include <carom/core/space.h>
@@ -19,7 +20,7 @@
 namespace carom {
 
 /// One side of a contact: how it moves, and which velocities move it.
-struct PairSide {
+struct CAROM_API PairSide {
   Index body = none;                 ///< in the order of assembly; `none` of a shape on ground
   Index v = 0;                       ///< first of its velocities
   int columns = 0;                   ///< its velocities: 3, 2 of a particle, none of a shape on ground
@@ -47,12 +48,12 @@ struct PairSide {
 /// Writes bodies (that of `a` first), rows, gap, Jacobian, surface velocity (of a shape on ground, also in
 /// the place of that at the end of the step) and drift; `out` is as made by default. What it does not write:
 /// key, law, friction. \param a a body \param b another one, or a shape on ground
-void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Constraint& out);
+CAROM_API void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Constraint& out);
 
 /// Writes the surface velocity at the end of a time step, of the place that is touched now and goes with a
 /// shape on ground. \param now,after its motions
-void add_motion_after(const GapPoint& at, const GroundMotion& now, const GroundMotion& after,
-                      Constraint& out);
+CAROM_API void add_motion_after(const GapPoint& at, const GroundMotion& now, const GroundMotion& after,
+                                Constraint& out);
 
 /// Point at which both sides touch: midway between their surfaces [m].
 [[nodiscard]] inline Vec<2> meeting_point(const GapPoint& at) { return 0.5 * (at.point_a + at.point_b); }

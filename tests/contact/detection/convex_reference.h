@@ -131,7 +131,7 @@ inline OwnedOutline random_outline(Random& random) {
     const double x = random.uniform(0.3, 1.5), y = random.uniform(0.3, 1.5);
     out.vertices = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
   } else {
-    const unsigned n = kind == 3 ? 3 : 3 + random.below(6);
+    const unsigned n = kind == 3 ? 3 : kind == 7 ? 9 + random.below(6) : 3 + random.below(6);
     const double x = random.uniform(0.4, 1.2), y = random.uniform(0.4, 1.2);
     const double turn = 2.0 * std::numbers::pi / n;
     for (unsigned i = 0; i < n; ++i) {  // on an ellipse, in unequal steps
