@@ -8,8 +8,8 @@ namespace carom {
 
 namespace {
 
-// Levels at most. Boxes smaller than the largest by more than 2^63 stand on the last one.
-constexpr int most_levels = 64;
+// Levels at most. Boxes too small for the last one stand on it.
+constexpr int most_levels = 32;
 
 // Size of a box [m], but no less than what its coordinates resolve to some digits, so that numbers of cells
 // are exact to 2^-12.
@@ -23,10 +23,27 @@ double size_of(const Box<D>& box) {
   return std::max(size, far * 0x1p-40);
 }
 
-// floor(log2(x)) of x >= 1, at most that of the last level.
+// Sizes on one level differ by a factor of up to 2^octaves. Levels are looked up one by one, boxes on a level
+// are tested in vain where they are smaller than its cells.
+constexpr int octaves = 2;
+
+// Level of a box that is smaller than the largest by a ratio >= 1.
 int level_of(double ratio) {
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(ratio) >> 52U) - 1023;
-  return std::min(exponent, most_levels - 1);
+  return std::min(exponent / octaves, most_levels - 1);
+}
+
+// Writes the pairs of a box with some others; returns the end. The loop has no branch, since no prediction
+// would hold.
+template <int D>
+BoxPair* pair_with(const OwnedBox<D>& box, const OwnedBox<D>* from, const OwnedBox<D>* to, BoxPair* out) {
+  const bool free = box.owner == none;
+  for (; from < to; ++from) {
+    *out = {box.number, from->number};
+    const bool found = overlap(box.box, from->box) & (free | (box.owner != from->owner));
+    out += found ? 1 : 0;
+  }
+  return out;
 }
 
 // Places from a row of cells to the next, odd: rows spread over the table without order.
@@ -54,9 +71,9 @@ Index BoxGrid<D>::place_of(const Level& level, const Cell& cell) {
 }
 
 template <int D>
-void BoxGrid<D>::find_levels(std::span<const NumberedBox<D>> boxes) {
+void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes) {
   double largest = 0.0;
-  for (const NumberedBox<D>& entry : boxes) largest = std::max(largest, size_of(entry.box));
+  for (const OwnedBox<D>& entry : boxes) largest = std::max(largest, size_of(entry.box));
   if (largest == 0.0) largest = 1.0;  // all boxes at the origin
   std::array<Index, most_levels> count{};
   std::array<double, most_levels> cell{};
@@ -96,7 +113,7 @@ void BoxGrid<D>::find_levels(std::span<const NumberedBox<D>> boxes) {
 }
 
 template <int D>
-void BoxGrid<D>::place(std::span<const NumberedBox<D>> boxes) {
+void BoxGrid<D>::place(std::span<const OwnedBox<D>> boxes) {
   place_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Level& level = levels_[level_[i]];
@@ -110,9 +127,63 @@ void BoxGrid<D>::place(std::span<const NumberedBox<D>> boxes) {
 }
 
 template <int D>
-void BoxGrid<D>::build(std::span<const NumberedBox<D>> boxes) {
+void BoxGrid<D>::build(std::span<const OwnedBox<D>> boxes) {
   find_levels(boxes);
   place(boxes);
+}
+
+template <int D>
+typename BoxGrid<D>::Cells BoxGrid<D>::cells_around(const Level& level, const Box<D>& box) {
+  // A box that overlaps has its least corner no farther below this one than it is large. The difference is
+  // rounded to the nearest number and cell_of() is monotonic, so no corner is missed.
+  const Vec<D> least = box.min.array() - level.cell;
+  Cells cells{cell_of(level, least), cell_of(level, box.max)};
+  for (std::size_t k = 0; k < D; ++k) cells.few = cells.few && cells.high[k] - cells.low[k] <= 2;
+  return cells;
+}
+
+template <int D>
+void BoxGrid<D>::pair_in_place(const Level& level, Index place, BoxPairs& out) const {
+  const Index begin = begin_[level.places + place], end = begin_[level.places + place + 1];
+  const OwnedBox<D>* entries = entries_.data();
+  const auto pair_all = [&](Index from, Index to) {
+    if (from == to) return;
+    BoxPair* found = out.room(std::size_t{end - begin} * (to - from));
+    for (Index e = begin; e < end; ++e) found = pair_with(entries[e], entries + from, entries + to, found);
+    out.take(found);
+  };
+  for (Index e = begin; e + 1 < end; ++e) {
+    out.take(pair_with(entries[e], entries + e + 1, entries + end, out.room(end - e)));
+  }
+  for_places(level, place + 1, 1, pair_all);
+  for (const Index row : level.rows) for_places(level, place + row - 1, 3, pair_all);
+}
+
+template <int D>
+void BoxGrid<D>::pair_with_larger(const OwnedBox<D>& entry, const Level& level, BoxPairs& out) const {
+  const Cells cells = cells_around(level, entry.box);
+  const auto count = static_cast<Index>(cells.high[0] - cells.low[0] + 1);
+  for_rows(cells, [&](const Cell& row) {
+    for_places(level, place_of(level, row), count, [&](Index from, Index to) {
+      if (from == to) return;
+      out.take(pair_with(entry, entries_.data() + from, entries_.data() + to, out.room(to - from)));
+    });
+  });
+}
+
+template <int D>
+void BoxGrid<D>::find_pairs(BoxPairs& out) const {
+  for (std::size_t number = 0; number < levels_.size(); ++number) {
+    const Level& level = levels_[number];
+    for (Index place = 0; place <= level.mask; ++place) {
+      if (begin_[level.places + place] != begin_[level.places + place + 1]) pair_in_place(level, place, out);
+    }
+    for (std::size_t larger = number + 1; larger < levels_.size(); ++larger) {
+      for (Index e = begin_[level.places]; e < begin_[level.places + level.mask + 1]; ++e) {
+        pair_with_larger(entries_[e], levels_[larger], out);
+      }
+    }
+  }
 }
 
 template class BoxGrid<2>;

@@ -10,8 +10,10 @@
 /// so space has no bounds: boxes far apart may share a place in it, which costs a test and changes nothing.
 
 #include <carom/contact/detection/box.h>
+#include <carom/contact/detection/box_pairs.h>
 #include <carom/core/export.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -19,11 +21,12 @@
 
 namespace carom {
 
-/// A box with its number.
+/// A box with its number and owner.
 template <int D>
-struct NumberedBox {
+struct OwnedBox {
   Box<D> box;
   Index number = none;
+  Index owner = none;  ///< boxes of the same owner do not pair; `none` owns nothing
 };
 
 /// Boxes by cell. Built anew in O(N); keeps its memory.
@@ -31,13 +34,12 @@ template <int D>
 class CAROM_API BoxGrid {
 public:
   /// Takes boxes, in any order. \param boxes finite, min <= max
-  void build(std::span<const NumberedBox<D>> boxes);
+  void build(std::span<const OwnedBox<D>> boxes);
 
-  /// Calls f(i, j) once for every two boxes that overlap, with their numbers, in no particular order.
-  template <class F>
-  void for_pairs(F&& f) const;
+  /// Adds all pairs of boxes that overlap and have different owners.
+  void find_pairs(BoxPairs& out) const;
 
-  /// Calls f(i) once for every box that overlaps a given one. \param box finite
+  /// Calls f(entry) once for every box that overlaps a given one. \param box finite
   template <class F>
   void for_overlapping(const Box<D>& box, F&& f) const {
     for (const Level& level : levels_) for_overlapping(level, box, f);
@@ -55,80 +57,51 @@ private:
   };
   static constexpr Index fewest_places = D == 2 ? 64 : 256;  // rows next to each other share none
 
-  void find_levels(std::span<const NumberedBox<D>> boxes);
-  void place(std::span<const NumberedBox<D>> boxes);
+  void find_levels(std::span<const OwnedBox<D>> boxes);
+  void place(std::span<const OwnedBox<D>> boxes);
   static Cell cell_of(const Level& level, const Vec<D>& corner);
   static Index place_of(const Level& level, const Cell& cell);
-  // Calls f with the entries of `count` places from one on, which wrap around.
+  // Calls f(from, to) with the ranges of entries in `count` places from one on, which wrap around.
   template <class F>
   void for_places(const Level& level, Index place, Index count, F&& f) const;
+  // Cells of a level where boxes that overlap a given one have their least corners.
+  struct Cells {
+    Cell low, high;
+    bool few = true;  // three at most along each axis, whose places differ
+  };
+  static Cells cells_around(const Level& level, const Box<D>& box);
+  // Calls f(row) with the first cell of each row of some cells.
+  template <class F>
+  static void for_rows(const Cells& cells, F&& f);
   template <class F>
   void for_overlapping(const Level& level, const Box<D>& box, F&& f) const;
-  template <class F>
-  void for_pairs_in_place(std::size_t level, Index place, F&& f) const;
+  void pair_in_place(const Level& level, Index place, BoxPairs& out) const;
+  void pair_with_larger(const OwnedBox<D>& entry, const Level& level, BoxPairs& out) const;
 
-  std::vector<Level> levels_;            // of the smallest boxes first
-  std::vector<NumberedBox<D>> entries_;  // by level and place
-  std::vector<Index> begin_;             // of each place: its first entry
-  std::vector<Index> place_;             // of each box, in the order of build()
-  std::vector<std::uint8_t> level_;      // likewise
+  std::vector<Level> levels_;         // of the smallest boxes first
+  std::vector<OwnedBox<D>> entries_;  // by level and place
+  std::vector<Index> begin_;          // of each place: its first entry
+  std::vector<Index> place_;          // of each box, in the order of build()
+  std::vector<std::uint8_t> level_;   // likewise
 };
 
 template <int D>
 template <class F>
 void BoxGrid<D>::for_places(const Level& level, Index place, Index count, F&& f) const {
+  const Index* begin = begin_.data() + level.places;
   const Index first = place & level.mask, end = first + count, size = level.mask + 1;
-  const auto visit = [&](Index from, Index to) {
-    const Index last = begin_[level.places + to];
-    for (Index e = begin_[level.places + from]; e < last; ++e) f(entries_[e]);
-  };
-  if (end <= size) return visit(first, end);
-  visit(first, size);
-  visit(0, end - size);
+  f(begin[first], begin[std::min(end, size)]);
+  if (end > size) f(begin[0], begin[end - size]);
 }
 
 template <int D>
 template <class F>
-void BoxGrid<D>::for_overlapping(const Level& level, const Box<D>& box, F&& f) const {
-  // A box that overlaps has its least corner no farther below this one than it is large. The sum is rounded
-  // to the nearest number and cell_of() is monotonic, so no corner is missed.
-  Cell low, high;
-  Vec<D> least = box.min;
-  for (int k = 0; k < D; ++k) least[k] -= level.cell;
-  low = cell_of(level, least), high = cell_of(level, box.max);
-  bool near = true;
-  double rows = 1.0;
-  for (std::size_t k = 0; k < D; ++k) {
-    near = near && high[k] - low[k] <= 2;
-    if (k > 0) rows *= static_cast<double>(high[k] - low[k] + 1);
-  }
-  const auto test = [&](const NumberedBox<D>& entry) {
-    if (overlap(entry.box, box)) f(entry.number);
-  };
-  const Index entries = begin_[level.places + level.mask + 1] - begin_[level.places];
-  const auto wide = static_cast<std::uint64_t>(high[0] - low[0]) >= level.mask;
-  if (!near && (wide || rows > static_cast<double>(entries))) {
-    return for_places(level, 0, level.mask + 1, test);
-  }
-  Cell row = low;
-  const auto count = static_cast<Index>(high[0] - low[0] + 1);
-  // Rows far from each other may share places: an entry counts in the row where it is.
-  const auto test_in_row = [&](const NumberedBox<D>& entry) {
-    if (!overlap(entry.box, box)) return;
-    const Cell at = cell_of(level, entry.box.min);
-    for (std::size_t k = 1; k < D; ++k) {
-      if (at[k] != row[k]) return;
-    }
-    f(entry.number);
-  };
+void BoxGrid<D>::for_rows(const Cells& cells, F&& f) {
+  Cell row = cells.low;
   for (;;) {
-    if (near) {
-      for_places(level, place_of(level, row), count, test);
-    } else {
-      for_places(level, place_of(level, row), count, test_in_row);
-    }
+    f(row);
     std::size_t k = 1;
-    while (k < D && row[k] == high[k]) row[k] = low[k], ++k;
+    while (k < D && row[k] == cells.high[k]) row[k] = cells.low[k], ++k;
     if (k == D) return;
     ++row[k];
   }
@@ -136,33 +109,36 @@ void BoxGrid<D>::for_overlapping(const Level& level, const Box<D>& box, F&& f) c
 
 template <int D>
 template <class F>
-void BoxGrid<D>::for_pairs_in_place(std::size_t number, Index place, F&& f) const {
-  const Level& level = levels_[number];
-  const Index begin = begin_[level.places + place], end = begin_[level.places + place + 1];
-  for (Index e = begin; e < end; ++e) {
-    const NumberedBox<D>& entry = entries_[e];
-    const auto test = [&](const NumberedBox<D>& other) {
-      if (overlap(entry.box, other.box)) f(entry.number, other.number);
+void BoxGrid<D>::for_overlapping(const Level& level, const Box<D>& box, F&& f) const {
+  const Cells cells = cells_around(level, box);
+  const auto test = [&](Index from, Index to) {
+    for (Index e = from; e < to; ++e) {
+      if (overlap(entries_[e].box, box)) f(entries_[e]);
+    }
+  };
+  const auto columns = static_cast<double>(cells.high[0] - cells.low[0] + 1);
+  double rows = 1.0;
+  for (std::size_t k = 1; k < D; ++k) rows *= static_cast<double>(cells.high[k] - cells.low[k] + 1);
+  const Index entries = begin_[level.places + level.mask + 1] - begin_[level.places];
+  // More rows than boxes: each box is tested.
+  if (!cells.few && (columns > level.mask || rows > entries))
+    return for_places(level, 0, level.mask + 1, test);
+  for_rows(cells, [&](const Cell& row) {
+    // Rows far from each other may share places: a box counts in the row where it is.
+    const auto test_in_row = [&](Index from, Index to) {
+      for (Index e = from; e < to; ++e) {
+        const Cell at = cell_of(level, entries_[e].box.min);
+        const bool here = std::equal(at.begin() + 1, at.end(), row.begin() + 1);
+        if (here && overlap(entries_[e].box, box)) f(entries_[e]);
+      }
     };
-    for (Index other = e + 1; other < end; ++other) test(entries_[other]);
-    for_places(level, place + 1, 1, test);
-    for (const Index row : level.rows) for_places(level, place + row - 1, 3, test);
-    for (std::size_t coarser = number + 1; coarser < levels_.size(); ++coarser) {
-      for_overlapping(levels_[coarser], entry.box, [&](Index other) { f(entry.number, other); });
+    const auto count = static_cast<Index>(columns);
+    if (cells.few) {
+      for_places(level, place_of(level, row), count, test);
+    } else {
+      for_places(level, place_of(level, row), count, test_in_row);
     }
-  }
-}
-
-template <int D>
-template <class F>
-void BoxGrid<D>::for_pairs(F&& f) const {
-  for (std::size_t number = 0; number < levels_.size(); ++number) {
-    const Level& level = levels_[number];
-    for (Index place = 0; place <= level.mask; ++place) {
-      if (begin_[level.places + place] != begin_[level.places + place + 1])
-        for_pairs_in_place(number, place, f);
-    }
-  }
+  });
 }
 
 extern template class BoxGrid<2>;

@@ -19,10 +19,15 @@ void sort_few(Index* begin, Index* end) {
 }  // namespace
 
 void BoxPairs::arrange() {
+  const std::span<BoxPair> found(found_.data(), count_);
+  for (BoxPair& pair : found) {
+    pair = {std::min(pair.first, pair.second), std::max(pair.first, pair.second)};
+    ++begin_[pair.first];
+  }
   Index end = 0;
   for (Index& entry : begin_) end += entry, entry = end;
-  partners_.resize(found_.size());
-  for (const BoxPair& pair : found_) partners_[--begin_[pair.first]] = pair.second;
+  partners_.resize(count_);
+  for (const BoxPair& pair : found) partners_[--begin_[pair.first]] = pair.second;
   for (Index box = 0; box < boxes(); ++box) {
     sort_few(partners_.data() + begin_[box], partners_.data() + begin_[box + 1]);
   }

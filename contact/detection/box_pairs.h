@@ -17,15 +17,16 @@ class CAROM_API BoxPairs {
 public:
   /// Forgets all pairs. \param boxes how many there are
   void start(Index boxes) {
-    found_.clear();
+    count_ = 0;
     begin_.assign(boxes + 1U, 0);
   }
-  /// Adds the pair of two different boxes, once.
-  void add(Index a, Index b) {
-    const BoxPair pair{std::min(a, b), std::max(a, b)};
-    ++begin_[pair.first];
-    found_.push_back(pair);
+  /// Room for more pairs, to be written in either order of their boxes, each once; take() counts them.
+  [[nodiscard]] BoxPair* room(std::size_t more) {
+    if (found_.size() < count_ + more) found_.resize(2 * (count_ + more));
+    return found_.data() + count_;
   }
+  /// Takes the pairs written since room(). \param end after the last
+  void take(const BoxPair* end) { count_ = static_cast<std::size_t>(end - found_.data()); }
   /// Arranges what was added since start().
   void arrange();
 
@@ -40,6 +41,7 @@ public:
 
 private:
   std::vector<BoxPair> found_;
+  std::size_t count_ = 0;        // of pairs found
   std::vector<Index> begin_{0};  // of each box: its first partner
   std::vector<Index> partners_;
 };

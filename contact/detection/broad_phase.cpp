@@ -67,11 +67,10 @@ Box<D> widened(const Box<D>& box, double half) {
 
 template <int D>
 void BroadPhase<D>::reset(std::span<const Index> owners) {
-  owners_.assign(owners.begin(), owners.end());
   wide_.clear();
   // No box is inside these.
   const Box<D> empty{Vec<D>::Constant(infinity), Vec<D>::Constant(-infinity)};
-  for (Index i = 0; i < owners_.size(); ++i) wide_.push_back({empty, i});
+  for (Index i = 0; i < owners.size(); ++i) wide_.push_back({empty, i, owners[i]});
   candidates_.start(size());
   candidates_.arrange();
 }
@@ -83,9 +82,9 @@ void BroadPhase<D>::reset(Index boxes) {
 
 template <int D>
 void BroadPhase<D>::check(std::span<const Box<D>> boxes, double margin) const {
-  if (boxes.size() != owners_.size()) {
+  if (boxes.size() != wide_.size()) {
     throw ModelError("broad phase: " + std::to_string(boxes.size()) + " boxes; reset() was told of " +
-                     std::to_string(owners_.size()));
+                     std::to_string(wide_.size()));
   }
   if (!(margin >= 0.0 && margin <= farthest)) {
     throw ModelError("broad phase: margin is " + std::to_string(margin) + ", must be finite and >= 0");
@@ -110,9 +109,7 @@ void BroadPhase<D>::rebuild(std::span<const Box<D>> boxes, double half) {
   for (Index i = 0; i < boxes.size(); ++i) wide_[i].box = widened(boxes[i], half);
   grid_.build(wide_);
   candidates_.start(size());
-  grid_.for_pairs([&](Index a, Index b) {
-    if (may_pair(a, b)) candidates_.add(a, b);
-  });
+  grid_.find_pairs(candidates_);
   candidates_.arrange();
 }
 
@@ -148,8 +145,8 @@ void BroadPhase<D>::query(std::span<const Box<D>> boxes, const Box<D>& box, doub
   for (int k = 0; k < D; ++k) {
     around.min[k] = lower(box.min[k], 0.5 * margin), around.max[k] = upper(box.max[k], 0.5 * margin);
   }
-  grid_.for_overlapping(around, [&](Index i) {
-    if (are_within(box, boxes[i], margin)) out.push_back(i);
+  grid_.for_overlapping(around, [&](const OwnedBox<D>& entry) {
+    if (are_within(box, boxes[entry.number], margin)) out.push_back(entry.number);
   });
   std::sort(out.begin(), out.end());
 }

@@ -32,7 +32,7 @@ public:
   void reset(Index boxes);
 
   /// Number of boxes.
-  [[nodiscard]] Index size() const { return static_cast<Index>(owners_.size()); }
+  [[nodiscard]] Index size() const { return static_cast<Index>(wide_.size()); }
 
   /// All pairs of boxes that no axis parts by more than a margin (are_within()) and that have different
   /// owners, sorted by (first, second). Valid until the next call of update() or reset().
@@ -52,12 +52,7 @@ private:
   void find_left(std::span<const Box<D>> boxes, double half);
   void rebuild(std::span<const Box<D>> boxes, double half);
   std::span<const BoxPair> select(std::span<const Box<D>> boxes, double margin);
-  [[nodiscard]] bool may_pair(Index a, Index b) const {
-    return owners_[a] != owners_[b] || owners_[a] == none;
-  }
-
-  std::vector<Index> owners_;
-  std::vector<NumberedBox<D>> wide_;  // in the order of boxes
+  std::vector<OwnedBox<D>> wide_;  // in the order of boxes
   std::vector<Index> left_;
   BoxGrid<D> grid_;      // of the wide boxes
   BoxPairs candidates_;  // pairs of wide boxes
