@@ -13,6 +13,7 @@
 #include <carom/contact/detection/box_pairs.h>
 #include <carom/core/export.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -50,12 +51,24 @@ private:
   void check(std::span<const Box<D>> boxes, double margin) const;
   // Lists the boxes that are outside of theirs.
   void find_left(std::span<const Box<D>> boxes, double half);
+  void widen(Index i, const Box<D>& box, double half);
   void rebuild(std::span<const Box<D>> boxes, double half);
+  // Looks up the boxes that left theirs; the candidates of the others stay.
+  void replace_left(std::span<const Box<D>> boxes, double half);
   std::span<const BoxPair> select(std::span<const Box<D>> boxes, double margin);
-  std::vector<OwnedBox<D>> wide_;  // in the order of boxes
-  std::vector<Index> left_;
-  BoxGrid<D> grid_;      // of the wide boxes
-  BoxPairs candidates_;  // pairs of wide boxes
+  // Where the larger box of a box is found: in the grid; it left since and is in the late one; it leaves.
+  enum class Place : std::uint8_t { grid, late, left };
+
+  std::vector<OwnedBox<D>> wide_;     // the larger boxes, in the order of boxes
+  std::vector<std::uint64_t> since_;  // the call that made each
+  std::uint64_t call_ = 0;
+  std::vector<Place> state_;
+  std::vector<Index> left_;        // boxes outside of theirs in this call
+  BoxGrid<D> grid_;                // of the larger boxes when all were looked up
+  std::vector<OwnedBox<D>> late_;  // larger boxes made since
+  BoxGrid<D> late_grid_;
+  BoxPairs candidates_;  // pairs of larger boxes
+  BoxPairs found_;       // those of boxes that left
   std::vector<BoxPair> pairs_;
 };
 
