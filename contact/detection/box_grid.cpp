@@ -23,12 +23,14 @@ double size_of(const Box<D>& box) {
   return std::max(size, far * 0x1p-40);
 }
 
-// Sizes on one level differ by a factor of up to 2^octaves. Levels are looked up one by one, boxes on a level
-// are tested in vain where they are smaller than its cells.
-constexpr int octaves = 2;
+// Sizes on one level differ by a factor of up to 2^octaves. Levels are looked up one by one; boxes smaller
+// than the cells of their level are tested in vain, which costs less where they are sparse.
+constexpr int most_octaves = 8, fewest_octaves = 2;
+// Boxes in the place of a box, on average, from which levels are made narrower.
+constexpr double crowd = 8.0;
 
 // Level of a box that is smaller than the largest by a ratio >= 1.
-int level_of(double ratio) {
+int level_of(double ratio, int octaves) {
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(ratio) >> 52U) - 1023;
   return std::min(exponent / octaves, most_levels - 1);
 }
@@ -71,7 +73,7 @@ Index BoxGrid<D>::place_of(const Level& level, const Cell& cell) {
 }
 
 template <int D>
-void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes) {
+void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes, int octaves) {
   double largest = 0.0;
   for (const OwnedBox<D>& entry : boxes) largest = std::max(largest, size_of(entry.box));
   if (largest == 0.0) largest = 1.0;  // all boxes at the origin
@@ -80,7 +82,7 @@ void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes) {
   level_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const double size = size_of(boxes[i].box);
-    const auto level = static_cast<std::size_t>(level_of(largest / size));
+    const auto level = static_cast<std::size_t>(level_of(largest / size, octaves));
     level_[i] = static_cast<std::uint8_t>(level);
     cell[level] = std::max(cell[level], size);
     ++count[level];
@@ -113,23 +115,30 @@ void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes) {
 }
 
 template <int D>
-void BoxGrid<D>::place(std::span<const OwnedBox<D>> boxes) {
+double BoxGrid<D>::find_places(std::span<const OwnedBox<D>> boxes) {
   place_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Level& level = levels_[level_[i]];
     place_[i] = level.places + place_of(level, cell_of(level, boxes[i].box.min));
     ++begin_[place_[i]];
   }
-  Index end = 0;
-  for (Index& entry : begin_) end += entry, entry = end;
-  entries_.resize(boxes.size());
-  for (std::size_t i = boxes.size(); i-- > 0;) entries_[--begin_[place_[i]]] = boxes[i];
+  double crowding = 0.0;
+  for (const Index count : begin_) crowding += static_cast<double>(count) * count;
+  return crowding / static_cast<double>(boxes.size());
 }
 
 template <int D>
 void BoxGrid<D>::build(std::span<const OwnedBox<D>> boxes) {
-  find_levels(boxes);
-  place(boxes);
+  find_levels(boxes, is_crowded_ ? fewest_octaves : most_octaves);
+  if (find_places(boxes) > crowd && !is_crowded_) {
+    is_crowded_ = true;
+    find_levels(boxes, fewest_octaves);
+    find_places(boxes);
+  }
+  Index end = 0;
+  for (Index& entry : begin_) end += entry, entry = end;
+  entries_.resize(boxes.size());
+  for (std::size_t i = boxes.size(); i-- > 0;) entries_[--begin_[place_[i]]] = boxes[i];
 }
 
 template <int D>

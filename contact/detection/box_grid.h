@@ -4,10 +4,10 @@
 /// A grid with several sizes of cells that finds which boxes overlap.
 ///
 /// Boxes are of all sizes, so one size of cells would put many boxes into one cell or one box into many. Each
-/// box stands in one cell of the level whose cells are less than twice as large as it, the cell of its least
-/// corner. A box that overlaps it has its corner in the same cell or a neighbour if it is of that level; a
-/// smaller box looks up the few cells of each coarser level. Cells are numbered modulo the size of a table,
-/// so space has no bounds: boxes far apart may share a place in it, which costs a test and changes nothing.
+/// box stands in one cell of a level whose cells are somewhat larger than it, the cell of its least corner. A
+/// box that overlaps it has its corner in the same cell or a neighbour if it is of that level; a smaller box
+/// looks up the few cells of each coarser level. Cells are numbered modulo the size of a table, so space has
+/// no bounds: boxes far apart may share a place in it, which costs a test and changes nothing.
 
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/box_pairs.h>
@@ -57,8 +57,10 @@ private:
   };
   static constexpr Index fewest_places = D == 2 ? 64 : 256;  // rows next to each other share none
 
-  void find_levels(std::span<const OwnedBox<D>> boxes);
-  void place(std::span<const OwnedBox<D>> boxes);
+  // \param octaves sizes on one level differ by a factor of up to 2^octaves
+  void find_levels(std::span<const OwnedBox<D>> boxes, int octaves);
+  // Counts the boxes in each place in `begin_`. Returns how many are where a box is, on average.
+  double find_places(std::span<const OwnedBox<D>> boxes);
   static Cell cell_of(const Level& level, const Vec<D>& corner);
   static Index place_of(const Level& level, const Cell& cell);
   // Calls f(from, to) with the ranges of entries in `count` places from one on, which wrap around.
@@ -78,6 +80,7 @@ private:
   void pair_in_place(const Level& level, Index place, BoxPairs& out) const;
   void pair_with_larger(const OwnedBox<D>& entry, const Level& level, BoxPairs& out) const;
 
+  bool is_crowded_ = false;           // levels of few octaves were needed
   std::vector<Level> levels_;         // of the smallest boxes first
   std::vector<OwnedBox<D>> entries_;  // by level and place
   std::vector<Index> begin_;          // of each place: its first entry

@@ -1,18 +1,19 @@
 #include <carom/contact/detection/box_pairs.h>
 
+#include <cstdint>
+
 namespace carom {
 
 namespace {
 
-// Sorts few numbers where they stand.
-void sort_few(Index* begin, Index* end) {
-  constexpr std::ptrdiff_t few = 16;
-  if (end - begin > few) return std::sort(begin, end);
-  for (Index* at = begin; at < end; ++at) {
-    const Index value = *at;
-    Index* to = at;
-    for (; to > begin && to[-1] > value; --to) *to = to[-1];
-    *to = value;
+// Sorts by insertion, for pairs of which few stand far from their place.
+void insert_each(std::span<BoxPair> pairs) {
+  const auto rank = [](const BoxPair& pair) { return std::uint64_t{pair.first} << 32U | pair.second; };
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    const BoxPair pair = pairs[i];
+    std::size_t to = i;
+    for (; to > 0 && rank(pairs[to - 1]) > rank(pair); --to) pairs[to] = pairs[to - 1];
+    pairs[to] = pair;
   }
 }
 
@@ -26,11 +27,16 @@ void BoxPairs::arrange() {
   }
   Index end = 0;
   for (Index& entry : begin_) end += entry, entry = end;
-  partners_.resize(count_);
-  for (const BoxPair& pair : found) partners_[--begin_[pair.first]] = pair.second;
-  for (Index box = 0; box < boxes(); ++box) {
-    sort_few(partners_.data() + begin_[box], partners_.data() + begin_[box + 1]);
+  pairs_.resize(count_);
+  for (const BoxPair& pair : found) pairs_[--begin_[pair.first]] = pair;
+  // By the first box now.
+  constexpr Index few = 16;
+  for (std::size_t box = 0; box + 1 < begin_.size(); ++box) {
+    if (begin_[box + 1] - begin_[box] > few) {
+      std::sort(pairs_.begin() + begin_[box], pairs_.begin() + begin_[box + 1]);
+    }
   }
+  insert_each(pairs_);
 }
 
 }  // namespace carom

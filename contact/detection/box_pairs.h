@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Pairs of boxes in order: for each box the partners of a higher number.
+/// A list of pairs of boxes in order.
 
 #include <carom/contact/detection/box.h>
 #include <carom/core/export.h>
@@ -40,47 +40,31 @@ public:
   template <class F>
   void replace(const BoxPairs& fresh, F&& is_replaced);
 
-  /// Number of pairs.
-  [[nodiscard]] std::size_t size() const { return partners_.size(); }
-  /// Number of boxes.
-  [[nodiscard]] Index boxes() const { return static_cast<Index>(begin_.size() - 1); }
-  /// Partners of a box that have a higher number, ascending.
-  [[nodiscard]] std::span<const Index> partners(Index box) const {
-    return {partners_.data() + begin_[box], partners_.data() + begin_[box + 1]};
-  }
+  /// The pairs that were arranged, sorted by (first, second).
+  [[nodiscard]] std::span<const BoxPair> list() const { return pairs_; }
 
 private:
   std::vector<BoxPair> found_;
   std::size_t count_ = 0;        // of pairs found
-  std::vector<Index> begin_{0};  // of each box: its first partner
-  std::vector<Index> partners_;
-  std::vector<Index> next_begin_, next_partners_;  // of replace()
+  std::vector<Index> begin_{0};  // of each box: its first pair
+  std::vector<BoxPair> pairs_;
+  std::vector<BoxPair> next_;  // of replace()
 };
 
 template <class F>
 void BoxPairs::replace(const BoxPairs& fresh, F&& is_replaced) {
-  next_begin_.resize(begin_.size());
-  if (next_partners_.size() < size() + fresh.size()) next_partners_.resize(2 * (size() + fresh.size()));
-  Index* to = next_partners_.data();
-  const auto place = [&] { return static_cast<Index>(to - next_partners_.data()); };
-  for (Index box = 0; box < boxes(); ++box) {
-    next_begin_[box] = place();
-    const std::span<const Index> added = fresh.partners(box);
-    if (is_replaced(box)) {
-      to = std::copy(added.begin(), added.end(), to);
-      continue;
-    }
-    auto next = added.begin();
-    for (const Index partner : partners(box)) {
-      if (is_replaced(partner)) continue;
-      while (next != added.end() && *next < partner) *to++ = *next++;
-      *to++ = partner;
-    }
-    to = std::copy(next, added.end(), to);
+  const std::span<const BoxPair> added = fresh.list();
+  next_.resize(std::max(next_.size(), pairs_.size() + added.size()));
+  BoxPair* to = next_.data();
+  auto next = added.begin();
+  for (const BoxPair& pair : pairs_) {
+    if (is_replaced(pair.first) || is_replaced(pair.second)) continue;
+    while (next != added.end() && *next < pair) *to++ = *next++;
+    *to++ = pair;
   }
-  next_begin_.back() = place();
-  next_partners_.resize(place());
-  begin_.swap(next_begin_), partners_.swap(next_partners_);
+  to = std::copy(next, added.end(), to);
+  next_.resize(static_cast<std::size_t>(to - next_.data()));
+  pairs_.swap(next_);
 }
 
 }  // namespace carom

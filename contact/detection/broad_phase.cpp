@@ -165,14 +165,12 @@ void BroadPhase<D>::replace_left(std::span<const Box<D>> boxes, double half) {
 
 template <int D>
 std::span<const BoxPair> BroadPhase<D>::select(std::span<const Box<D>> boxes, double margin) {
-  if (pairs_.size() < candidates_.size()) pairs_.resize(candidates_.size() + candidates_.size() / 2);
+  const std::span<const BoxPair> candidates = candidates_.list();
+  if (pairs_.size() < candidates.size()) pairs_.resize(candidates.size() + candidates.size() / 2);
   std::size_t count = 0;
-  for (Index i = 0; i < boxes.size(); ++i) {
-    const Box<D>& box = boxes[i];
-    for (const Index partner : candidates_.partners(i)) {
-      pairs_[count] = {i, partner};
-      count += are_within(box, boxes[partner], margin) ? 1U : 0U;
-    }
+  for (const BoxPair& pair : candidates) {
+    pairs_[count] = pair;
+    count += are_within(boxes[pair.first], boxes[pair.second], margin) ? 1U : 0U;
   }
   return {pairs_.data(), count};
 }

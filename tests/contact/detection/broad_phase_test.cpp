@@ -107,17 +107,21 @@ TYPED_TEST(BroadPhaseIn, FindsPairsOfRowsAndDiagonals) {
 TYPED_TEST(BroadPhaseIn, PairsThatJustMeetOverlapAndThoseThatJustMissDoNot) {
   constexpr int D = TypeParam::dimension;
   Random random(4);
-  // Neighbours in a lattice of boxes without size, whose distances are the margin as rounded, or just above.
+  // Places in a lattice of boxes without size, whose distances are the margin as rounded, or just above. They
+  // jump, so that none is kept in a larger box.
   for (const double margin : {0.1, 1.0 / 3.0, 1e-7}) {
-    Boxes<D> boxes;
-    for (int i = 0; i < 300; ++i) {
-      Vec<D> at;
-      for (int k = 0; k < D; ++k) at[k] = (static_cast<double>(random.below(8)) - 4.0) * margin;
-      boxes.push_back({at, at});
+    BroadPhase<D> broad;
+    broad.reset(300);
+    Boxes<D> boxes(300);
+    for (int step = 0; step < 20; ++step) {
+      for (Box<D>& box : boxes) {
+        for (int k = 0; k < D; ++k) box.min[k] = (static_cast<double>(random.below(80)) - 40.0) * margin;
+        if (D == 2 || random.below(4) != 0) box.min[D - 1] = box.min[0];  // close together
+        box.max = box.min;
+      }
+      const double asked = step % 2 == 0 ? margin : std::nextafter(margin, 0.0);
+      ASSERT_EQ(list(broad.update(boxes, asked)), brute(boxes, asked)) << margin << ", step " << step;
     }
-    EXPECT_EQ(fresh(boxes, margin), brute(boxes, margin));
-    const double less = std::nextafter(margin, 0.0);
-    EXPECT_EQ(fresh(boxes, less), brute(boxes, less));
   }
 }
 
@@ -153,7 +157,22 @@ TYPED_TEST(BroadPhaseIn, AFewFastBoxesAmongManyAtRest) {
   for (int step = 0; step < 200; ++step) {
     ASSERT_EQ(list(broad.update(boxes)), brute(boxes, 0.0)) << step;
     for (int i = 0; i < 3; ++i) shift<D>(boxes[random.below(500)], random.vec<D>(20.0));
+    // Two that come to one place.
+    const Index one = random.below(500), other = random.below(500);
+    shift<D>(boxes[one], random.vec<D>(20.0));
+    shift<D>(boxes[other], boxes[one].min - boxes[other].min);
   }
+}
+
+TYPED_TEST(BroadPhaseIn, ManySmallBoxesInAndAroundAFewLargeOnes) {
+  constexpr int D = TypeParam::dimension;
+  Random random(10);
+  Boxes<D> boxes;
+  for (int i = 0; i < 1500; ++i) boxes.push_back(random_box<D>(random, 150.0, i % 300 == 0 ? 100.0 : 1.0));
+  EXPECT_EQ(fresh(boxes, 0.0), brute(boxes, 0.0));
+  // One far away, so that the others are close together for the grid's sizes.
+  shift<D>(boxes[0], Vec<D>::Constant(1e9));
+  EXPECT_EQ(fresh(boxes, 0.0), brute(boxes, 0.0));
 }
 
 TYPED_TEST(BroadPhaseIn, QueryFindsAllAroundABox) {
@@ -175,6 +194,25 @@ TYPED_TEST(BroadPhaseIn, QueryFindsAllAroundABox) {
       EXPECT_EQ(found, expected) << size;
     }
     for (int i = 0; i < 50; ++i) shift<D>(boxes[random.below(500)], random.vec<D>(1.0));
+  }
+}
+
+TYPED_TEST(BroadPhaseIn, QueryOfMuchOfAField) {
+  constexpr int D = TypeParam::dimension;
+  Random random(11);
+  const Boxes<D> boxes = random_boxes<D>(random, 2000, 1.0);
+  BroadPhase<D> broad;
+  broad.reset(static_cast<Index>(boxes.size()));
+  broad.update(boxes);
+  std::vector<Index> found;
+  for (int trial = 0; trial < 50; ++trial) {
+    const Box<D> box = random_box<D>(random, 10.0, trial);
+    std::vector<Index> expected;
+    for (Index i = 0; i < boxes.size(); ++i) {
+      if (overlap(box, boxes[i])) expected.push_back(i);
+    }
+    broad.query(boxes, box, 0.0, found);
+    EXPECT_EQ(found, expected) << trial;
   }
 }
 
