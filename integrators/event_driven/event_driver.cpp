@@ -49,6 +49,11 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
+  if (detector_.bodies_touch()) {
+    throw ModelError(
+        "event-driven mode: laws of contact let bodies touch each other; allowed: contact with obstacles (time "
+        "stepping does both)");
+  }
   for (Index component = 0; component < assembly.components().size(); ++component) {
     groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
