@@ -189,8 +189,8 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, const BodyCo
   }
 }
 
-/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two vertices
-/// it is the one of the outline with fewer.
+/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two
+/// vertices it is the one of the outline with fewer.
 ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap) {
   const bool of_a = gap.kind == GapKind::edge_of_b ||
                     (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
@@ -212,7 +212,8 @@ void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const Bo
 void BodyContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                            Constraint& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
-  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)], &b = outlines_.list()[pair.outline];
+  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
+                    &b = outlines_.list()[pair.outline];
   // In the frame of the second body its vertices are at hand as described.
   const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
   const BodyFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);

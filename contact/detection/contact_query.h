@@ -12,7 +12,7 @@ namespace carom {
 
 /// A state, and which contacts of it are asked for. It is read during the call that it is given to.
 struct ContactQuery {
-  const StateView& state;                    ///< positions, velocities, time
+  StateView state;                           ///< positions, velocities, time
   const Evaluation& evaluation;              ///< with its position group up to date
   const GroundPlaces& places;                ///< of the state's time
   const GroundPlaces* after = nullptr;       ///< at the end of the step; null where no time passes

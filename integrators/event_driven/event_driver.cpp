@@ -51,7 +51,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
   if (detector_.bodies_touch()) {
     throw ModelError(
-        "event-driven mode: laws of contact let bodies touch each other; allowed: contact with obstacles (time "
+        "event-driven mode: laws of contact let bodies touch each other; allowed: contact with obstacles "
+        "(time "
         "stepping does both)");
   }
   for (Index component = 0; component < assembly.components().size(); ++component) {

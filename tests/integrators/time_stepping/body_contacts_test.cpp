@@ -1,24 +1,30 @@
 // Bodies that touch each other in time stepping: impacts against closed form, momentum, static forces.
 
+#include "tests/reference/reference_data.h"
+
 #include <carom/carom.h>
-#include <tests/reference/reference_data.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/total_momentum.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <string>
 #include <vector>
 
-namespace carom {
 namespace {
 
-using namespace planar;
+using namespace carom;
+using namespace carom::planar;
+using carom_test::reference_data;
 
 constexpr double gravity = 9.81;  // [m/s^2]
 
 /// A disc of uniform density with its outline.
-BodyId add_disc(System& system, double mass, double radius, const Vec<2>& place, const Vec<2>& velocity = {0, 0},
-                double spin = 0.0, MaterialId material = {}) {
+BodyId add_disc(System& system, double mass, double radius, const Vec<2>& place,
+                const Vec<2>& velocity = {0, 0}, double spin = 0.0, MaterialId material = {}) {
   const BodyId body = system.add(
       RigidBody{.mass = disc(mass, radius), .position = place, .velocity = velocity, .spin = spin});
   system.add(Disc{.body = body, .radius = radius, .material = material});
@@ -49,9 +55,11 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
     const auto any = [&] { return 2.0 * unit(random) - 1.0; };
     const Vec<2> v_a = Vec<2>(any(), any()) - n, v_b = Vec<2>(any(), any()) + n;
     const double w_a = any(), w_b = any();
-    // No overlap to speak of: then both levers reach the same point.
-    const Vec<2> apart = (r_a + r_b) * (1.0 - 1e-15) * n;
-    const BodyId a = add_disc(system, m_a, r_a, apart, v_a, w_a), b = add_disc(system, m_b, r_b, {0, 0}, v_b, w_b);
+    // Levers reach the middle of the overlap, which is hardly more than rounding.
+    constexpr double overlap = 1e-14;
+    const Vec<2> apart = (r_a + r_b - overlap) * n;
+    const BodyId a = add_disc(system, m_a, r_a, apart, v_a, w_a),
+                 b = add_disc(system, m_b, r_b, {0, 0}, v_b, w_b);
     const double step = 1e-6;
     Simulation simulation(system, TimeStepping{.step = step});
     simulation.step();
@@ -66,9 +74,9 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
     const double P_t = stick ? to_stick : -mu * P_n * std::copysign(1.0, tangential);
     const State& end = simulation.state();
     const Vec<2> impulse = P_n * n + P_t * t;
-    // Rounding of the overlap turns the normal by 1e-15; impulses are of order 1.
-    EXPECT_LT((end.velocity(a) - (v_a + impulse / m_a)).norm(), 1e-13);
-    EXPECT_LT((end.velocity(b) - (v_b - impulse / m_b)).norm(), 1e-13);
+    // The overlap changes levers by 5e-15; impulses are up to 10, masses from 0.1 on.
+    EXPECT_LT((end.velocity(a) - (v_a + impulse / m_a)).norm(), 1e-12);
+    EXPECT_LT((end.velocity(b) - (v_b - impulse / m_b)).norm(), 1e-12);
     EXPECT_NEAR(end.spin(a), w_a + r_a * P_t / (0.5 * m_a * r_a * r_a), 1e-12);
     EXPECT_NEAR(end.spin(b), w_b + r_b * P_t / (0.5 * m_b * r_b * r_b), 1e-12);
     EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-14);
@@ -80,7 +88,8 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
 TEST(BodyContacts, TheReportNamesBothBodies) {
   System system;
   system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
-  const BodyId a = add_disc(system, 1.0, 1.0, {0.0, 0.0}), b = add_disc(system, 1.0, 1.0, {1.9, 0.0}, {-1.0, 0.0});
+  const BodyId a = add_disc(system, 1.0, 1.0, {0.0, 0.0}),
+               b = add_disc(system, 1.0, 1.0, {1.9, 0.0}, {-1.0, 0.0});
   Simulation simulation(system, TimeStepping{.step = 1e-3});
   simulation.step();
   const auto& contacts = simulation.report().contacts;
@@ -109,8 +118,8 @@ TEST(BodyContacts, BodiesAtAJointDoNotTouch) {
   system.set_default_law({.friction = 0.5, .normal_restitution = 0.0});
   system.add(Gravity{{0.0, -gravity}});
   const BodyId a = add_box(system, 1.0, 1.0, 0.1, {0.5, 0.0}), b = add_box(system, 1.0, 1.0, 0.1, {1.5, 0.0});
-  system.add(Revolute{.from = ground, .to = a, .to_point = {-0.5, 0.0}});
-  system.add(Revolute{.from = a, .to = b, .from_point = {0.5, 0.0}, .to_point = {-0.5, 0.0}});
+  system.add(Revolute{.from = ground, .to = {a, {-0.5, 0.0}}});
+  system.add(Revolute{.from = {a, {0.5, 0.0}}, .to = {b, {-0.5, 0.0}}});
   Simulation simulation(system, TimeStepping{.step = 1e-3});
   simulation.run_until(0.3);
   EXPECT_EQ(simulation.statistics().contact_steps, 0);
@@ -181,7 +190,9 @@ TEST(BodyContacts, APyramidOfThreeDiscsLeansOnTheWalls) {
   for (const ContactRecord& contact : simulation.report().contacts) {
     const double force = contact.impulse[0] / step;
     const bool pair = contact.body == top || contact.other == top;
-    const char* const name = pair ? "top_pair_each" : contact.obstacle.serial == 0 ? "floor_each" : "wall_each";
+    const char* const name = pair                           ? "top_pair_each"
+                             : contact.obstacle.serial == 0 ? "floor_each"
+                                                            : "wall_each";
     // Places are those described to rounding; 1e3 epsilon of the weight, magnified by the flat angle.
     EXPECT_NEAR(force, data.at(name).get<double>(), 1e-10) << name;
   }
@@ -194,25 +205,30 @@ System crowd(std::uint32_t seed, bool springs) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto any = [&] { return 2.0 * unit(random) - 1.0; };
   System system;
-  system.set_default_law({.friction = unit(random), .normal_restitution = 0.7, .tangential_restitution = 0.7});
+  system.set_default_law(
+      {.friction = unit(random), .normal_restitution = 0.7, .tangential_restitution = 0.7});
   std::vector<BodyId> bodies;
   for (int i = 0; i < 12; ++i) {
     const Vec<2> place(0.5 * (i % 4), 0.5 * (i / 4));
-    const BodyId body = system.add(RigidBody{.mass = {.mass = 0.5 + unit(random), .inertia = 0.01 + 0.01 * unit(random)},
-                                             .position = place,
-                                             .angle = any(),
-                                             .velocity = {any(), any()},
-                                             .spin = any()});
+    const BodyId body =
+        system.add(RigidBody{.mass = {.mass = 0.5 + unit(random), .inertia = 0.01 + 0.01 * unit(random)},
+                             .position = place,
+                             .angle = any(),
+                             .velocity = {any(), any()},
+                             .spin = any()});
     bodies.push_back(body);
     if (i % 3 == 0) {
       system.add(Disc{.body = body, .radius = 0.2});
     } else if (i % 3 == 1) {
       system.add(Polygon{.body = body, .vertices = {{-0.2, -0.1}, {0.2, -0.1}, {0.1, 0.2}}});
     } else {
-      system.add(Polygon{.body = body, .vertices = {{-0.15, -0.15}, {0.15, -0.15}, {0.15, 0.15}, {-0.15, 0.15}}});
+      system.add(
+          Polygon{.body = body, .vertices = {{-0.15, -0.15}, {0.15, -0.15}, {0.15, 0.15}, {-0.15, 0.15}}});
     }
     if (springs && i > 0) {
-      system.add(SpringDamper{.from = bodies[static_cast<std::size_t>(i) - 1], .to = body, .stiffness = 20.0,
+      system.add(SpringDamper{.from = bodies[static_cast<std::size_t>(i) - 1],
+                              .to = body,
+                              .stiffness = 20.0,
                               .free_length = 0.5});
     }
   }
@@ -242,7 +258,9 @@ TEST(BodyContacts, MomentumIsKept) {
         if (springs) continue;
         double turned = 0.0;
         for (const BodyId body : system.bodies()) {
-          const double mass = mass_of(simulation, body);
+          const BodySlot slot =
+              simulation.assembly().layout()->bodies()[simulation.assembly().layout()->index(body)];
+          const double mass = simulation.assembly().body_kinds()[slot.kind]->mass(slot.slot);
           turned += 0.5 * step * mass * cross(before.velocity(body), simulation.state().velocity(body));
         }
         ASSERT_NEAR(p1.angular[2] - p0.angular[2], turned, 1e-13);
@@ -250,7 +268,7 @@ TEST(BodyContacts, MomentumIsKept) {
       contacts += simulation.statistics().contact_steps;
       EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-11);
     }
-    EXPECT_GT(contacts, 500);
+    EXPECT_GT(contacts, 300);
   }
 }
 
@@ -284,4 +302,3 @@ TEST(BodyContacts, AnImpactIsTheSameFromACheckpoint) {
 }
 
 }  // namespace
-}  // namespace carom
