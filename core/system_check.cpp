@@ -29,10 +29,16 @@ std::string listed(const PartNames& parts) {
   return text;
 }
 
-/// A material and the first part that has it.
+/// A material, the first part that has it, and bodies of it.
 struct Toucher {
   MaterialId material;
   std::string name;
+  std::vector<Index> extended, points;  // at most two bodies each: more do not change what can meet
+
+  void take(Index body, bool is_point) {
+    std::vector<Index>& bodies = is_point ? points : extended;
+    if (bodies.size() < 2 && (bodies.empty() || bodies.front() != body)) bodies.push_back(body);
+  }
 };
 
 /// Everything of bodies that can touch.
@@ -44,12 +50,15 @@ struct Touching {
 
 Touching touching_parts(const System& system) {
   Touching all;
-  const auto add = [&](MaterialId material, bool intended, auto id) {
+  const auto add = [&](MaterialId material, bool intended, Index body, bool is_point, auto id) {
     all.any = true;
     if (intended) all.intended.push_back(system.name(id));
-    const auto known = std::find_if(all.by_material.begin(), all.by_material.end(),
-                                    [&](const Toucher& toucher) { return toucher.material == material; });
-    if (known == all.by_material.end()) all.by_material.push_back({material, system.name(id)});
+    auto known = std::find_if(all.by_material.begin(), all.by_material.end(),
+                              [&](const Toucher& toucher) { return toucher.material == material; });
+    if (known == all.by_material.end()) {
+      known = all.by_material.insert(known, {material, system.name(id), {}, {}});
+    }
+    known->take(body, is_point);
   };
   // PartNames are made of few parts only where there are shapes on ground: then none is listed as intended.
   const bool lists = system.obstacles().empty();
@@ -57,22 +66,48 @@ Touching touching_parts(const System& system) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (!entry.kind->has_contact_point(slot)) continue;
       const MaterialId material = entry.kind->material(slot);
-      add(material, lists && material.valid(), BodyId{entry.serials[slot], system.token()});
+      const Index serial = entry.serials[slot];
+      add(material, lists && material.valid(), serial, true, BodyId{serial, system.token()});
     }
   }
+  std::vector<RoundedPoint> points;
   for (const auto& entry : system.shape_kinds().entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      add(entry.kind->material(slot), lists, ShapeId{entry.serials[slot], system.token()});
+      points.clear();
+      entry.kind->rounded_points(slot, points);
+      const bool is_point = points.size() == 1 && points.front().radius == 0.0;
+      add(entry.kind->material(slot), lists, entry.kind->body(slot).serial, is_point,
+          ShapeId{entry.serials[slot], system.token()});
     }
   }
   return all;
 }
 
-/// True if two of these may meet by a law.
-bool meet(const System& system, const Touching& touching) {
+/// True if bodies of two materials can touch each other: two bodies, of which points do not touch points.
+bool can_touch(const Toucher& a, const Toucher& b) {
+  const auto differ = [](const std::vector<Index>& some, const std::vector<Index>& others) {
+    return std::any_of(some.begin(), some.end(), [&](Index body) {
+      return std::any_of(others.begin(), others.end(), [&](Index other) { return other != body; });
+    });
+  };
+  return differ(a.extended, b.extended) || differ(a.extended, b.points) || differ(a.points, b.extended);
+}
+
+/// True if bodies touch each other by some law.
+bool any_touch(const System& system, const Touching& touching) {
   for (const Toucher& a : touching.by_material) {
     for (const Toucher& b : touching.by_material) {
-      if (system.law(a.material, b.material)) return true;
+      if (can_touch(a, b) && system.law(a.material, b.material)) return true;
+    }
+  }
+  return false;
+}
+
+/// True if bodies of two materials do.
+bool touch(const Touching& touching, MaterialId a, MaterialId b) {
+  for (const Toucher& one : touching.by_material) {
+    for (const Toucher& other : touching.by_material) {
+      if (one.material == a && other.material == b && can_touch(one, other)) return true;
     }
   }
   return false;
@@ -159,14 +194,13 @@ std::vector<ModelFinding> System::check() const {
   for (const auto& [pair, law] : surfaces_.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
-    if (has(touching, a) && has(touching, b)) continue;
+    if (touch(touching, a, b)) continue;
     const std::string &given_a = surfaces_.name(a.serial), &given_b = surfaces_.name(b.serial);
     const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
     std::string text = "surface between " + name_a + " and " + name_b + ": ";
     if (!is_solid(a) && !is_solid(b)) {
-      const std::string& missing = has(touching, a) ? name_b : name_a;
       text += "no obstacle is of " + name_a + (a == b ? "" : " or " + name_b) +
-              ", and no body that can touch is of " + missing;
+              ", and no two bodies that can touch each other are";
     } else {
       const bool solid_a = is_solid(a);
       text += "an obstacle is of " + (solid_a ? name_a : name_b) + ", but nothing that can touch it is of " +
@@ -175,7 +209,7 @@ std::vector<ModelFinding> System::check() const {
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
   if (solid.empty()) {
-    if (!touching.intended.empty() && !meet(*this, touching)) {
+    if (!touching.intended.empty() && !any_touch(*this, touching)) {
       std::string text = listed(touching.intended) +
                          ": there is no obstacle to touch, and no law by which bodies touch each other";
       found.push_back({FindingKind::touches_nothing, touching.intended, std::move(text)});
