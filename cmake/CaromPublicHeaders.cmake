@@ -18,11 +18,14 @@ set(carom_public_headers
     contact/solvers/chain_statistics.h
     contact/solvers/contact_mode.h
     contact/solvers/contact_problem.h
+    contact/solvers/contact_report.h
     contact/solvers/contact_solver.h
     contact/solvers/problem_file.h
     contact/solvers/residual.h
+    contact/solvers/response_factors.h
     contact/solvers/solution_list.h
     contact/solvers/solver_chain.h
+    contact/solvers/sweep_budget.h
     core/body_kind.h
     core/column.h
     core/constraint.h

@@ -82,6 +82,7 @@ int Delassus::build_of_one_body(const BodyResponse& response) {
 
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {
   directions_ = directions;
+  factored_ = false;
   loads_.clear();
   const std::size_t n = size();
   velocities_of_one_ = build_of_one_body(response);
@@ -278,6 +279,7 @@ void Delassus::write(double* matrix) const {
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
+  if (factored_) return add_factored_response(impulses, x, scale);
   if (velocities_of_one_ == 3)
     return add_alone<3>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
   if (velocities_of_one_ == 2)

@@ -5,10 +5,12 @@
 /// bodies to impulses. It is made here only, from any response (core/dynamics/body_response.h), and goes back
 /// to the bodies as B H^T P.
 
+#include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/constraint.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -23,12 +25,18 @@ struct ImpulseDirection {
 };
 
 /// W with the responses that it is made of, row by row: dense where all columns reach the same bodies (one
-/// body, or those that joints or a linearised step bind), else each over the bodies that it reaches. Keeps
-/// its memory.
+/// body, or those that joints or a linearised step bind), else each over the bodies that it reaches; or left
+/// as its factors, for solvers that need no W. Keeps its memory.
 class CAROM_API Delassus {
 public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
   void build(std::span<const ImpulseDirection> directions, BodyResponse& response);
+
+  /// Leaves W as its factors H and M^-1, where all bodies are those of the plane and answer for themselves;
+  /// else false, and nothing is made. Without ratios only. \param directions must outlive it
+  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response);
+  /// Writes them; slots are bodies in the order in which the constraints name them. Call group() afterwards.
+  void write_factors(ContactProblem& problem) const;
 
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
@@ -47,6 +55,14 @@ private:
     std::size_t begin = 0;  // of its numbers
     Index body = none;      // one of those that reach there
   };
+  // A body as a slot of factors.
+  struct Slot {
+    Index v = 0;
+    int columns = 0;
+    std::array<double, 3> inverse_mass{};  // by column
+  };
+  [[nodiscard]] bool add_slots(const Constraint& constraint, const BodyResponse& response);
+  void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);
   void lay_out(BodyResponse& response);
@@ -67,6 +83,10 @@ private:
   std::vector<double> responses_;
   std::vector<double> loads_;  // columns as they act, by the same places; empty where they act as they are
   std::vector<char> held_;     // by column
+  bool factored_ = false;
+  std::vector<Slot> slots_;
+  std::vector<int> slot_of_body_;  // of factors, by body; -1 elsewhere
+  std::vector<int> slots_of_row_;  // three a row
 };
 
 }  // namespace carom

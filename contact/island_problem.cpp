@@ -32,7 +32,8 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     rows += constraint.rows;
   }
   const auto count = static_cast<std::size_t>(rows);
-  problem_.reset(rows);
+  // A large W is not to be made before it is known whether anybody needs it.
+  may_be_factored() ? problem_.reset_factors(rows, 0) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
   answer_.impulse.assign(count, 0.0);
@@ -76,7 +77,22 @@ void IslandProblem::set_row(std::size_t constraint, int row) {
   set.coefficient = at.friction;
 }
 
+/// Whether the constraints are many and share several bodies in the plane.
+bool IslandProblem::may_be_factored() const {
+  if (constraints_.size() < factored_constraints) return false;
+  const Index first = constraints_.front().body();
+  const auto planar = [](const Constraint& at) { return at.rows <= 2; };
+  const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
+  return std::all_of(constraints_.begin(), constraints_.end(), planar) &&
+         std::any_of(constraints_.begin(), constraints_.end(), other);
+}
+
 void IslandProblem::respond(BodyResponse& response) {
+  if (may_be_factored() && delassus_.build_factors(directions_, response)) {
+    delassus_.write_factors(problem_);
+    return problem_.group();
+  }
+  if (problem_.is_factored()) problem_ = problem_.dense();
   delassus_.build(directions_, response);
   delassus_.write_symmetric(problem_.matrix().data());
 }
@@ -104,8 +120,6 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
-  const auto matrix = problem_.matrix();
-  const std::size_t diagonal = b.size() + 1;
   std::size_t row = 0;
   for (const Constraint& constraint : constraints_) {
     for (int i = 0; i < constraint.rows; ++i, ++row) {
@@ -113,7 +127,7 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
       constexpr double rounding = 1e-9, least = 1e-10;
       double number = constraint.velocity_after(i, velocity_free) + restitution_[row] * before_[row];
       if (i == 0 && constraint.allowed_approach > 0.0) number += constraint.allowed_approach;
-      const bool held = matrix[diagonal * row] == 0.0;
+      const bool held = problem_.diagonal(static_cast<int>(row)) == 0.0;
       if (held && std::abs(number) <= rounding * constraint.speed(i, velocity_free) + least) number = 0.0;
       b[row] = number;
     }
@@ -122,6 +136,13 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
 
 void IslandProblem::set_velocity(const double* velocity) {
   set_free_velocity(velocity);
+  if (problem_.is_factored()) {
+    problem_.factors().respond(answer_.impulse, slot_velocity_);
+    for (std::size_t row = 0; row < before_.size(); ++row) {
+      problem_.vector()[row] -= problem_.factors().along(row, slot_velocity_);
+    }
+    return;
+  }
   for (int row = 0; row < problem_.rows(); ++row) {
     for (int column = 0; column < problem_.rows(); ++column) {
       problem_.vector()[static_cast<std::size_t>(row)] -=
@@ -133,6 +154,10 @@ void IslandProblem::set_velocity(const double* velocity) {
 const ContactReport& IslandProblem::solve(SolverChain& chain) {
   chain.solve(problem_, answer_);
   return answer_.report;
+}
+
+void IslandProblem::start_from(std::span<const double> impulses) {
+  if (problem_.is_factored()) std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
 }
 
 void IslandProblem::set_impulses(std::span<const double> impulses) {

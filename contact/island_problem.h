@@ -19,6 +19,11 @@
 
 namespace carom {
 
+/// Constraints of an island from which on W stays in factors and sweeps solve it (nonlinear_cg_solver.h),
+/// where bodies of the plane answer for themselves and there are several. Below, the exact chain costs little
+/// and ends exactly.
+inline constexpr std::size_t factored_constraints = 50;
+
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
 public:
@@ -39,6 +44,9 @@ public:
   void set_velocity(const double* velocity);
   /// Solves; the answer before, if there is one since build(), is where solvers start from.
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
+  /// Impulses from which sweeps over a large island start, by row: those of the same constraints before, zero
+  /// for new ones. Of no effect on a small one, whose start is its answer before. After respond().
+  void start_from(std::span<const double> impulses);
   /// Replaces the answer, and its modes, by another solution of the problem.
   void set_impulses(std::span<const double> impulses);
   /// Sets all impulses to zero.
@@ -70,6 +78,7 @@ public:
 private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
   void set_row(std::size_t constraint, int row);
+  [[nodiscard]] bool may_be_factored() const;
 
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
@@ -78,7 +87,7 @@ private:
   ContactSolution answer_;
   std::vector<int> first_row_;
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
-  std::vector<double> before_, restitution_, xi_;
+  std::vector<double> before_, restitution_, xi_, slot_velocity_;
 };
 
 }  // namespace carom

@@ -13,7 +13,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 6\n";
+constexpr std::string_view mark = "carom checkpoint 7\n";
 
 /// The numbers of Statistics, in the order in which they are saved.
 template <class S, class F>
@@ -55,6 +55,8 @@ void for_contact_statistics(S& s, F&& f) {
   f(s.degenerate);
   f(s.no_solution);
   f(s.not_solved);
+  f(s.accepted_at_cap);
+  for (auto& count : s.certified) f(count);
   f(s.worst_residual);
 }
 

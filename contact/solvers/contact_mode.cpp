@@ -34,13 +34,13 @@ ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
   if (group.size == 2 && problem.sets()[first].kind == SetKind::half_line &&
       problem.sets()[first + 1].kind == SetKind::bounded_interval) {
     const auto b = problem.vector();
-    return planar_mode({problem.w(group.first, group.first) + problem.w(group.first + 1, group.first + 1),
-                        b[first], b[first + 1], problem.sets()[first + 1].coefficient, impulse[first],
+    return planar_mode({problem.diagonal(group.first) + problem.diagonal(group.first + 1), b[first],
+                        b[first + 1], problem.sets()[first + 1].coefficient, impulse[first],
                         impulse[first + 1], xi[first], xi[first + 1]});
   }
   for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
     const int row = static_cast<int>(i);
-    trace += problem.w(row, row);
+    trace += problem.diagonal(row);
     largest_impulse = std::max(largest_impulse, std::abs(impulse[i]));
     largest_b = std::max(largest_b, std::abs(problem.vector()[i]));
     velocity_scale = std::max(velocity_scale, std::abs(xi[i]));
@@ -76,7 +76,7 @@ bool at_mode_boundary(const ContactProblem& problem, std::span<const double> imp
     const auto first = static_cast<std::size_t>(group.first);
     const std::size_t last = first + static_cast<std::size_t>(group.size);
     double trace = 0.0, scale = 0.0;
-    for (std::size_t i = first; i < last; ++i) trace += problem.w(static_cast<int>(i), static_cast<int>(i));
+    for (std::size_t i = first; i < last; ++i) trace += problem.diagonal(static_cast<int>(i));
     const double rho = trace > 0.0 ? 1.0 / trace : 0.0;
     for (std::size_t i = first; i < last; ++i) {
       scale = std::max({scale, std::abs(impulse[i]), rho * std::abs(problem.vector()[i])});

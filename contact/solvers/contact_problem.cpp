@@ -50,6 +50,55 @@ void ContactProblem::reset(int rows) {
   b_.assign(n, 0.0);
   sets_.assign(n, RowSet{});
   groups_.clear();
+  if (factored_) factors_.reset(0, 0);
+  factored_ = false;
+}
+
+void ContactProblem::reset_factors(int rows, int slots) {
+  if (rows < 0 || slots < 0) {
+    throw std::invalid_argument("contact problem: the numbers of rows and slots are not negative");
+  }
+  reset(0);
+  rows_ = rows;
+  const auto n = static_cast<std::size_t>(rows);
+  b_.assign(n, 0.0);
+  sets_.assign(n, RowSet{});
+  diagonal_.assign(n, 0.0);
+  factors_.reset(rows, slots);
+  factored_ = true;
+}
+
+/// What solvers read of W most: its diagonal. Checks on the way that rows of a group have the same slots.
+void ContactProblem::group_factors() {
+  const int slots = static_cast<int>(factors_.slots());
+  for (const RowGroup& group : groups_) {
+    const auto first = static_cast<std::size_t>(group.first);
+    if (group.size > 2) refuse(group.first, "a contact in factors has one friction row");
+    for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
+      const auto& slot = factors_.rows[row].slot;
+      if (slot != factors_.rows[first].slot)
+        refuse(static_cast<int>(row), "rows of a contact have the same slots");
+      if (*std::max_element(slot.begin(), slot.end()) >= slots)
+        refuse(static_cast<int>(row), "a slot that is none");
+      if (sets_[row].kind == SetKind::bounded_disc)
+        refuse(static_cast<int>(row), "no disc in a problem in factors");
+      diagonal_[row] = factors_.entry(row, row);
+    }
+  }
+}
+
+ContactProblem ContactProblem::dense() const {
+  if (!factored_) return *this;
+  ContactProblem made;
+  made.reset(rows_);
+  const auto n = static_cast<std::size_t>(rows_);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) made.w_[i * n + j] = factors_.entry(std::max(i, j), std::min(i, j));
+  }
+  made.b_ = b_;
+  made.sets_ = sets_;
+  made.groups_ = groups_;
+  return made;
 }
 
 void ContactProblem::group() {
@@ -75,9 +124,21 @@ void ContactProblem::group() {
     }
     ++groups_.back().size;
   }
+  if (factored_) group_factors();
+}
+
+void ContactProblem::velocities(std::span<const double> impulse, std::span<double> xi,
+                                std::vector<double>& velocity) const {
+  if (!factored_) return velocities(impulse, xi);
+  factors_.respond(impulse, velocity);
+  for (std::size_t i = 0; i < xi.size(); ++i) xi[i] = factors_.along(i, velocity) + b_[i];
 }
 
 void ContactProblem::velocities(std::span<const double> impulse, std::span<double> xi) const {
+  if (factored_) {
+    std::vector<double> velocity;
+    return velocities(impulse, xi, velocity);
+  }
   const auto n = static_cast<std::size_t>(rows_);
   for (std::size_t i = 0; i < n; ++i) xi[i] = accurate_dot(std::span(w_).subspan(i * n, n), impulse, b_[i]);
 }

@@ -9,6 +9,7 @@
 /// Restitution is in b:  b = gamma_f + E gamma^-,  gamma_f the velocity without contact impulses,
 /// E = diag(e). The end velocities are  gamma^+ = gamma_f + W P = xi - E gamma^-.
 
+#include <carom/contact/solvers/response_factors.h>
 #include <carom/core/export.h>
 #include <carom/core/row_set.h>
 
@@ -24,7 +25,9 @@ struct RowGroup {
   int size = 1;   ///< number of rows
 };
 
-/// Symmetric positive semidefinite matrix W (dense, row-major), vector b and row sets.
+/// Symmetric positive semidefinite matrix W, vector b and row sets. W is dense (row-major), or left as its
+/// factors H M^-1 H^T where it would be too large (response_factors.h): is_factored(). The sets, the law and
+/// the residual that judges answers are the same.
 ///
 /// Rows of one contact are consecutive: the normal row (half_line) first, then its friction rows, whose
 /// `bound` is the normal row. A contact that slips in a known direction keeps both rows, the second one
@@ -34,14 +37,32 @@ public:
   /// Empties the problem and sizes it for `rows` rows, all entries zero, all sets P >= 0.
   void reset(int rows);
 
+  /// The same for a problem in factors, which are zero then. No disc may be among its sets.
+  void reset_factors(int rows, int slots);
+
+  /// Whether W is given by factors().
+  [[nodiscard]] bool is_factored() const { return factored_; }
+
+  /// Factors of W; empty of a dense problem. Call group() after they are filled.
+  [[nodiscard]] const ResponseFactors& factors() const { return factors_; }
+  [[nodiscard]] ResponseFactors& factors() { return factors_; }
+
+  /// The same problem with W as a dense matrix.
+  [[nodiscard]] ContactProblem dense() const;
+
   /// Number of rows.
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// Entry of W [1/kg, 1/(kg m), ...: velocity per impulse].
+  /// Entry of W on its diagonal.
+  [[nodiscard]] double diagonal(int row) const {
+    return factored_ ? diagonal_[static_cast<std::size_t>(row)] : w(row, row);
+  }
+
+  /// Entry of W [1/kg, 1/(kg m), ...: velocity per impulse]. Of a dense problem only.
   [[nodiscard]] double w(int row, int column) const { return w_[index(row, column)]; }
   [[nodiscard]] double& w(int row, int column) { return w_[index(row, column)]; }
 
-  /// W, row-major, rows() x rows().
+  /// W, row-major, rows() x rows(); empty of a problem in factors.
   [[nodiscard]] std::span<const double> matrix() const { return w_; }
   [[nodiscard]] std::span<double> matrix() { return w_; }
 
@@ -54,15 +75,19 @@ public:
   [[nodiscard]] std::span<RowSet> sets() { return sets_; }
 
   /// Groups of rows judged together, derived from the sets; call after the sets are filled.
-  /// Throws std::invalid_argument when friction rows do not follow their normal row.
+  /// Throws std::invalid_argument when friction rows do not follow their normal row, or when the factors of
+  /// rows of one group are not those of the same slots.
   void group();
 
   /// Groups found by group().
   [[nodiscard]] std::span<const RowGroup> groups() const { return groups_; }
 
   /// xi = W P + b, each entry summed in twice the precision and rounded once: large impulses of contacts that
-  /// share a body cancel in it.
+  /// share a body cancel in it. With factors plainly, by way of the velocities M^-1 H^T P.
   void velocities(std::span<const double> impulse, std::span<double> xi) const;
+
+  /// Likewise of a problem in factors, with memory to reuse. \param velocity out: M^-1 H^T P, three a slot
+  void velocities(std::span<const double> impulse, std::span<double> xi, std::vector<double>& velocity) const;
 
   /// Writes the problem to a file in JSON (docs/contact_problems.md), every number exactly; what is said
   /// beside it is in problem_file.h. Throws FileError, also where the library was built without JSON.
@@ -77,8 +102,13 @@ private:
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(column);
   }
 
+  void group_factors();
+
   int rows_ = 0;
+  bool factored_ = false;
   std::vector<double> w_, b_;
+  ResponseFactors factors_;
+  std::vector<double> diagonal_;  // of W, by row, of a problem in factors
   std::vector<RowSet> sets_;
   std::vector<RowGroup> groups_;
 };

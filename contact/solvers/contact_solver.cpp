@@ -16,6 +16,8 @@ std::string_view to_string(Outcome outcome) {
       return "no solution";
     case Outcome::not_solved:
       return "not solved";
+    case Outcome::accepted_at_cap:
+      return "accepted at cap";
   }
   return "unknown outcome";
 }

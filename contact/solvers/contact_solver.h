@@ -20,7 +20,8 @@ enum class Outcome : std::uint8_t {
   several_solutions,  ///< a solution; others with another end velocity exist
   forces_not_unique,  ///< a solution; other impulses give the same end velocities
   no_solution,        ///< proved: there is none
-  not_solved          ///< this solver found none: not applicable, pivot bound, vanishing pivot, ray
+  not_solved,         ///< this solver found none: not applicable, pivot bound, vanishing pivot, ray
+  accepted_at_cap     ///< nearly a solution, taken at the end of a budget (sweep_budget.h); see the residual
 };
 
 /// Name of an outcome, as used in reports.

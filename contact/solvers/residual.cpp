@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double trace(const ContactProblem& problem, const RowGroup& group) {
   double sum = 0.0;
-  for (int i = group.first; i < group.first + group.size; ++i) sum += problem.w(i, i);
+  for (int i = group.first; i < group.first + group.size; ++i) sum += problem.diagonal(i);
   return sum;
 }
 
@@ -72,8 +72,8 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
   if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
       problem.sets()[1].kind == SetKind::bounded_interval) {
     const auto b = problem.vector();
-    return {planar_residual({problem.w(0, 0) + problem.w(1, 1), b[0], b[1], problem.sets()[1].coefficient,
-                             impulse[0], impulse[1], xi[0], xi[1]}),
+    return {planar_residual({problem.diagonal(0) + problem.diagonal(1), b[0], b[1],
+                             problem.sets()[1].coefficient, impulse[0], impulse[1], xi[0], xi[1]}),
             0};
   }
   double largest_trace = 0.0;

@@ -3,6 +3,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 
 #include <carom/contact/solvers/newton_polish.h>
+#include <carom/contact/solvers/nonlinear_cg_solver.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
 #include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/single_contact.h>
@@ -53,11 +54,13 @@ struct SolverChain::Workspace {
   SolutionList list;
   NewtonPolish polish;
   WarmStart warm_start;
+  NonlinearCgSolver sweeps;
   ChainStatistics statistics;
   std::vector<double> trial, trial_xi, xi;
   std::vector<ContactMode> modes;
   std::vector<double> start;  // impulses of a start
   std::vector<ContactMode> start_modes;
+  std::vector<double> slot_velocity;  // of a problem in factors
 
   // Result of the solvers tried so far.
   struct Attempt {
@@ -75,7 +78,7 @@ struct SolverChain::Workspace {
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
             Attempt& state);
   void conclude(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
-  void count(const Attempt& state);
+  void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 
   ContactSolver& solver(SolverId id) {
     switch (id) {
@@ -85,6 +88,8 @@ struct SolverChain::Workspace {
         return lemke;
       case SolverId::projection:
         return projection;
+      case SolverId::nonlinear_cg:
+        return sweeps;
       case SolverId::single_contact:
       case SolverId::enumeration:
         break;
@@ -131,7 +136,7 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   ++statistics.tried[id];
   ++statistics.accepted[id];
   if (answer.degenerate) ++statistics.degenerate;
-  statistics.worst_residual = std::max(statistics.worst_residual, answer.residual);
+  statistics.count_residual(answer.residual);
   return true;
 }
 
@@ -233,34 +238,32 @@ void SolverChain::Workspace::conclude(const ContactProblem& problem, std::span<d
   }
 }
 
-void SolverChain::Workspace::count(const Attempt& state) {
-  const ContactReport& report = state.report;
-  ++statistics.problems;
-  for (std::size_t i = 0; i < solver_count; ++i) {
-    if (report.was_tried(static_cast<SolverId>(i))) ++statistics.tried[i];
+// A problem in factors: sweeps alone, from the impulses at hand, unless these are an answer.
+void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<double> impulse,
+                                   ContactReport& report) {
+  if (!begin(problem, impulse, report)) return;
+  constexpr auto id = static_cast<std::size_t>(SolverId::nonlinear_cg);
+  const SweepBudget& budget = sweeps.budget();
+  report.solver = solver_names[id];
+  report.tried = 1u << id;
+  problem.velocities(impulse, xi, slot_velocity);
+  Residual found = residual(problem, impulse, xi);
+  if (!(found.value <= budget.residual)) {
+    const SolverAnswer answer = sweeps.improve(problem, impulse);
+    report.iterations = answer.iterations;
+    report.reason = answer.reason;
+    problem.velocities(impulse, xi, slot_velocity);
+    found = residual(problem, impulse, xi);
   }
-  if (report.usable()) {
-    ++statistics.accepted[static_cast<std::size_t>(state.best)];
-    statistics.worst_residual = std::max(statistics.worst_residual, report.residual);
-    if (report.residual > accepted_residual) ++statistics.tolerated;
+  report.residual = found.value;
+  report.worst_group = found.group;
+  if (found.value <= budget.residual) {
+    report.outcome = Outcome::solved;
+  } else {
+    report.outcome = found.value <= budget.accepted ? Outcome::accepted_at_cap : Outcome::not_solved;
   }
-  if (state.applicable > 1) ++statistics.fall_backs;
-  if (report.degenerate) ++statistics.degenerate;
-  switch (report.outcome) {
-    case Outcome::solved:
-      break;
-    case Outcome::several_solutions:
-      ++statistics.several_solutions;
-      break;
-    case Outcome::forces_not_unique:
-      ++statistics.forces_not_unique;
-      break;
-    case Outcome::no_solution:
-      ++statistics.no_solution;
-      break;
-    case Outcome::not_solved:
-      ++statistics.not_solved;
-      break;
+  for (std::size_t g = 0; g < modes.size(); ++g) {
+    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
   }
 }
 
@@ -280,6 +283,11 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   demand_grouped(problem, impulse);
   Workspace& work = *work_;
   report = {};
+  if (problem.is_factored()) {
+    std::fill(impulse.begin(), impulse.end(), 0.0);
+    work.sweep(problem, impulse, report);
+    return count(report, SolverId::nonlinear_cg, 1, work.statistics);
+  }
   if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
       problem.sets()[1].kind == SetKind::bounded_interval && work.solve_regular(problem, impulse, report)) {
     return;
@@ -295,7 +303,7 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
     work.attempt(problem, SolverId::enumeration, impulse, attempt);
   }
   work.conclude(problem, impulse, attempt);
-  work.count(attempt);
+  count(report, attempt.best, attempt.applicable, work.statistics);
 }
 
 void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution) {
@@ -304,6 +312,15 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   const bool warm = std::exchange(solution.known, true) && report.usable();
   const bool several = problem.groups().size() > 1;
   solution.changed_modes = false;
+  if (problem.is_factored()) {
+    demand_grouped(problem, solution.impulse);
+    report = {};
+    work.sweep(problem, solution.impulse, report);
+    count(report, SolverId::nonlinear_cg, 1, work.statistics);
+    solution.changed_modes = warm && solution.modes != work.modes;
+    solution.modes.assign(work.modes.begin(), work.modes.end());
+    return;
+  }
   Residual found;
   const auto keep = [&](std::span<const ContactMode> modes, std::vector<double>& impulse) {
     if (!work.warm_start.keep_modes(problem, modes, impulse, found)) return false;
@@ -331,10 +348,26 @@ ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& pro
   demand_grouped(problem, impulse);
   ContactReport report;
   if (!work_->begin(problem, impulse, report)) return report;
-  Workspace::Attempt attempt{.report = report};
-  work_->attempt(problem, solver, impulse, attempt);
+  if (problem.is_factored() && solver == SolverId::nonlinear_cg) {
+    std::fill(impulse.begin(), impulse.end(), 0.0);
+    work_->sweep(problem, impulse, report);
+    return report;
+  }
+  Workspace::Attempt attempt{.report = report, .last = solver};
+  if (problem.is_factored()) {
+    report.reason = not_applicable;
+  } else {
+    work_->attempt(problem, solver, impulse, attempt);
+  }
   work_->conclude(problem, impulse, attempt);
   return report;
+}
+
+void SolverChain::set_budget(const SweepBudget& budget) {
+  if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
+    throw std::invalid_argument("contact solver: a budget has sweeps >= 0, residual > 0 and accepted >= 0");
+  }
+  work_->sweeps.set_budget(budget);
 }
 
 std::span<const double> SolverChain::velocities() const { return work_->xi; }

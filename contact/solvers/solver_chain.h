@@ -7,45 +7,17 @@
 #include <carom/contact/solvers/chain_statistics.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/contact_report.h>
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/residual.h>
+#include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
 
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace carom {
-
-/// An answer with a residual up to this is taken at once. Direct solvers reach 1e-15 to 1e-13; the rest is
-/// room for problems of condition 1e3 more.
-inline constexpr double accepted_residual = 1e-12;
-
-/// When no solver came below accepted_residual, the best answer is taken if its residual is up to this.
-/// The iterative last resort stops there; 1e-10 of the impulse scale is still far below any step's error.
-inline constexpr double tolerated_residual = 1e-10;
-
-/// Report on one contact problem, solved or not.
-struct ContactReport {
-  Outcome outcome = Outcome::not_solved;
-  bool degenerate = false;  ///< the answer stands at a boundary between modes
-  double residual = std::numeric_limits<double>::infinity();  ///< relative, of the impulses (residual.h)
-  int worst_group = -1;                                       ///< group where the residual is taken
-  int iterations = 0;                                         ///< pivots and sweeps of all solvers tried
-  std::uint8_t tried = 0;                                     ///< bit i: SolverId i was tried
-  std::string_view solver{};  ///< whose answer or proof it is; empty only for a problem without rows
-  std::string_view reason{};  ///< static text: why not solved
-
-  /// Whether the impulses may be used: every outcome but no_solution and not_solved.
-  [[nodiscard]] bool usable() const {
-    return outcome != Outcome::no_solution && outcome != Outcome::not_solved;
-  }
-  /// Whether a solver was tried.
-  [[nodiscard]] bool was_tried(SolverId id) const { return (tried >> static_cast<unsigned>(id) & 1u) != 0; }
-};
 
 /// Answer of a contact problem, and what solvers start from in the next one of the same rows.
 struct ContactSolution {
@@ -59,9 +31,10 @@ struct ContactSolution {
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
 /// by principal pivoting (Johansson 1999), then Lemke, then projection, and up to three by enumeration of
 /// the modes when all else failed. Of several solutions of one contact the one with the smallest normal
-/// impulse; for several contacts it does not look for others (SolutionList does). Deterministic; keeps
-/// nothing between calls but statistics and memory. Allocates only while problems grow. Not for use by two
-/// threads at once.
+/// impulse; for several contacts it does not look for others (SolutionList does). A problem in factors is
+/// left to sweeps alone (nonlinear_cg_solver.h): `solved` up to the residual of the budget, else
+/// accepted_at_cap or not_solved, with the modes of its answer. Deterministic; keeps nothing between calls
+/// but statistics and memory. Allocates only while problems grow. Not for use by two threads at once.
 class CAROM_API SolverChain {
 public:
   SolverChain();
@@ -79,13 +52,18 @@ public:
   /// Likewise from a start (if `solution.known`), which it replaces. Several contacts keep to the modes of
   /// the start as long as they are those of a solution, and solvers are spared; one contact is asked for its
   /// solution first, which costs less. Only solvers can tell that there are several solutions; the report
-  /// keeps to their word. \param solution `impulse` sized rows()
+  /// keeps to their word. Sweeps over a problem in factors start from `solution.impulse` in any case, and
+  /// need none where it is an answer. \param solution `impulse` sized rows()
   void solve(const ContactProblem& problem, ContactSolution& solution);
 
   /// The same by one solver alone, polished and judged as in the chain. A solver that is not made for the
   /// problem answers not_solved ("not applicable") with zero impulses. The statistics are left alone.
   [[nodiscard]] ContactReport solve_with(SolverId solver, const ContactProblem& problem,
                                          std::span<double> impulse);
+
+  /// What a problem in factors may cost. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and
+  /// 0 <= accepted.
+  void set_budget(const SweepBudget& budget);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.
   [[nodiscard]] std::span<const double> velocities() const;

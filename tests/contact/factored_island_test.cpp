@@ -1,0 +1,159 @@
+// An island in factors against the same constraints with W as a matrix: W, b, the answer, the way back.
+
+#include "tests/random.h"
+
+#include <carom/carom.h>
+#include <carom/contact/island_problem.h>
+#include <carom/core/assembly.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::Random;
+
+constexpr int body_count = 60;
+
+/// Rigid bodies, and a particle in every five.
+System bodies() {
+  System system;
+  for (int i = 0; i < body_count; ++i) {
+    const Vec<2> place(1.0 * i, 0.0);
+    if (i % 5 == 3) {
+      system.add(Particle{.mass = 0.7, .position = place});
+    } else {
+      system.add(RigidBody{.mass = {.mass = 1.0 + 0.1 * i, .inertia = 0.5 + 0.01 * i}, .position = place});
+    }
+  }
+  return system;
+}
+
+class FactoredIsland : public testing::Test {
+protected:
+  FactoredIsland() : assembly_(bodies()), masses_(assembly_) {
+    chain_.set_budget({.residual = 1e-12, .sweeps = 20000});
+    Random random(3);
+    const std::size_t size = assembly_.initial_state().v.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      before_.push_back(random.uniform(-1.0, 1.0));
+      free_.push_back(random.uniform(-1.0, 1.0));
+    }
+  }
+  /// Contacts of a chain of bodies, and limits over three of them.
+  std::vector<Constraint> constraints(int count, std::uint64_t seed) const {
+    Random random(seed);
+    std::vector<Constraint> made;
+    for (int i = 0; i < count; ++i) {
+      Constraint& one = made.emplace_back();
+      one.rows = i % 7 == 6 ? 1 : 2;
+      one.type = one.rows == 1 ? ConstraintType::limit : ConstraintType::contact;
+      one.friction = 0.1;
+      one.law = {.friction = 0.1, .normal_restitution = 0.3, .tangential_restitution = 0.2};
+      for (int b = 0; b < (one.rows == 1 ? 3 : 1 + i % 2); ++b) {
+        const auto body = static_cast<Index>((i + b) % body_count);
+        const BodySlot& slot = assembly_.layout()->bodies()[body];
+        one.add_body(body, slot.v, static_cast<int>(slot.v_size));
+      }
+      for (int row = 0; row < one.rows; ++row) {
+        for (int c = 0; c < one.columns(); ++c) one.row(row)[c] = random.uniform(-1.0, 1.0);
+      }
+      one.surface_velocity_after[0] = 0.01;
+    }
+    return made;
+  }
+
+  Assembly assembly_;
+  MassResponse masses_;
+  std::vector<double> before_, free_;
+  SolverChain chain_;
+};
+
+TEST_F(FactoredIsland, IsTheSameProblem) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const std::vector<Constraint> list = constraints(60 + static_cast<int>(seed), seed);
+    IslandProblem island;
+    island.build(list, before_.data());
+    island.respond(masses_);
+    ASSERT_TRUE(island.problem().is_factored());
+    island.set_free_velocity(free_.data());
+
+    Delassus delassus;
+    delassus.build(island.directions(), masses_);
+    const auto n = delassus.size();
+    std::vector<double> w(n * n);
+    delassus.write_symmetric(w.data());
+    const ContactProblem dense = island.problem().dense();
+    for (std::size_t i = 0; i < n * n; ++i) EXPECT_NEAR(dense.matrix()[i], w[i], 1e-14);
+    for (std::size_t row = 0; row < n; ++row) {
+      const ImpulseDirection& at = island.directions()[row];
+      const double b = at.constraint->velocity_after(at.row, free_.data()) +
+                       at.constraint->restitution(at.row) * island.before()[row];
+      EXPECT_NEAR(dense.vector()[row], b, 1e-14);
+    }
+
+    ASSERT_TRUE(island.solve(chain_).usable());
+    EXPECT_LE(island.report().residual, 1e-12);
+    std::vector<double> xi(n), factored = free_, direct = free_;
+    dense.velocities(island.impulses(), xi);
+    EXPECT_LE(residual(dense, island.impulses(), xi).value, 1.01e-12);
+    island.map().add_velocities(factored.data());
+    delassus.add_response(island.impulses(), direct.data());
+    for (std::size_t i = 0; i < direct.size(); ++i) EXPECT_NEAR(factored[i], direct[i], 1e-13);
+    // xi = gamma^+ + E gamma^-.
+    for (std::size_t row = 0; row < n; ++row) {
+      const ImpulseDirection& at = island.directions()[row];
+      const double after = at.constraint->velocity_after(at.row, factored.data());
+      EXPECT_NEAR(xi[row], after + at.constraint->restitution(at.row) * island.before()[row], 1e-13);
+    }
+
+    // From velocities to which the impulses have led they remain the answer.
+    island.set_velocity(factored.data());
+    const std::vector<double> answer(island.impulses().begin(), island.impulses().end());
+    ASSERT_TRUE(island.solve(chain_).usable());
+    EXPECT_LE(island.report().iterations, 1);
+    for (std::size_t row = 0; row < n; ++row) EXPECT_NEAR(island.impulses()[row], answer[row], 1e-11);
+  }
+}
+
+TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
+  const std::vector<Constraint> list = constraints(80, 4);
+  IslandProblem island;
+  island.build(list, before_.data());
+  island.respond(masses_);
+  island.set_free_velocity(free_.data());
+  ASSERT_TRUE(island.solve(chain_).usable());
+  EXPECT_GT(island.report().iterations, 0);
+  const std::vector<double> answer(island.impulses().begin(), island.impulses().end());
+  IslandProblem next;
+  next.build(list, before_.data());
+  next.respond(masses_);
+  next.start_from(answer);
+  next.set_free_velocity(free_.data());
+  ASSERT_TRUE(next.solve(chain_).usable());
+  EXPECT_EQ(next.report().iterations, 0);
+  EXPECT_TRUE(std::equal(answer.begin(), answer.end(), next.impulses().begin()));
+}
+
+TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
+  IslandProblem island;
+  const auto respond = [&](const std::vector<Constraint>& list) {
+    island.build(list, before_.data());
+    island.respond(masses_);
+    return island.problem().is_factored();
+  };
+  EXPECT_FALSE(respond(constraints(factored_constraints - 1, 1)));
+  EXPECT_TRUE(respond(constraints(factored_constraints, 1)));
+  std::vector<Constraint> of_one = constraints(factored_constraints, 1);
+  for (Constraint& one : of_one) {
+    one = constraints(1, 2).front();
+  }
+  EXPECT_FALSE(respond(of_one));
+}
+
+}  // namespace
