@@ -40,17 +40,33 @@ void check_options(const EventDriven& options) {
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
+namespace {
+
+/// Components that may ever touch each other are one group.
+std::vector<GroupComponents> find_groups(const Assembly& assembly, const Detector& detector) {
+  (void)detector;
+  const auto count = static_cast<Index>(assembly.components().size());
+  std::vector<GroupComponents> groups;
+  for (Index component = 0; component < count; ++component) groups.push_back({{component}, {}});
+  return groups;
+}
+
+}  // namespace
+
 EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
       memory_(assembly, options, stop),
+      group_of_(assembly.components().size()),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
+  for (const GroupComponents& components : find_groups(assembly, detector_)) {
+    const auto group = static_cast<Index>(groups_.size());
+    for (const Index component : components.components) group_of_[component] = group;
+    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, components, memory_));
   }
 }
 
@@ -182,7 +198,7 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   };
   while (!within(component)) ++component;
   return within_limit(state.time, [&] {
-    return groups_[component]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+    return groups_[group_of_[component]]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
 }
 

@@ -15,6 +15,7 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       contacts(memory.contacts),
       before(memory.before),
       before_at(memory.before_at),
+      islands(memory.islands),
       balance(books) {}
 
 void EventInstant::update() {
@@ -29,10 +30,21 @@ void EventInstant::take_contacts_before() {
   for (Index i = 0; i < before.size(); ++i) before_at[before[i].place] = i;
 }
 
+void EventInstant::find_islands() {
+  // Projections during the event move bodies by less than this.
+  constexpr double moved = 4.0;
+  const double near = moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+  const auto is_near = [&](std::size_t pair) {
+    return before_at[pair] != none || contacts[pair].gap <= near;
+  };
+  islands.find(motion.model(), is_near);
+}
+
 void EventInstant::take_velocities() {
-  const Range v = motion.model().ranges().v;
-  std::copy(now.state.v.begin() + v.begin, now.state.v.begin() + v.end,
-            y.begin() + static_cast<std::ptrdiff_t>(motion.model().unknowns.q_size()));
+  for (const auto& part : motion.model().parts()) {
+    const Range v = part.ranges.v;
+    std::copy(now.state.v.begin() + v.begin, now.state.v.begin() + v.end, y.data() + part.v);
+  }
 }
 
 }  // namespace carom

@@ -76,10 +76,12 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
   bool finite = sample_gaps(motion, is_active, at, out) && at.has_forces;
   out.sample.time = time;
   if (motion.guards().count() != 0) {
-    const Range v = motion.model().ranges().v;
     out.path.time = time;
     out.path.y.assign(y, y + motion.size());
-    out.path.acceleration.assign(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end);
+    out.path.acceleration.resize(motion.model().unknowns.v_size());
+    motion.model().unknowns.for_velocities([&](Range v, std::size_t place) {
+      std::copy_n(at.acceleration.begin() + v.begin, v.size(), out.path.acceleration.data() + place);
+    });
   }
   read_guard_sample(motion, at, memory.margins, out.sample);
   for (const StepPolynomial::End& slip : out.sample.slips) finite = finite && std::isfinite(slip.first);
