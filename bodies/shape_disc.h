@@ -33,6 +33,8 @@ struct Disc {
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{centre[0], centre[1], 0.0}, radius});
   }
+  /// Set with which it touches other bodies.
+  [[nodiscard]] Outline outline(const PartCheck& /*check*/) const { return {{centre}, radius}; }
 };
 
 }  // namespace carom::planar

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Storage of planar shapes that touch a half-plane with rounded points.
+/// Storage of planar shapes that touch a half-plane with rounded points, and each other with convex outlines.
 
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
@@ -11,8 +11,8 @@
 
 namespace carom::generic {
 
-/// All shapes of one description. `P` has body, material, label, check(PartCheck) and
-/// features(std::vector<RoundedPoint>&).
+/// All shapes of one description. `P` has body, material, label, check(PartCheck),
+/// features(std::vector<RoundedPoint>&) and, if it touches other bodies, Outline outline(PartCheck).
 template <class P>
 class FeatureShapeKind final : public ShapeKind {
 public:
@@ -38,6 +38,9 @@ public:
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
   void rounded_points(Index slot, std::vector<RoundedPoint>& out) const override {
     parts_[slot].features(out);
+  }
+  void outlines(Index slot, const PartCheck& check, std::vector<Outline>& out) const override {
+    if constexpr (requires { parts_[slot].outline(check); }) out.push_back(parts_[slot].outline(check));
   }
   void fingerprint(Fingerprint& print) const override {
     std::vector<RoundedPoint> points;

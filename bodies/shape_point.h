@@ -28,6 +28,8 @@ struct Point {
   void features(std::vector<RoundedPoint>& out) const {
     out.push_back({{position[0], position[1], 0.0}, 0.0});
   }
+  /// Set with which it touches other bodies.
+  [[nodiscard]] Outline outline(const PartCheck& /*check*/) const { return {{position}, 0.0}; }
 };
 
 }  // namespace carom::planar

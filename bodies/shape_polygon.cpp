@@ -1,13 +1,57 @@
 #include <carom/bodies/shape_polygon.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
 
 namespace carom::planar {
 
+namespace {
+
+// Vertices are rounded where they were computed; what is left of a line is some times this wide.
+constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// The vertices with the first one first, counter-clockwise.
+std::vector<Vec<2>> counter_clockwise(const std::vector<Vec<2>>& vertices) {
+  double twice_area = 0.0;
+  for (std::size_t i = 1; i + 1 < vertices.size(); ++i) {
+    twice_area += cross(vertices[i] - vertices[0], vertices[i + 1] - vertices[0]);
+  }
+  std::vector<Vec<2>> ordered = vertices;
+  if (twice_area < 0.0) std::reverse(ordered.begin() + 1, ordered.end());
+  return ordered;
+}
+
+/// Vertices without those that repeat the one before, or are between their neighbours on one line.
+std::vector<Vec<2>> corners_of(std::vector<Vec<2>> vertices, double tolerance) {
+  const auto is_no_corner = [&](std::size_t i) {
+    const std::size_t n = vertices.size();
+    const Vec<2> in = vertices[i] - vertices[(i + n - 1) % n], out = vertices[(i + 1) % n] - vertices[i];
+    if (in.stableNorm() <= tolerance) return true;
+    const double longer = std::max(in.stableNorm(), out.stableNorm());
+    return in.dot(out) >= 0.0 && std::abs(cross(in, out)) <= tolerance * longer;
+  };
+  for (std::size_t i = 0, kept = 0; vertices.size() > 2 && kept < vertices.size();) {
+    i %= vertices.size();
+    if (is_no_corner(i)) {
+      vertices.erase(vertices.begin() + static_cast<std::ptrdiff_t>(i));
+      kept = 0;
+    } else {
+      ++i;
+      ++kept;
+    }
+  }
+  return vertices;
+}
+
+}  // namespace
+
 void Polygon::check_area(const PartCheck& check) const {
-  // Vertices are rounded where they were computed; what is left of a line is some times this wide.
-  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
   Vec<2> along = Vec<2>::Zero();
   double magnitude = 0.0;
   for (const Vec<2>& vertex : vertices) {
@@ -27,6 +71,30 @@ void Polygon::check_area(const PartCheck& check) const {
   if (width <= rounding * magnitude) {
     check.refuse("vertices", "on one line", "at least three that do not lie on one line (or a Segment)");
   }
+}
+
+Outline Polygon::outline(const PartCheck& check) const {
+  constexpr const char* allowed =
+      "a convex polygon, where bodies touch each other (others can be made of several shapes on one body)";
+  double magnitude = 0.0;
+  for (const Vec<2>& vertex : vertices) magnitude = std::max(magnitude, vertex.cwiseAbs().maxCoeff());
+  Outline outline{corners_of(counter_clockwise(vertices), rounding * magnitude), radius};
+  const std::size_t n = outline.vertices.size();
+  if (n < 3) check.refuse("vertices", "without an area", allowed);
+  double turning = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec<2>& vertex = outline.vertices[i];
+    const Vec<2> in = vertex - outline.vertices[(i + n - 1) % n],
+                 out = outline.vertices[(i + 1) % n] - vertex;
+    if (!(cross(in, out) > 0.0)) {
+      check.refuse("vertices", "not convex at (" + to_text(vertex[0]) + ", " + to_text(vertex[1]) + ")",
+                   allowed);
+    }
+    turning += std::atan2(cross(in, out), in.dot(out));
+  }
+  // All turn to the left, but perhaps around more than once, as a pentagram does.
+  if (turning > 3.0 * std::numbers::pi) check.refuse("vertices", "crossing themselves", allowed);
+  return outline;
 }
 
 }  // namespace carom::planar

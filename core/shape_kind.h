@@ -6,6 +6,7 @@
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
 #include <carom/core/ids.h>
+#include <carom/core/space.h>
 
 #include <array>
 #include <memory>
@@ -19,6 +20,15 @@ struct RoundedPoint {
   std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
   double radius = 0.0;             ///< [m]
 };
+
+/// A convex set in the plane: the hull of its vertices, widened by a radius. One vertex: a point or a disc;
+/// two: a segment or a capsule; more: a polygon, its vertices counter-clockwise, each of them a corner.
+struct Outline {
+  std::vector<Vec<2>> vertices{};  ///< in the body's frame, from the centre of mass [m]
+  double radius = 0.0;             ///< >= 0 [m]
+};
+
+class PartCheck;
 
 /// All shapes of one kind.
 class CAROM_API ShapeKind {
@@ -35,6 +45,10 @@ public:
   /// Appends the points that may touch a shape on ground, in a fixed order (their places are feature
   /// numbers).
   virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;
+  /// Appends the convex sets with which a shape touches other bodies, in a fixed order; none: it touches
+  /// none. Vertices are in an order of their own, not in that of rounded_points(). Throws ModelError by
+  /// `check` for a shape that is not convex.
+  virtual void outlines(Index /*slot*/, const PartCheck& /*check*/, std::vector<Outline>& /*out*/) const {}
   /// Adds all data that distinguish the shapes of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

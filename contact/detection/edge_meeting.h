@@ -1,0 +1,151 @@
+#pragma once
+
+/// \file
+/// What meets of two edges that face each other, of two convex outlines: the ends of their overlap.
+///
+/// The problem: a face of one outline, and of the other outline the edge that looks most against it.
+/// Projected onto the face, the two overlap in an interval; at either end of it stands a vertex of the one
+/// before the edge of the other, or, where edges are not parallel, there may be two vertices that are closer.
+/// Where they do not overlap, one end of the face and what is closest to it meet.
+
+#include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/gap_point.h>
+#include <carom/contact/detection/gap_vertex_edge.h>
+#include <carom/contact/detection/gap_vertex_vertex.h>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace carom {
+
+/// Vertex of an outline that is deepest behind the line of an edge.
+inline Index deepest_vertex(const OutlineEdge& face, const ConvexOutline& of) {
+  Index deepest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < of.size(); ++i) {
+    const double height = face.height(of.vertices[i]);
+    if (height < least) {
+      least = height;
+      deepest = i;
+    }
+  }
+  return deepest;
+}
+
+/// The edge at the deepest vertex of an outline that looks most against a face; without length if there is
+/// none.
+inline OutlineEdge facing_edge(const ConvexOutline& of, const OutlineEdge& face) {
+  const Index deepest = deepest_vertex(face, of);
+  const OutlineEdge before(of, of.before(deepest)), behind(of, deepest);
+  const bool takes_before = behind.length == 0.0 || (before.length > 0.0 && before.along.dot(face.along) <=
+                                                                                behind.along.dot(face.along));
+  return takes_before ? before : behind;
+}
+
+/// A feature of the outline with the face, and one of the other.
+struct FeaturePair {
+  bool face_side_is_edge = false, other_side_is_edge = false;
+  Index face_side = none, other_side = none;  ///< vertex, or the first one of an edge
+};
+
+/// Gap of such a pair. \param face_is_of_a whether a is the outline with the face
+inline GapPoint gap_of_pair(const FeaturePair& pair, const ConvexOutline& a, const ConvexOutline& b,
+                            bool face_is_of_a) {
+  const Index of_a = face_is_of_a ? pair.face_side : pair.other_side;
+  const Index of_b = face_is_of_a ? pair.other_side : pair.face_side;
+  if (face_is_of_a ? pair.face_side_is_edge : pair.other_side_is_edge)
+    return gap_of_edge_of_a(a, of_a, b, of_b);
+  if (face_is_of_a ? pair.other_side_is_edge : pair.face_side_is_edge)
+    return gap_of_edge_of_b(a, of_a, b, of_b);
+  return gap_of_vertices(a, of_a, b, of_b);
+}
+
+/// Pairs of features that meet, one or two.
+class EdgeMeeting {
+public:
+  /// \param facing of `other`, outlives this, as does `face`
+  /// \param open_tail,open_head the face counts as longer by this much at its ends [m]
+  EdgeMeeting(const OutlineEdge& face, const OutlineEdge& facing, const ConvexOutline& of_face,
+              const ConvexOutline& other, double open_tail = 0.0, double open_head = 0.0)
+      : face_(face),
+        facing_(facing),
+        face_head_(of_face.vertices[face.head]),
+        from_(-open_tail),
+        to_(face.length + open_head),
+        tail_at_(face.coordinate(other.vertices[facing.head])),  // the facing edge runs the other way
+        head_at_(face.coordinate(other.vertices[facing.tail])) {
+    if (is_off(tail_at_ - to_, face.height(other.vertices[facing.head]))) {
+      add_nearest(face.head, face_head_);
+    } else if (is_off(from_ - head_at_, face.height(facing.origin))) {
+      add_nearest(face.tail, face.origin);
+    } else {
+      add_tail_end();
+      add_head_end();
+    }
+  }
+
+  [[nodiscard]] int size() const { return size_; }  ///< number of pairs
+  /// The i-th pair.
+  [[nodiscard]] const FeaturePair& operator[](int i) const { return pairs_[static_cast<std::size_t>(i)]; }
+
+private:
+  // True if a vertex stands beyond the end of an edge; behind the edge's line only if by more than it is
+  // deep: deep inside, the foot of a vertex is beyond the end because of rounding only.
+  static bool is_off(double beyond, double height) { return beyond > 0.0 && beyond > -height; }
+
+  void add(const FeaturePair& pair) { pairs_[static_cast<std::size_t>(size_++)] = pair; }
+  void add_on_face(Index vertex) { add({true, false, face_.tail, vertex}); }
+  void add_on_facing(Index vertex) { add({false, true, vertex, facing_.tail}); }
+  void add_vertices(Index vertex, Index other) { add({false, false, vertex, other}); }
+
+  // The only pair: an end of the face, and what of the facing edge is closest to it.
+  void add_nearest(Index vertex, const Vec<2>& point) {
+    const double along = facing_.coordinate(point), height = facing_.height(point);
+    if (facing_.length == 0.0 || is_off(-along, height)) {
+      add_vertices(vertex, facing_.tail);
+    } else if (is_off(along - facing_.length, height)) {
+      add_vertices(vertex, facing_.head);
+    } else {
+      add_on_facing(vertex);
+    }
+  }
+  // End of the overlap at the face's tail.
+  void add_tail_end() {
+    if (tail_at_ >= from_ || facing_.length == 0.0) {
+      add_on_face(facing_.head);
+      return;
+    }
+    const double along = facing_.coordinate(face_.origin), height = facing_.height(face_.origin);
+    if (along <= 0.0) return;  // beyond the other end of the facing edge
+    if (is_off(along - facing_.length, height)) {
+      add_vertices(face_.tail, facing_.head);
+    } else {
+      add_on_facing(face_.tail);
+    }
+  }
+  // End of the overlap at the face's head.
+  void add_head_end() {
+    if (facing_.length == 0.0) return;  // found at the tail
+    if (head_at_ <= to_) {
+      add_on_face(facing_.tail);
+      return;
+    }
+    const double along = facing_.coordinate(face_head_), height = facing_.height(face_head_);
+    if (along >= facing_.length) return;
+    if (is_off(-along, height)) {
+      add_vertices(face_.head, facing_.tail);
+    } else {
+      add_on_facing(face_.head);
+    }
+  }
+
+  const OutlineEdge &face_, &facing_;
+  Vec<2> face_head_;
+  double from_, to_;          // ends of the face, along it
+  double tail_at_, head_at_;  // of the facing edge
+  std::array<FeaturePair, 2> pairs_{};
+  int size_ = 0;
+};
+
+}  // namespace carom

@@ -1,0 +1,131 @@
+#include <carom/contact/detection/edge_meeting.h>
+#include <carom/contact/detection/gap_convex.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+// The problem: the difference of the two hulls, {x - y}, holds the origin where they overlap. Its edges are
+// those of a and of -b, each paired with the vertex of the other outline that is deepest behind it; the
+// separation along an edge is the distance of the origin from the edge's line. As a function of direction the
+// separation rises to one maximum where it is positive. So the largest separation over all edges belongs to
+// the closest features: if the vertex stands before the edge, to these two, else to the vertex and that end
+// of the edge beyond which it stands. If it is negative, the vertex stands before the edge, and along this
+// edge the overlap is least.
+//
+// What rounding leaves undecided (parallel edges, flat outlines in one line) is decided by projecting the two
+// edges that face each other onto one another, which gives the second contact of edge on edge as well
+// (edge_meeting.h).
+
+namespace carom {
+
+namespace {
+
+/// The edge of an outline along which another one is separated most.
+struct Face {
+  OutlineEdge edge;
+  double separation = -std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool exists() const { return separation > -std::numeric_limits<double>::infinity(); }
+};
+
+/// Height of an outline over the line of an edge: that of its deepest vertex.
+class OutlineHeight {
+public:
+  explicit OutlineHeight(const ConvexOutline& of) : of_(of) {}
+
+  /// Over one edge after the other, around an outline counter-clockwise: the deepest vertex goes around with
+  /// them.
+  double over(const OutlineEdge& edge) {
+    if (of_.size() <= few_vertices) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const Vec<2>& vertex : of_.vertices) least = std::min(least, edge.height(vertex));
+      return least;
+    }
+    // After a large turn the next deepest vertex need not be downhill all the way.
+    const bool turns_little = last_.dot(edge.along) > 0.5;
+    if (!turns_little) deepest_ = deepest_vertex(edge, of_);
+    last_ = edge.along;
+    double least = edge.height(of_.vertices[deepest_]);
+    for (Index next = of_.after(deepest_);; next = of_.after(next)) {
+      const double height = edge.height(of_.vertices[next]);
+      if (!(height < least)) return least;
+      least = height;
+      deepest_ = next;
+    }
+  }
+
+private:
+  static constexpr Index few_vertices = 8;  // they are looked at faster than chosen from
+
+  const ConvexOutline& of_;
+  Index deepest_ = 0;
+  Vec<2> last_ = Vec<2>::Zero();
+};
+
+/// Looks at the edges of an outline, until one separates by more than is `enough`.
+Face widest_face(const ConvexOutline& of, const ConvexOutline& other, double enough) {
+  Face best;
+  if (of.size() < 2) return best;
+  OutlineHeight height(other);
+  for (Index i = 0; i < of.size(); ++i) {
+    const OutlineEdge edge(of, i);
+    if (edge.length == 0.0) continue;
+    const double separation = height.over(edge);
+    if (!(separation > best.separation)) continue;
+    best = {edge, separation};
+    if (separation > enough) break;
+  }
+  return best;
+}
+
+/// Which of two faces along which outlines are separated equally comes first: that which looks up, or to the
+/// right, or lies there.
+bool comes_first(const Face& face, const Face& other) {
+  if (face.separation != other.separation) return face.separation > other.separation;
+  const auto order = [](const Face& of) {
+    const Vec<2> normal = of.edge.normal();
+    return std::array<double, 4>{normal[1], normal[0], of.edge.origin[1], of.edge.origin[0]};
+  };
+  return order(face) >= order(other);
+}
+
+}  // namespace
+
+int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double margin,
+                       std::array<GapPoint, 2>& out) {
+  const double enough = margin + (a.radius + b.radius);
+  const Face face_a = widest_face(a, b, enough);
+  if (face_a.separation > enough) return 0;
+  const Face face_b = widest_face(b, a, enough);
+  if (face_b.separation > enough) return 0;
+  if (!face_a.exists() && !face_b.exists()) {  // all edges without length
+    out[0] = gap_of_vertices(a, 0, b, 0);
+    return out[0].gap <= margin ? 1 : 0;
+  }
+
+  const bool is_of_a = comes_first(face_a, face_b);
+  const OutlineEdge& face = is_of_a ? face_a.edge : face_b.edge;
+  const ConvexOutline &of_face = is_of_a ? a : b, &other = is_of_a ? b : a;
+  const OutlineEdge facing = facing_edge(other, face);
+  const EdgeMeeting meeting(face, facing, of_face, other);
+  int found = 0;
+  for (int i = 0; i < meeting.size(); ++i) {
+    const GapPoint at = gap_of_pair(meeting[i], a, b, is_of_a);
+    if (!(at.gap <= margin)) continue;
+    out[static_cast<std::size_t>(found++)] = at;
+  }
+  if (found == 2 && out[1].gap < out[0].gap) std::swap(out[0], out[1]);
+  return found;
+}
+
+GapPoint tracked_gap(const ConvexOutline& a, Index feature_a, const ConvexOutline& b, Index feature_b) {
+  assert(!(a.is_edge(feature_a) && b.is_edge(feature_b)));
+  if (a.is_edge(feature_a)) return gap_of_edge_of_a(a, feature_a - a.size(), b, feature_b);
+  if (b.is_edge(feature_b)) return gap_of_edge_of_b(a, feature_a, b, feature_b - b.size());
+  return gap_of_vertices(a, feature_a, b, feature_b);
+}
+
+}  // namespace carom
