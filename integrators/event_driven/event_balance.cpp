@@ -83,6 +83,9 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
   if (contact.bodies == 0) return event;
   event.contact = contact.key;
   event.body = assembly.layout()->id(contact.body());
+  if (contact.type == ConstraintType::contact && contact.bodies == 2) {
+    event.other = assembly.layout()->id(contact.blocks[1].body);
+  }
   if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
     event.obstacle = {contact.key.b.serial, assembly.system().token()};
   }

@@ -1,6 +1,7 @@
 // Problem: clock groups at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
 
@@ -42,12 +43,29 @@ void check_options(const EventDriven& options) {
 
 namespace {
 
-/// Components that may ever touch each other are one group.
+/// Components whose bodies may ever touch each other are one group, wherever they are now: groups are not parted
+/// or joined in a run, so that no horizon is needed.
 std::vector<GroupComponents> find_groups(const Assembly& assembly, const Detector& detector) {
-  (void)detector;
   const auto count = static_cast<Index>(assembly.components().size());
+  const std::vector<ContactPair> pairs = detector.body_pairs();
+  UnionFind sets;
+  sets.start(count);
+  for (const ContactPair& pair : pairs) {
+    sets.join(assembly.component_of(pair.body), assembly.component_of(pair.other));
+  }
   std::vector<GroupComponents> groups;
-  for (Index component = 0; component < count; ++component) groups.push_back({{component}, {}});
+  std::vector<Index> group_of(count, none);  // by the first component
+  for (Index component = 0; component < count; ++component) {
+    const Index first = sets.find(component);
+    if (group_of[first] == none) {
+      group_of[first] = static_cast<Index>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group_of[first]].components.push_back(component);
+  }
+  for (const ContactPair& pair : pairs) {
+    groups[group_of[sets.find(assembly.component_of(pair.body))]].body_pairs.push_back(pair);
+  }
   return groups;
 }
 
@@ -211,6 +229,7 @@ void EventDriver::report_contacts(StepReport& report) const {
     entry.key = event.contact;
     entry.body = event.body;
     entry.obstacle = event.obstacle;
+    entry.other = event.other;
     const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = limit ? 1 : assembly_->layout()->dimension();
     entry.velocity_before = event.velocity_before;

@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/event_instant.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
 
@@ -21,7 +22,19 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
 void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) motion.contact(i, now, contacts[i]);
+  const GroupModel& model = motion.model();
+  for (std::size_t i = 0; i < model.body_pairs; ++i) motion.contact(i, now, contacts[i]);
+  // Whatever touches or is captured is nearer.
+  const double near = 16.0 * model.options->gap_tolerance;
+  for (std::size_t i = model.body_pairs; i < contacts.size(); ++i) {
+    motion.contact_if_near(i, now, near, contacts[i]);
+    if (contacts[i].gap > near || model.bounds[i - model.body_pairs].rounding > 0.0) continue;
+    const FeatureRegions regions = motion.regions(model.pairs[i], now);
+    if (!regions.is_edge(regions.nearest())) {
+      contacts[i] = {};
+      contacts[i].gap = std::numeric_limits<double>::infinity();
+    }
+  }
 }
 
 void EventInstant::take_contacts_before() {

@@ -12,6 +12,7 @@
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -49,7 +50,9 @@ struct CAROM_API EventInstant {
   /// The rate of a driver jumps: contacts that were closed approach without having approached before.
   bool rate_jumps = false;
 
-  /// Brings the sample, without contact, and all contacts to the state.
+  /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch have
+  /// no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at an edge of
+  /// either, or not at all.
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
@@ -57,7 +60,7 @@ struct CAROM_API EventInstant {
   void find_islands();
   /// True if a pair touches.
   [[nodiscard]] bool touches(std::size_t pair) const {
-    return before_at[pair] != none || contacts[pair].gap <= touch_gap;
+    return contacts[pair].gap <= touch_gap || (before_at[pair] != none && std::isfinite(contacts[pair].gap));
   }
   /// Speed at which a pair approaches [m/s].
   [[nodiscard]] double approach(std::size_t pair) const {

@@ -5,6 +5,7 @@
 #include <carom/integrators/event_driven/group_model.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 
@@ -27,6 +28,30 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
   }
   all.insert(all.end(), group.body_pairs.begin(), group.body_pairs.end());
   return all;
+}
+
+std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& detector,
+                                     const std::vector<ContactPair>& body_pairs) {
+  std::vector<BodyPairBound> bounds;
+  const BodyOutlines& outlines = detector.bodies().outlines();
+  for (const ContactPair& pair : body_pairs) {
+    const BodyOutline& of_vertex = outlines.list()[outlines.outline_of(pair.feature)];
+    const BodyOutline& outline = outlines.list()[pair.outline];
+    BodyPairBound& bound = bounds.emplace_back();
+    bound.a = assembly.layout()->bodies()[pair.body];
+    bound.b = assembly.layout()->bodies()[pair.other];
+    bound.lever = outlines.vertices()[pair.feature].norm();
+    bound.radius = of_vertex.radius;
+    bound.rounding = of_vertex.radius + outline.radius;
+    double farthest = 0.0;
+    for (const Vec<2>& vertex : outlines.described(outline).vertices) {
+      farthest = std::max(farthest, vertex.norm());
+    }
+    bound.reach = farthest + outline.radius;
+    bound.round = outline.vertices.size() == 1;
+    bound.central = bound.round && bound.lever == 0.0 && farthest == 0.0;
+  }
+  return bounds;
 }
 
 bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
@@ -120,12 +145,26 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
                has_dry_friction(detector_in, group) ? work_lines : work_lines - 1),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
       body_pairs(pairs.size() - group.body_pairs.size()),
+      bounds(bounds_of(assembly_in, detector_in, group.body_pairs)),
       tolerances(tolerances_of(*this, options->absolute_tolerance)) {
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
   loads.depends_on_time = joints.depends_on_time() || ground_moves;
   for (const Index component : group.components) add_load_traits(*assembly, component, loads);
   discontinuities = discontinuities_of(
       *assembly, group.components, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
+}
+
+double BodyPairBound::least_gap(const StateView& state) const {
+  const double x = state.q[a.q] - state.q[b.q], y = state.q[a.q + 1] - state.q[b.q + 1];
+  return std::sqrt(x * x + y * y) - (lever + radius + reach);
+}
+
+double BodyPairBound::most_speed(const double* velocities) const {
+  const double x = velocities[a.v] - velocities[b.v], y = velocities[a.v + 1] - velocities[b.v + 1];
+  double speed = std::sqrt(x * x + y * y);
+  if (a.v_size > 2) speed += std::abs(velocities[a.v + 2]) * lever;
+  if (b.v_size > 2) speed += std::abs(velocities[b.v + 2]) * reach;
+  return speed;
 }
 
 ElementId GroupModel::find_without_direction(const MotionSample& at, double speed) const {

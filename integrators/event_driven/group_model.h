@@ -7,6 +7,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/discontinuity.h>
+#include <carom/core/layout.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 #include <carom/integrators/event_driven/group_joints.h>
@@ -27,6 +28,22 @@ struct LoadTraits {
   bool books_external = false;     ///< some elements book external work
   bool depends_on_time = false;    ///< loads, joints or shapes on ground do
   bool only_fields = true;         ///< nothing but uniform fields acts
+};
+
+/// Bounds of the gap of a pair of two bodies, from the places and velocities of their centres of mass.
+struct BodyPairBound {
+  BodySlot a, b;          ///< body of the vertex, and of the outline
+  double lever = 0.0;     ///< of the vertex from the centre of mass of `a` [m]
+  double reach = 0.0;     ///< of the outline from that of `b`, with its rounding [m]
+  double radius = 0.0;    ///< of the rounding of the vertex [m]
+  double rounding = 0.0;  ///< of both [m]; 0: the corners are sharp
+  bool round = false;     ///< the outline has one vertex: the gap is a distance of two points less a constant
+  bool central = false;   ///< likewise, and these are the centres of mass
+
+  /// Not more than the gap, and equal to it of discs around their centres of mass [m].
+  [[nodiscard]] double least_gap(const StateView& state) const;
+  /// Not less than the speed at which the gap may change, wherever the bodies are, at these velocities [m/s].
+  [[nodiscard]] double most_speed(const double* velocities) const;
 };
 
 /// Components that share one time.
@@ -50,6 +67,7 @@ struct CAROM_API GroupModel {
   /// and what belongs to joints, that of one mechanism together; then pairs of two bodies.
   std::vector<ContactPair> pairs;
   std::size_t body_pairs = 0;  ///< place of the first pair of two bodies
+  std::vector<BodyPairBound> bounds;  ///< of the pairs of two bodies, from that on
   /// Times at which laws of the group's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;
   std::vector<double> tolerances;  ///< absolute, of each unknown

@@ -22,6 +22,21 @@ void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint&
   model_.detector->contact(model_.pairs[pair], at.view(), at.evaluation, at.places, out);
 }
 
+void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, double near,
+                                   Constraint& out) const {
+  if (pair >= model_.body_pairs) {
+    const double least = model_.bounds[pair - model_.body_pairs].least_gap(at.view());
+    if (least > near) {
+      out.clear_bodies();
+      out.rows = 0;
+      out.surface_velocity = {};
+      out.gap = least;
+      return;
+    }
+  }
+  contact(pair, at, out);
+}
+
 void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSample& out) {
   const Assembly& assembly = *model_.assembly;
   memory_->limit.take();
