@@ -12,11 +12,12 @@
 
 namespace carom {
 
-/// Kinds of findings. Bodies touch obstacles (shapes on ground); bodies do not touch bodies.
+/// Kinds of findings. Bodies touch obstacles (shapes on ground), and each other where their materials have a
+/// law of contact.
 enum class FindingKind : std::uint8_t {
   law_without_effect,   ///< System::between() two materials that never meet
   contact_without_law,  ///< a part that touches and an obstacle without a law; a Simulation refuses it
-  touches_nothing,      ///< shapes, or particles with a material, in a system without obstacles
+  touches_nothing,      ///< shapes, or particles with a material, without obstacles or a law between bodies
   untouched_obstacle,   ///< obstacles in a system in which nothing can touch an obstacle
   body_without_shape,   ///< rigid bodies on which only fields act, without a shape, beside obstacles
   keep_without_joint    ///< System::keep_place() of bodies that no joint binds

@@ -20,8 +20,6 @@ namespace {
 
 using PartNames = std::vector<std::string>;
 
-constexpr const char* who_touches = "; bodies touch obstacles, not each other";
-
 /// "disc 'rim', disc #1 and 7 more".
 std::string listed(const PartNames& parts) {
   constexpr std::size_t most = 3;
@@ -37,7 +35,7 @@ struct Toucher {
   std::string name;
 };
 
-/// Everything that can touch a shape on ground.
+/// Everything of bodies that can touch.
 struct Touching {
   std::vector<Toucher> by_material;
   PartNames intended;  // shapes, and particles with a material: made to touch something
@@ -68,6 +66,16 @@ Touching touching_parts(const System& system) {
     }
   }
   return all;
+}
+
+/// True if two of these may meet by a law.
+bool meet(const System& system, const Touching& touching) {
+  for (const Toucher& a : touching.by_material) {
+    for (const Toucher& b : touching.by_material) {
+      if (system.law(a.material, b.material)) return true;
+    }
+  }
+  return false;
 }
 
 bool has(const Touching& touching, MaterialId material) {
@@ -151,11 +159,14 @@ std::vector<ModelFinding> System::check() const {
   for (const auto& [pair, law] : surfaces_.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
+    if (has(touching, a) && has(touching, b)) continue;
     const std::string &given_a = surfaces_.name(a.serial), &given_b = surfaces_.name(b.serial);
     const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
     std::string text = "surface between " + name_a + " and " + name_b + ": ";
     if (!is_solid(a) && !is_solid(b)) {
-      text += "no obstacle is of " + name_a + (a == b ? "" : " or " + name_b) + who_touches;
+      const std::string& missing = has(touching, a) ? name_b : name_a;
+      text += "no obstacle is of " + name_a + (a == b ? "" : " or " + name_b) +
+              ", and no body that can touch is of " + missing;
     } else {
       const bool solid_a = is_solid(a);
       text += "an obstacle is of " + (solid_a ? name_a : name_b) + ", but nothing that can touch it is of " +
@@ -164,8 +175,9 @@ std::vector<ModelFinding> System::check() const {
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
   if (solid.empty()) {
-    if (!touching.intended.empty()) {
-      std::string text = listed(touching.intended) + ": there is no obstacle to touch" + who_touches;
+    if (!touching.intended.empty() && !meet(*this, touching)) {
+      std::string text = listed(touching.intended) +
+                         ": there is no obstacle to touch, and no law by which bodies touch each other";
       found.push_back({FindingKind::touches_nothing, touching.intended, std::move(text)});
     }
   } else {

@@ -37,16 +37,25 @@ std::string joint_name(const System& system, const FeatureKey& key) {
   return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
 }
 
-std::string shape_name(const System& system, const FeatureKey& key) {
-  if (system.shape_kinds().kind_ever(key.serial) == nullptr) refuse("a", key);
+std::string shape_name(const System& system, const FeatureKey& key, const char* side) {
+  if (system.shape_kinds().kind_ever(key.serial) == nullptr) refuse(side, key);
   if (const auto place = system.shape_kinds().place(key.serial); place.slot != none) {
     std::vector<RoundedPoint> points;
     system.shape_kinds().entries()[place.entry].kind->rounded_points(place.slot, points);
-    if (key.feature >= points.size()) refuse("a", key);
+    if (key.feature > points.size()) refuse(side, key);  // behind the points comes the outline as a whole
   }
   const ShapeId shape{key.serial, system.token()};
   return system.name(shape) + " (feature " + std::to_string(key.feature) + ") of " +
          system.name(system.body_of(shape));
+}
+
+/// Name of a feature of a body.
+std::string body_side(const System& system, const FeatureKey& key, const char* side) {
+  if (key.owner == FeatureKey::Owner::shape) return shape_name(system, key, side);
+  if (key.owner != FeatureKey::Owner::body || system.body_kinds().kind_ever(key.serial) == nullptr) {
+    refuse(side, key);
+  }
+  return system.name(BodyId{key.serial, system.token()});
 }
 
 }  // namespace
@@ -54,16 +63,14 @@ std::string shape_name(const System& system, const FeatureKey& key) {
 std::string contact_name(const System& system, const ConstraintKey& key) {
   if (key == ConstraintKey{}) return "no contact";
   if (key.a.owner == FeatureKey::Owner::joint) return joint_name(system, key.a);
+  if (key.b.owner == FeatureKey::Owner::shape) {
+    return body_side(system, key.a, "a") + " on " + shape_name(system, key.b, "b");
+  }
   if (key.b.owner != FeatureKey::Owner::obstacle ||
       system.ground_shape_kinds().kind_ever(key.b.serial) == nullptr) {
     refuse("b", key.b);
   }
-  const std::string on_ground = " on " + system.name(ObstacleId{key.b.serial, system.token()});
-  if (key.a.owner == FeatureKey::Owner::shape) return shape_name(system, key.a) + on_ground;
-  if (key.a.owner != FeatureKey::Owner::body || system.body_kinds().kind_ever(key.a.serial) == nullptr) {
-    refuse("a", key.a);
-  }
-  return system.name(BodyId{key.a.serial, system.token()}) + on_ground;
+  return body_side(system, key.a, "a") + " on " + system.name(ObstacleId{key.b.serial, system.token()});
 }
 
 }  // namespace carom

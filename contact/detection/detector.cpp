@@ -28,7 +28,8 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   const GroundShapes& shapes = ground_.shapes();
   for (const auto& entry : contacts) {
     const ConstraintKey& key = entry.first;
-    if (key.a.owner != FeatureKey::Owner::body) {
+    const bool of_bodies = key.b.owner != FeatureKey::Owner::obstacle;
+    if (key.a.owner != FeatureKey::Owner::body || of_bodies) {
       out.add(key);
       continue;
     }
@@ -50,6 +51,12 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
   return out;
 }
 
+std::vector<ContactPair> Detector::body_pairs() const {
+  std::vector<ContactPair> out;
+  bodies_.append_pairs(out);
+  return out;
+}
+
 std::vector<ContactPair> Detector::joint_friction(Index component) const {
   std::vector<ContactPair> out;
   joints_.append_friction(component, out);
@@ -59,6 +66,7 @@ std::vector<ContactPair> Detector::joint_friction(Index component) const {
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        Constraint& out) const {
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
+  if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
   if (!moves(pair)) return ground_.contact(pair, state, evaluation, nullptr, out);
   const GroundMotion now = ground_.shapes().motion(pair.ground_shape, state.time);
   ground_.contact(pair, state, evaluation, &now, out);
@@ -68,6 +76,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
                        const GroundPlaces& places, Constraint& out) const {
   assert(!has_moving_ground() || places.time() == state.time);
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
+  if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
   ground_.contact(pair, state, evaluation, ground_.shapes().motion(pair.ground_shape, places), out);
 }
 

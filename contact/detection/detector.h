@@ -1,9 +1,10 @@
 #pragma once
 
 /// \file
-/// Finds where things touch: bodies and shapes on ground whose gap is closed (Johansson 1999, section 4:
-/// violated contacts take part in a step), joints at their limits, and dry friction in joints.
+/// Finds where things touch: bodies and shapes on ground, or two bodies, whose gap is closed (Johansson 1999,
+/// section 4: violated contacts take part in a step), joints at their limits, and dry friction in joints.
 
+#include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/ground_contacts.h>
@@ -24,7 +25,8 @@ namespace carom {
 class CAROM_API Detector {
 public:
   /// Throws ModelError where a feature and a shape on ground have no contact law. \param assembly outlives it
-  explicit Detector(const Assembly& assembly) : assembly_(&assembly), ground_(assembly), joints_(assembly) {}
+  explicit Detector(const Assembly& assembly)
+      : assembly_(&assembly), ground_(assembly), bodies_(assembly), joints_(assembly) {}
 
   /// True if a shape on ground moves.
   [[nodiscard]] bool has_moving_ground() const { return ground_.shapes().any_moves(); }
@@ -55,6 +57,10 @@ public:
   }
   /// Likewise of a batch, or of one component.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// True if bodies may touch each other.
+  [[nodiscard]] bool bodies_touch() const { return !bodies_.empty(); }
+  /// Contacts of bodies with each other.
+  [[nodiscard]] const BodyContacts& bodies() const { return bodies_; }
   /// Likewise the contacts of one body with shapes on ground.
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
     ground_.find_of(body, query, out);
@@ -65,8 +71,10 @@ public:
   void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step, double slack,
                 LastingContacts& out) const;
 
-  /// All pairs of one component, in the order of find(). Made at each call.
+  /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
+  /// All pairs of two bodies, of all components. Made at each call.
+  [[nodiscard]] std::vector<ContactPair> body_pairs() const;
   /// Friction in the joints of one component. Made at each call.
   [[nodiscard]] std::vector<ContactPair> joint_friction(Index component) const;
   /// Appends it as constraints, whose `friction_bound` has the constant part of the bound. Sets nothing of
@@ -93,15 +101,17 @@ public:
 
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
-    return ground_.has_static_friction() || joints_.has_friction();
+    return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();
   }
   /// True if the shape on ground of a pair moves.
   [[nodiscard]] bool moves(const ContactPair& pair) const {
-    return pair.joint_row == none && ground_.shapes().moves(pair.ground_shape);
+    return pair.ground_shape != none && ground_.shapes().moves(pair.ground_shape);
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
-  [[nodiscard]] bool needs_rotations() const { return !joints_.empty() || ground_.needs_rotations(); }
+  [[nodiscard]] bool needs_rotations() const {
+    return !joints_.empty() || ground_.needs_rotations() || bodies_.needs_rotations();
+  }
 
   /// As contact_name() of the assembly's system.
   [[nodiscard]] std::string name(const ConstraintKey& key) const;
@@ -109,6 +119,7 @@ public:
 private:
   const Assembly* assembly_;
   GroundContacts ground_;
+  BodyContacts bodies_;
   JointRows joints_;
 };
 

@@ -45,6 +45,8 @@ public:
 
   /// True if there are none.
   [[nodiscard]] bool empty() const { return keys_.empty(); }
+  /// All, ascending, after finish().
+  [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return keys_; }
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const;
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.

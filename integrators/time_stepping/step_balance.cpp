@@ -101,25 +101,26 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
 }
 
 double StepBalance::book_contacts(const IslandProblem& problem, const double* after, double time,
-                                  const StepTrial& trial) {
+                                  const StepInput& in, const StepTrial& trial) {
   ImpulseWork work;
   bool impact = false;
   for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
     if (problem.constraints()[contact].has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work);
     } else {
-      book_contact(problem, contact, after, time, work, impact);
+      ContactRecord& entry = record(problem, contact, after);
+      entry.time = time;
+      place(problem.constraints()[contact], in, entry);
+      impact = impact || entry.impact;
+      book_contact(problem, contact, work, entry);
     }
   }
   return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
 }
 
-void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
-                               double time, ImpulseWork& sum, bool& impact) {
-  ContactRecord& entry = record(problem, contact, after);
-  entry.time = time;
+void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, ImpulseWork& sum,
+                               const ContactRecord& entry) {
   result_.flows[EnergyFlow::external] += problem.map().surface_work(contact);
-  impact = impact || entry.impact;
   for (int direction = 0; direction < entry.directions; ++direction) {
     const auto at = static_cast<std::size_t>(direction);
     const double work = sum.add(entry.impulse[at], entry.velocity_before[at], entry.velocity_after[at]);
@@ -179,7 +180,9 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   const ImpulseMap map = problem.map();
   ContactRecord& entry = result_.report.contacts.emplace_back();
   entry.key = at.key;
-  entry.body = assembly_->layout()->id(at.body());
+  const Layout& layout = *assembly_->layout();
+  entry.body = layout.id(at.body());
+  if (at.type == ConstraintType::contact && at.bodies == 2) entry.other = layout.id(at.blocks[1].body);
   if (at.key.b.owner == FeatureKey::Owner::obstacle) {
     entry.obstacle = {at.key.b.serial, assembly_->system().token()};
   }
@@ -200,6 +203,17 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   entry.residual = problem.report().residual;
   entry.solver = problem.report().solver;
   return entry;
+}
+
+/// Where a contact of a body touches: the lever r follows from its rows, n x r = -r.t and t x r = r.n.
+void StepBalance::place(const Constraint& at, const StepInput& in, ContactRecord& entry) const {
+  if (at.type != ConstraintType::contact) return;
+  const auto dimension = static_cast<std::size_t>(at.rows);
+  const double* const centre = in.start.q.data() + assembly_->layout()->bodies()[at.body()].q;
+  std::copy_n(at.row(0), dimension, entry.normal.begin());
+  std::copy_n(centre, dimension, entry.point.begin());
+  if (dimension != 2 || at.blocks[0].columns != 3) return;
+  for (std::size_t i = 0; i < 2; ++i) entry.point[i] += at.row(0)[2] * at.row(1)[i] - at.row(1)[2] * at.row(0)[i];
 }
 
 void StepBalance::book_turning(double work) {

@@ -47,7 +47,7 @@ public:
                    StepTrial& trial);
   /// Books the impulses of a contact problem. Returns the energy that an impact gained [J], else 0.
   /// \param after velocities at the end as contact sees them \param time when that is [s]
-  double book_contacts(const IslandProblem& problem, const double* after, double time,
+  double book_contacts(const IslandProblem& problem, const double* after, double time, const StepInput& in,
                        const StepTrial& trial);
   /// Books work of contacts that is an error of the step: it was booked as work of moving ground. \param work
   /// [J]
@@ -65,13 +65,14 @@ public:
   [[nodiscard]] StepResult& finish(const StepInput& in);
 
 private:
-  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, double time,
-                    ImpulseWork& sum, bool& impact);
+  void book_contact(const IslandProblem& problem, std::size_t contact, ImpulseWork& sum,
+                    const ContactRecord& entry);
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
   ContactRecord& record(const IslandProblem& problem, std::size_t contact, const double* after);
+  void place(const Constraint& at, const StepInput& in, ContactRecord& entry) const;
 
   const Assembly* assembly_;
   double capture_speed_;

@@ -40,24 +40,32 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   std::sort(sticking_.begin(), sticking_.end());
 }
 
+ContactQuery StepConstraints::query(const StepInput& in, const StepTrial& trial) const {
+  const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
+  return {in.start.view(), trial.at_start, places_, &places_after_, 0.0, lasting};
+}
+
+/// Contacts that stuck in the last step have their static friction.
+void StepConstraints::take_sticking(std::span<Constraint> found) const {
+  if (!detector_.has_static_friction()) return;
+  for (Constraint& contact : found) {
+    if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
+    contact.friction = contact.law.sticking_friction();
+  }
+}
+
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
                               std::vector<Constraint>& out) {
   const std::size_t first = out.size();
   const StateView start = in.start.view();
-  const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
-  detector_.find(components, {start, trial.at_start, places_, &places_after_, 0.0, lasting}, out);
+  detector_.find(components, query(in, trial), out);
   // Components with joints come alone.
   if (detector_.has_dry_friction() && components.size() == 1) {
     detector_.find_joint_friction(components.begin, start, trial.at_start, out);
   }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
-  if (detector_.has_static_friction()) {
-    for (Constraint& contact : found) {
-      if (!std::binary_search(sticking_.begin(), sticking_.end(), contact.key)) continue;
-      contact.friction = contact.law.sticking_friction();
-    }
-  }
+  take_sticking(found);
   // Friction in joints comes last.
   if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
 }
@@ -66,14 +74,31 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
   remember(in, in.last_step);
   constraints_.clear();
   for (const Range batch : batches) find_in(in, batch, trial, constraints_);
+  if (detector_.bodies_touch()) find_between(in, trial);
   islands_.find(batches, constraints_);
+}
+
+/// Contacts of bodies with each other come before the other constraints of the component of their first body:
+/// friction in joints stays last.
+void StepConstraints::find_between(const StepInput& in, const StepTrial& trial) {
+  between_.clear();
+  detector_.bodies().find(query(in, trial), search_, between_);
+  if (between_.empty()) return;
+  take_sticking(between_);
+  const auto before = [&](const Constraint& a, const Constraint& b) {
+    return in.assembly.component_of(a.body()) < in.assembly.component_of(b.body());
+  };
+  again_.swap(constraints_);
+  constraints_.resize(again_.size() + between_.size());
+  std::merge(between_.begin(), between_.end(), again_.begin(), again_.end(), constraints_.begin(), before);
 }
 
 void StepConstraints::restore(const StepInput& in, const StepIsland& island, const StepTrial& trial) {
   again_.clear();
   const Index component = island.components.front();
   find_in(in, {component, component + 1}, trial, again_);
-  std::copy(again_.begin(), again_.end(), island.constraints.begin());
+  // No iteration changes the contacts of two bodies, which come first.
+  std::copy(again_.rbegin(), again_.rend(), island.constraints.rbegin());
 }
 
 }  // namespace carom

@@ -44,6 +44,9 @@ public:
 private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
+  void find_between(const StepInput& in, const StepTrial& trial);
+  void take_sticking(std::span<Constraint> found) const;
+  [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
   Detector detector_;
   double capture_speed_;
@@ -51,7 +54,8 @@ private:
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
-  std::vector<Constraint> constraints_, again_;
+  BodyContactSearch search_;
+  std::vector<Constraint> constraints_, again_, between_;
   StepIslands islands_;
 };
 

@@ -11,12 +11,27 @@
 
 namespace carom {
 
+namespace {
+
+/// Options that know of contact with shapes on ground only. Throws ModelError naming them.
+void demand_options_for_bodies(const Detector& detector, const TimeStepping& options) {
+  if (!detector.bodies_touch()) return;
+  const std::string where = " where bodies may touch each other";
+  if (options.impacts == ImpactTimes::located) {
+    throw ModelError("time stepping: impacts is located" + where + "; allowed: at_step_start");
+  }
+  if (options.project_gaps) throw ModelError("time stepping: project_gaps is true" + where + "; allowed: false");
+}
+
+}  // namespace
+
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : parts_(assembly, (check_options(options), options)),
       prescribed_(assembly),
       iteration_(parts_, stop),
       balance_(assembly, options),
       couplings_(assembly) {
+  demand_options_for_bodies(parts_.constraints.detector(), options);
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
 }
@@ -229,7 +244,7 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 /// \param after velocities after it, as contact sees them \param time when it ends [s]
 void TimeStepper::book_contact_problem(const IslandProblem& problem, const double* after, double time,
                                        const StepInput& in) {
-  const double gain = balance_.book_contacts(problem, after, time, parts_.trial);
+  const double gain = balance_.book_contacts(problem, after, time, in, parts_.trial);
   if (gain > 0.0 && parts_.options.refuse_energy_gain) {
     parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()))
         .refuse_gain(problem, gain);

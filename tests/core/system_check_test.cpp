@@ -33,23 +33,23 @@ BodyId disc_of(System& system, MaterialId material, const Vec<2>& place) {
   return body;
 }
 
-TEST(SystemCheck, ALawBetweenBodiesHasNoEffect) {
+TEST(SystemCheck, ShapesOfBodiesNeedALawToTouchEachOther) {
   System system;
-  const MaterialId steel = system.material("steel");
-  system.between(steel, steel, rough);
+  const MaterialId steel = system.material("steel"), ice = system.material("ice");
   disc_of(system, steel, {0.0, 0.0});
   disc_of(system, steel, {1.0, 0.0});
+  system.between(steel, ice, rough);
   const auto found = system.check();
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].kind, FindingKind::law_without_effect);
-  EXPECT_EQ(found[0].parts, (std::vector<std::string>{"steel", "steel"}));
-  EXPECT_TRUE(says(found[0], "between 'steel' and 'steel'")) << found[0].text;
-  EXPECT_TRUE(says(found[0], "no obstacle is of 'steel'; bodies touch obstacles, not each other"));
+  EXPECT_EQ(found[0].parts, (std::vector<std::string>{"steel", "ice"}));
+  EXPECT_TRUE(says(found[0], "no obstacle is of 'steel' or 'ice', and no body that can touch is of 'ice'"))
+      << found[0].text;
   EXPECT_EQ(found[1].kind, FindingKind::touches_nothing);
   EXPECT_EQ(found[1].parts, (std::vector<std::string>{"disc #0", "disc #1"}));
   EXPECT_TRUE(says(found[1], "there is no obstacle to touch")) << found[1].text;
-  // An obstacle of that material makes both good.
-  system.add(HalfPlane{.normal = {0.0, 1.0}, .material = steel});
+  // A body of ice can touch, and steel touches it.
+  disc_of(system, ice, {2.0, 0.0});
   EXPECT_TRUE(system.check().empty());
 }
 
@@ -68,6 +68,8 @@ TEST(SystemCheck, LawsOfMaterialsThatNeverMeet) {
   EXPECT_TRUE(says(found[0], "an obstacle is of 'ice', but nothing that can touch it is of 'steal'"))
       << found[0].text;
   system.between(steal, steel, rough);
+  EXPECT_EQ(system.check().size(), 2U);
+  system.between(steel, steel, rough);  // of two bodies
   EXPECT_EQ(system.check().size(), 2U);
 }
 

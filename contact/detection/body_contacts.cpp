@@ -1,0 +1,252 @@
+// Problem: which bodies touch each other, where, and by which law.
+
+#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/pair_rows.h>
+#include <carom/core/joint_kind.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+namespace carom {
+
+namespace {
+
+constexpr double any_gap = std::numeric_limits<double>::infinity();
+
+/// Materials of shapes of bodies, and of particles that touch.
+std::vector<MaterialId> materials_of_bodies(const System& system) {
+  std::vector<MaterialId> all;
+  const auto add = [&](MaterialId material) {
+    if (std::find(all.begin(), all.end(), material) == all.end()) all.push_back(material);
+  };
+  for (const auto& entry : system.shape_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) add(entry.kind->material(slot));
+  }
+  if (all.empty()) return all;  // points do not touch points
+  for (const auto& entry : system.body_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (entry.kind->has_contact_point(slot)) add(entry.kind->material(slot));
+    }
+  }
+  return all;
+}
+
+bool has_law_between_bodies(const System& system) {
+  const std::vector<MaterialId> materials = materials_of_bodies(system);
+  for (const MaterialId a : materials) {
+    for (const MaterialId b : materials) {
+      if (system.law(a, b)) return true;
+    }
+  }
+  return false;
+}
+
+bool is_point(const BodyOutline& outline) { return outline.vertices.size() == 1 && outline.radius == 0.0; }
+
+Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
+  Box<2> box{vertices[0], vertices[0]};
+  for (Index i = 1; i < outline.vertices.size(); ++i) {
+    box.min = box.min.cwiseMin(vertices[i]);
+    box.max = box.max.cwiseMax(vertices[i]);
+  }
+  box.min.array() -= outline.radius;
+  box.max.array() += outline.radius;
+  return box;
+}
+
+/// Where the frame of a body is.
+struct BodyFrame {
+  BodyFrame(const BodySlot& body, const StateView& state, const Evaluation& evaluation)
+      : centre(state.q[body.q], state.q[body.q + 1]) {
+    if (body.rotation == none) return;
+    rotation = {evaluation.rotation[body.rotation], evaluation.rotation[body.rotation + 1]};
+  }
+  [[nodiscard]] Vec<2> turned(const Vec<2>& local) const { return Space<2>::rotate(rotation.data(), local); }
+  [[nodiscard]] Vec<2> outside(const Vec<2>& local) const { return centre + turned(local); }
+  [[nodiscard]] Vec<2> inside(const Vec<2>& point) const {
+    const std::array<double, 2> back{rotation[0], -rotation[1]};
+    return Space<2>::rotate(back.data(), Vec<2>(point - centre));
+  }
+
+  Vec<2> centre;
+  std::array<double, 2> rotation{1.0, 0.0};  // cosine, sine
+};
+
+ConvexOutline view(const BodyOutline& outline, const Vec<2>* vertices) {
+  return {{vertices, outline.vertices.size()}, outline.radius};
+}
+
+}  // namespace
+
+BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
+  if (assembly.layout()->dimension() != 2 || !has_law_between_bodies(assembly.system())) return;
+  outlines_ = BodyOutlines(assembly);
+  find_laws(assembly.system());
+  exclude_jointed(assembly);
+}
+
+void BodyContacts::find_laws(const System& system) {
+  const std::vector<MaterialId>& materials = outlines_.materials();
+  for (const MaterialId a : materials) {
+    for (const MaterialId b : materials) {
+      laws_.push_back(system.law(a, b));
+      has_static_friction_ = has_static_friction_ || (laws_.back() && laws_.back()->has_static_friction());
+    }
+  }
+}
+
+/// Bodies that a joint binds do not touch: their shapes mostly overlap at the joint.
+void BodyContacts::exclude_jointed(const Assembly& assembly) {
+  std::vector<BodyId> ends;
+  for (const auto& entry : assembly.system().joint_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      ends.clear();
+      entry.kind->ends(slot, ends);
+      std::erase(ends, ground);
+      for (const BodyId a : ends) {
+        for (const BodyId b : ends) {
+          never_meet_.emplace_back(assembly.layout()->index(a), assembly.layout()->index(b));
+        }
+      }
+    }
+  }
+  std::sort(never_meet_.begin(), never_meet_.end());
+}
+
+const Surface* BodyContacts::law(const BodyOutline& a, const BodyOutline& b) const {
+  const std::optional<Surface>& found = laws_[a.material * outlines_.materials().size() + b.material];
+  return found ? &*found : nullptr;
+}
+
+bool BodyContacts::may_touch(const BodyOutline& a, const BodyOutline& b) const {
+  if (a.body == b.body || law(a, b) == nullptr || (is_point(a) && is_point(b))) return false;
+  return never_meet_.empty() ||
+         !std::binary_search(never_meet_.begin(), never_meet_.end(), std::pair(a.body, b.body));
+}
+
+/// Pairs of outlines, that of the lesser key first: those whose boxes overlap, and those that touched in the
+/// step before.
+void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const {
+  const std::vector<BodyOutline>& list = outlines_.list();
+  auto& pairs = memory.pairs;
+  pairs.clear();
+  memory.boxes.clear();
+  for (const BodyOutline& outline : list) {
+    memory.boxes.push_back(box_around(memory.placed.data() + outline.vertices.begin, outline));
+  }
+  if (memory.broad.size() != list.size()) {
+    std::vector<Index> owners;
+    for (const BodyOutline& outline : list) owners.push_back(outline.body);
+    memory.broad.reset(owners);
+  }
+  const auto add = [&](Index i, Index j) {
+    if (!may_touch(list[i], list[j])) return;
+    if (list[j].key < list[i].key) std::swap(i, j);
+    pairs.emplace_back(i, j);
+  };
+  for (const BoxPair& pair : memory.broad.update(memory.boxes, query.margin)) add(pair.first, pair.second);
+  if (query.lasting != nullptr) {
+    for (const ConstraintKey& key : query.lasting->keys()) {
+      if (key.b.owner != FeatureKey::Owner::shape) continue;
+      const Index i = outlines_.find(key.a), j = outlines_.find(key.b);
+      if (i != none && j != none) add(i, j);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
+                        std::vector<Constraint>& out) const {
+  if (empty()) return;
+  outlines_.place(*assembly_, query.state, query.evaluation, memory.placed);
+  collect_pairs(query, memory);
+  for (const auto& [i, j] : memory.pairs) add(i, j, query, memory, out);
+}
+
+/// Appends the contacts of two outlines.
+void BodyContacts::add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
+                       std::vector<Constraint>& out) const {
+  const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
+  std::array<GapPoint, 2> found;
+  const int count = find_gaps(view(a, memory.placed.data() + a.vertices.begin),
+                              view(b, memory.placed.data() + b.vertices.begin),
+                              query.lasting == nullptr ? query.margin : any_gap, found);
+  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
+    const bool touches = gap.gap <= query.margin;
+    const ConstraintKey key = key_of(a, b, gap);
+    if (!touches && !query.lasting->contains(key)) continue;
+    Constraint& contact = out.emplace_back();
+    fill(key, a, b, gap, query.state, contact);
+    if (touches) continue;
+    if (query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) {
+      contact.allowed_approach = gap.gap / query.lasting->step();
+    } else {
+      out.pop_back();
+    }
+  }
+}
+
+/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two vertices
+/// it is the one of the outline with fewer.
+ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap) {
+  const bool of_a = gap.kind == GapKind::edge_of_b ||
+                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
+  return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
+              : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+}
+
+void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b,
+                        const GapPoint& gap, const StateView& state, Constraint& out) const {
+  const BodySlots& bodies = assembly_->layout()->bodies();
+  out.key = key;
+  out.law = *law(a, b);
+  out.friction = out.law.friction;
+  fill_pair_rows(PairSide::of_body(bodies[a.body], a.body, a.radius, state),
+                 PairSide::of_body(bodies[b.body], b.body, b.radius, state), gap, out);
+  if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
+}
+
+void BodyContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                           Constraint& out) const {
+  const BodySlots& bodies = assembly_->layout()->bodies();
+  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)], &b = outlines_.list()[pair.outline];
+  // In the frame of the second body its vertices are at hand as described.
+  const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
+  const BodyFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
+  const Vec<2> vertex = frame_b.inside(frame_a.outside(outlines_.vertices()[pair.feature]));
+  std::array<GapPoint, 2> found;
+  static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
+  GapPoint gap = found[0];
+  const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
+  gap.feature_a = pair.feature - a.vertices.begin;
+  gap.normal = frame_b.turned(gap.normal);
+  gap.point_a = frame_b.outside(gap.point_a);
+  gap.point_b = frame_b.outside(gap.point_b);
+  out = {};  // it may have held a contact of other bodies
+  if (b.key < a.key) {
+    fill({b.surface(), vertex_key}, b, a, gap.swapped(), state, out);
+  } else {
+    fill({vertex_key, b.surface()}, a, b, gap, state, out);
+  }
+}
+
+void BodyContacts::append_pairs(std::vector<ContactPair>& out) const {
+  const std::vector<BodyOutline>& list = outlines_.list();
+  for (const BodyOutline& a : list) {
+    for (Index j = 0; j < list.size(); ++j) {
+      const BodyOutline& b = list[j];
+      if (!may_touch(a, b)) continue;
+      // Of two round ends one is enough.
+      if (a.vertices.size() == 1 && b.vertices.size() == 1 && b.key < a.key) continue;
+      if (b.vertices.size() == 1 && a.vertices.size() > 1) continue;
+      for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
+        out.push_back({.body = a.body, .feature = vertex, .other = b.body, .outline = j});
+      }
+    }
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,75 @@
+#pragma once
+
+/// \file
+/// Contacts of bodies with each other: pairs of convex outlines whose gap is closed. Two outlines touch where
+/// their materials have a law of contact, unless they are of one body, of bodies that a joint binds, or both
+/// of them points.
+
+#include <carom/contact/detection/body_outlines.h>
+#include <carom/contact/detection/broad_phase.h>
+#include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/gap_convex.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/core/surface.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Memory of a search for contacts of bodies: its answer does not depend on it.
+struct BodyContactSearch {
+  BroadPhase<2> broad;
+  std::vector<Box<2>> boxes;                   ///< around all outlines
+  std::vector<Vec<2>> placed;                  ///< vertices of all outlines
+  std::vector<std::pair<Index, Index>> pairs;  ///< of outlines that may touch
+};
+
+/// Outlines of the bodies of an assembly, which of them may touch, and by which law.
+class CAROM_API BodyContacts {
+public:
+  /// \param assembly outlives it
+  explicit BodyContacts(const Assembly& assembly);
+
+  /// True if no two bodies can touch.
+  [[nodiscard]] bool empty() const { return outlines_.empty(); }
+  /// True if some law takes more to slip than to slide.
+  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
+  /// True if find() looks at the rotations of bodies.
+  [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
+  /// The outlines.
+  [[nodiscard]] const BodyOutlines& outlines() const { return outlines_; }
+
+  /// Appends the contacts of all bodies that a query asks for, ordered by the first outline, then the second
+  /// one, in the order of assembly.
+  void find(const ContactQuery& query, BodyContactSearch& memory, std::vector<Constraint>& out) const;
+  /// Appends all pairs of a vertex and an outline of another body that may touch, ordered likewise.
+  void append_pairs(std::vector<ContactPair>& out) const;
+  /// Writes the contact of such a pair, whatever its gap.
+  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+               Constraint& out) const;
+
+private:
+  [[nodiscard]] const Surface* law(const BodyOutline& a, const BodyOutline& b) const;
+  [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
+  [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
+  void find_laws(const System& system);
+  void exclude_jointed(const Assembly& assembly);
+  void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
+  void add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
+           std::vector<Constraint>& out) const;
+  void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,
+            const StateView& state, Constraint& out) const;
+
+  const Assembly* assembly_;
+  BodyOutlines outlines_;
+  std::vector<std::optional<Surface>> laws_;         // row-major, by material
+  std::vector<std::pair<Index, Index>> never_meet_;  // bodies, the lesser first; ascending
+  bool has_static_friction_ = false;
+};
+
+}  // namespace carom

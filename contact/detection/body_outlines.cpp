@@ -1,0 +1,101 @@
+#include <carom/contact/detection/body_outlines.h>
+
+#include <algorithm>
+
+namespace carom {
+
+BodyOutlines::BodyOutlines(const Assembly& assembly) {
+  const Layout& layout = *assembly.layout();
+  const System& system = assembly.system();
+  for (const auto& entry : system.body_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (!entry.kind->has_contact_point(slot)) continue;
+      const Index serial = entry.serials[slot];
+      const Vec<2> centre = Vec<2>::Zero();
+      BodyOutline of_body;
+      of_body.body = layout.index(BodyId{serial, system.token()});
+      of_body.key = {FeatureKey::Owner::body, serial, 0};
+      add(of_body, {&centre, 1}, entry.kind->material(slot));
+    }
+  }
+  std::vector<Outline> outlines;
+  for (const Index serial : system.shape_kinds().serials()) {
+    const auto place = system.shape_kinds().place(serial);
+    const ShapeKind& kind = *system.shape_kinds().entries()[place.entry].kind;
+    outlines.clear();
+    const PartCheck check(system.name(ShapeId{serial, system.token()}), system);
+    kind.outlines(place.slot, check, outlines);
+    Index feature = 0;
+    for (const Outline& outline : outlines) {
+      BodyOutline of_body;
+      of_body.body = layout.index(kind.body(place.slot));
+      of_body.key = {FeatureKey::Owner::shape, serial, feature};
+      of_body.radius = outline.radius;
+      add(of_body, outline.vertices, kind.material(place.slot));
+      feature += static_cast<Index>(outline.vertices.size()) + 1;
+    }
+  }
+  std::stable_sort(list_.begin(), list_.end(),
+                   [](const BodyOutline& a, const BodyOutline& b) { return a.body < b.body; });
+  outline_of_.resize(vertices_.size());
+  for (Index i = 0; i < list_.size(); ++i) {
+    by_key_.emplace_back(list_[i].key, i);
+    const Range vertices = list_[i].vertices;
+    std::fill(outline_of_.begin() + vertices.begin, outline_of_.begin() + vertices.end, i);
+  }
+  std::sort(by_key_.begin(), by_key_.end());
+}
+
+void BodyOutlines::add(BodyOutline outline, std::span<const Vec<2>> vertices, MaterialId material) {
+  outline.material = number_of(material);
+  outline.vertices.begin = static_cast<Index>(vertices_.size());
+  for (const Vec<2>& vertex : vertices) {
+    vertices_.push_back(vertex);
+    outline.reach = std::max(outline.reach, vertex.norm() + outline.radius);
+  }
+  outline.vertices.end = static_cast<Index>(vertices_.size());
+  list_.push_back(outline);
+}
+
+Index BodyOutlines::number_of(MaterialId material) {
+  const auto found = std::find(materials_.begin(), materials_.end(), material);
+  const auto number = static_cast<Index>(found - materials_.begin());
+  if (found == materials_.end()) materials_.push_back(material);
+  return number;
+}
+
+bool BodyOutlines::any_off_centre() const {
+  return std::any_of(vertices_.begin(), vertices_.end(),
+                     [](const Vec<2>& vertex) { return vertex[0] != 0.0 || vertex[1] != 0.0; });
+}
+
+Index BodyOutlines::find(const FeatureKey& key) const {
+  // The last outline of the owner whose first feature is not behind.
+  const auto after = std::upper_bound(by_key_.begin(), by_key_.end(), std::pair(key, none));
+  if (after == by_key_.begin()) return none;
+  const auto& [first, outline] = *std::prev(after);
+  if (first.owner != key.owner || first.serial != key.serial) return none;
+  return key.feature <= list_[outline].surface().feature ? outline : none;
+}
+
+void BodyOutlines::place(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
+                         std::vector<Vec<2>>& out) const {
+  out.resize(vertices_.size());
+  const BodySlots& bodies = assembly.layout()->bodies();
+  for (const BodyOutline& outline : list_) {
+    place(outline, bodies[outline.body], state, evaluation, out.data() + outline.vertices.begin);
+  }
+}
+
+void BodyOutlines::place(const BodyOutline& outline, const BodySlot& body, const StateView& state,
+                         const Evaluation& evaluation, Vec<2>* out) const {
+  const Vec<2> centre = Eigen::Map<const Vec<2>>(state.q + body.q);
+  for (Index i = outline.vertices.begin; i < outline.vertices.end; ++i, ++out) {
+    const Vec<2>& local = vertices_[i];
+    const bool turns = body.rotation != none && (local[0] != 0.0 || local[1] != 0.0);
+    *out = turns ? Vec<2>(centre + Space<2>::rotate(evaluation.rotation.data() + body.rotation, local))
+                 : centre;
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,78 @@
+#pragma once
+
+/// \file
+/// Convex outlines of the bodies of an assembly, which bodies may touch each other with. Collected once.
+
+#include <carom/contact/detection/convex_outline.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/export.h>
+#include <carom/core/space.h>
+#include <carom/core/state.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// A convex outline fixed to a body: a point, a disc, a capsule or a polygon.
+struct BodyOutline {
+  Index body = none;      ///< in the order of assembly
+  Index material = none;  ///< number in BodyOutlines::materials()
+  FeatureKey key;         ///< of its vertex 0; vertex i has the feature number i more
+  Range vertices;         ///< places of its vertices among those of all
+  double radius = 0.0;    ///< rounding radius [m]
+  double reach = 0.0;     ///< radius of a circle around the centre of mass that holds it [m]
+
+  /// Identity of a vertex.
+  [[nodiscard]] FeatureKey vertex(Index i) const { return {key.owner, key.serial, key.feature + i}; }
+  /// Identity of the outline as a whole, against which a vertex of another one stands.
+  [[nodiscard]] FeatureKey surface() const { return vertex(vertices.size()); }
+};
+
+/// All outlines, ordered by body.
+class CAROM_API BodyOutlines {
+public:
+  /// Of nothing that can touch.
+  BodyOutlines() = default;
+  /// Of all bodies of the plane. Throws ModelError for a polygon that is not convex.
+  explicit BodyOutlines(const Assembly& assembly);
+
+  [[nodiscard]] bool empty() const { return list_.empty(); }                    ///< true if there is none
+  [[nodiscard]] const std::vector<BodyOutline>& list() const { return list_; }  ///< all
+  /// Vertices of all outlines in the frames of their bodies, from the centres of mass [m].
+  [[nodiscard]] std::span<const Vec<2>> vertices() const { return vertices_; }
+  /// Place of the outline of a vertex.
+  [[nodiscard]] Index outline_of(Index vertex) const { return outline_of_[vertex]; }
+  /// An outline in the frame of its body.
+  [[nodiscard]] ConvexOutline described(const BodyOutline& outline) const {
+    return {vertices().subspan(outline.vertices.begin, outline.vertices.size()), outline.radius};
+  }
+  /// Materials of outlines; one of them may be no material.
+  [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
+  /// True if a vertex stands off the centre of mass.
+  [[nodiscard]] bool any_off_centre() const;
+  /// Place of the outline of a key; `none` if there is none.
+  [[nodiscard]] Index find(const FeatureKey& key) const;
+
+  /// Writes the vertices of all outlines where their bodies are. The position group of `evaluation` must be
+  /// up to date. \param out vertices().size() points
+  void place(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
+             std::vector<Vec<2>>& out) const;
+  /// Likewise of one outline. \param out as many points as it has vertices
+  void place(const BodyOutline& outline, const BodySlot& body, const StateView& state,
+             const Evaluation& evaluation, Vec<2>* out) const;
+
+private:
+  void add(BodyOutline outline, std::span<const Vec<2>> vertices, MaterialId material);
+  [[nodiscard]] Index number_of(MaterialId material);
+
+  std::vector<BodyOutline> list_;
+  std::vector<Vec<2>> vertices_;
+  std::vector<Index> outline_of_;  // by vertex
+  std::vector<MaterialId> materials_;
+  std::vector<std::pair<FeatureKey, Index>> by_key_;  // ascending
+};
+
+}  // namespace carom
