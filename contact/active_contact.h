@@ -17,6 +17,9 @@ struct ActiveContact {
   ContactPair pair;                       ///< what touches
   Index place = none;                     ///< of the pair in a list of all, where there is one
   ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
+  /// Of two bodies: the feature of the outline that the vertex is nearest to in this phase; `none` if there is but
+  /// one.
+  Index feature = none;
   bool frictionless = false;              ///< without friction: neither sticks nor cares which way it slips
   Constraint at;                          ///< at the present configuration
   double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks

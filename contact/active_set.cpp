@@ -20,9 +20,9 @@ double ActiveContact::friction_at(const Constraint& where, const double* velocit
                   : where.law.sliding_friction(slip_sign() * where.tangential_velocity(velocities));
 }
 
-void ActiveSet::bind(const Assembly& assembly, JointConstraints& joints) {
+void ActiveSet::bind(const Assembly& assembly, ComponentsResponse& response) {
   assembly_ = &assembly;
-  joints_ = joints.empty() ? nullptr : &joints;
+  response_ = response.no_joints() ? nullptr : &response;
 }
 
 void ActiveSet::update(const Detector& detector, const StateView& state, const Evaluation& evaluation,
@@ -33,18 +33,62 @@ void ActiveSet::update(const Detector& detector, const StateView& state, const E
   }
 }
 
-Index ActiveSet::mechanism(const ActiveContact& contact) const {
-  return joints_ == nullptr ? contact.at.body() : assembly_->mechanism(contact.at.body());
+Index ActiveSet::mechanism(Index body) const {
+  return response_ == nullptr ? body : assembly_->mechanism(body);
 }
 
+/// Joins mechanisms that touch each other; false if none do.
+bool ActiveSet::find_islands() {
+  const auto is_of_two = [](const ActiveContact& contact) {
+    return contact.at.type == ConstraintType::contact && contact.at.bodies > 1;
+  };
+  if (std::none_of(contacts_.begin(), contacts_.end(), is_of_two)) return false;
+  Index bodies = 0;
+  for (const ActiveContact& contact : contacts_) {
+    for (const Constraint::Block& block : contact.at.blocks) {
+      if (block.body != none) bodies = std::max(bodies, block.body + 1);
+    }
+  }
+  islands_.start(bodies);
+  for (const ActiveContact& contact : contacts_) {
+    if (is_of_two(contact)) islands_.join(mechanism(contact.at.body()), mechanism(contact.at.blocks[1].body));
+  }
+  last_.resize(bodies);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    last_[islands_.find(mechanism(contacts_[i].at.body()))] = i;
+  }
+  return true;
+}
+
+/// Calls f(first, last) for the contacts of each island; where those of one stand among others, of several
+/// islands together.
 template <class F>
 void ActiveSet::for_groups(F&& f) {
+  const bool islands = find_islands();
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
-    while (last < contacts_.size() && mechanism(contacts_[last]) == mechanism(contacts_[first])) ++last;
+    if (islands) {
+      for (std::size_t i = first; i < last; ++i) {
+        last = std::max(last, last_[islands_.find(mechanism(contacts_[i].at.body()))] + 1);
+      }
+    } else {
+      const Index of_first = mechanism(contacts_[first].at.body());
+      while (last < contacts_.size() && mechanism(contacts_[last].at.body()) == of_first) ++last;
+    }
     f(first, last);
     first = last;
   }
+}
+
+bool ActiveSet::answers_with_joints(std::size_t first, std::size_t last) const {
+  if (response_ == nullptr) return false;
+  for (std::size_t i = first; i < last; ++i) {
+    const Constraint& at = contacts_[i].at;
+    for (int b = 0; b < at.bodies; ++b) {
+      if (assembly_->is_jointed(at.blocks[static_cast<std::size_t>(b)].body)) return true;
+    }
+  }
+  return false;
 }
 
 int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent ? at.tangent_row() : 0; }
@@ -63,9 +107,8 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
     const double ratio = row.tangent || !slips ? 0.0 : -contact.slip_sign() * contact.friction;
     directions_.push_back({&contact.at, row_of(row, contact.at), ratio});
   }
-  if (joints_ != nullptr && assembly.is_jointed(contacts_[first].at.body())) {
-    JointResponse response(*joints_);
-    delassus_.build(directions_, response);
+  if (answers_with_joints(first, last)) {
+    delassus_.build(directions_, *response_);
   } else {
     MassResponse response(assembly);
     delassus_.build(directions_, response);
@@ -87,11 +130,12 @@ void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* ac
     contact.normal = contact.at.friction_bound;
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
-    const Range v = joints_->velocities();
+    JointConstraints& joints = *response_->joints_of(contact.at.body());
+    const Range v = joints.velocities();
     load_.resize(v.end);
     std::fill(load_.begin() + v.begin, load_.begin() + v.end, 0.0);
     contact.at.add_force(0.0, contact.tangential, load_.data());
-    joints_->constrained_response(load_.data());
+    joints.constrained_response(load_.data());
     for (Index k = v.begin; k < v.end; ++k) acceleration[k] += load_[k];
   }
 }

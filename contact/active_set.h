@@ -9,7 +9,8 @@
 ///     G a + drift = 0,   a = a_free + B D lambda,
 ///
 /// B the response of the bodies: M^-1, or what joints leave of it (core/dynamics/body_response.h). Contacts
-/// of different bodies do not know of each other, unless joints bind the bodies together.
+/// of different bodies do not know of each other, unless joints bind the bodies together, or bodies that they
+/// touch: they are solved island by island.
 
 #include <carom/contact/active_contact.h>
 #include <carom/contact/delassus.h>
@@ -17,19 +18,20 @@
 #include <carom/contact/force_margins.h>
 #include <carom/contact/least_forces.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/dynamics/components_response.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/full_pivoting.h>
+#include <carom/core/numerics/union_find.h>
 
 #include <vector>
 
 namespace carom {
 
-/// The closed contacts of one component, in the order of its pairs. Keeps memory only, but the contacts.
+/// The closed contacts of one clock group, those of an island together. Keeps memory only, but the contacts.
 class CAROM_API ActiveSet {
 public:
   /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
-  void bind(const Assembly& assembly, JointConstraints& joints);
+  void bind(const Assembly& assembly, ComponentsResponse& response);
   /// Of forces that are not unique the least in the sense of least squares that the law of contact allows, in
   /// place of any: for those who depend on them, since they are continuous, also where modes change.
   void ask_least() { least_ = true; }
@@ -47,8 +49,8 @@ public:
   /// How it found them. Constraints that follow from others are not among them, nor are forces that were
   /// left zero.
   [[nodiscard]] const std::vector<ContactPivot>& pivots() const { return pivots_; }
-  /// Margins of the forces of the last add_reactions(), a number for every body that touches. Where forces
-  /// are not unique, they are distributed so that the margin is largest.
+  /// Margins of the forces of the last add_reactions(), a number for every island of bodies that touch. Where
+  /// forces are not unique, they are distributed so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);
 
   /// Takes the gaps out of the positions, and what moves the constraints out of the velocities, by the
@@ -61,7 +63,9 @@ private:
   using Row = ContactPivot::Row;
   template <class F>
   void for_groups(F&& f);
-  [[nodiscard]] Index mechanism(const ActiveContact& contact) const;
+  [[nodiscard]] bool find_islands();
+  [[nodiscard]] Index mechanism(Index body) const;
+  [[nodiscard]] bool answers_with_joints(std::size_t first, std::size_t last) const;
   [[nodiscard]] static int row_of(const Row& row, const Constraint& at);
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
   [[nodiscard]] bool solve();
@@ -70,7 +74,9 @@ private:
 
   std::vector<ActiveContact> contacts_;
   const Assembly* assembly_ = nullptr;
-  JointConstraints* joints_ = nullptr;  // null where there are none
+  ComponentsResponse* response_ = nullptr;  // null where there are no joints
+  UnionFind islands_;                       // of mechanisms, named by their first bodies
+  std::vector<std::size_t> last_;           // by island: the last of its contacts
   bool least_ = false;
   // Of the group at hand:
   std::vector<Row> rows_;

@@ -5,14 +5,15 @@
 
 namespace carom {
 
-FrictionBounds::FrictionBounds(const Assembly& assembly, Index component, const JointConstraints& joints) {
+void FrictionBounds::add(const Assembly& assembly, Index component, const JointConstraints& joints) {
   const JointTable* const table = assembly.layout()->joints();
   if (table == nullptr) return;
-  rows_ = joints.size();
+  const std::size_t first = rows_;
+  rows_ += joints.size();
   std::vector<std::size_t> rows(table->places.size(), 0);  // first ones, by serial number
   for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
     const std::size_t row = joints.pattern().first_row(joint);
-    rows[joints.joint(row).serial] = row;
+    rows[joints.joint(row).serial] = first + row;
   }
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];

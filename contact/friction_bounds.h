@@ -14,13 +14,17 @@
 
 namespace carom {
 
-/// Friction in the joints of one component that is bound by forces of joints.
+/// Friction in the joints of one component, or of several, that is bound by forces of joints.
 class CAROM_API FrictionBounds {
 public:
   /// Of no component: empty.
   FrictionBounds() = default;
   /// All but `joints` must outlive it.
-  FrictionBounds(const Assembly& assembly, Index component, const JointConstraints& joints);
+  FrictionBounds(const Assembly& assembly, Index component, const JointConstraints& joints) {
+    add(assembly, component, joints);
+  }
+  /// Adds a component, whose rows are behind those of the components before.
+  void add(const Assembly& assembly, Index component, const JointConstraints& joints);
 
   /// True if no friction is bound by the force of a joint.
   [[nodiscard]] bool empty() const { return bearings_.empty(); }
@@ -44,12 +48,12 @@ private:
     Index serial;            // of the friction
     const JointKind* joint;  // that presses
     Index slot;
-    std::size_t row;  // its first among those of the component
+    std::size_t row;  // its first among those of all components
     double bound, coefficient;
   };
   [[nodiscard]] const Bearing* find(const Constraint& contact) const;
   std::vector<Bearing> bearings_;  // by serial number
-  std::size_t rows_ = 0;           // of the component
+  std::size_t rows_ = 0;           // of all components
   const double* multipliers_ = nullptr;
   double duration_ = 1.0, largest_ = 0.0;  // of multipliers_
 };

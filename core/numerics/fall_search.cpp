@@ -46,6 +46,7 @@ bool FallSearch::falls_clearly(const StepPolynomial& polynomial, double error) c
 double FallSearch::between(const QuantityLook& from, const QuantityLook& to, int depth) {
   if (!(from.time < until_)) return never;
   const double length = to.time - from.time;
+  if (0.5 * (from.at.value + to.at.value - rule_.fastest * length) + rule_.raise > 0.0) return never;
   const auto scaled = [length](StepPolynomial::End end) {
     end.first *= length;
     end.second *= length * length;

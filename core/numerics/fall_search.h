@@ -9,6 +9,7 @@
 #include <carom/core/numerics/step_polynomial.h>
 
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -52,6 +53,8 @@ struct FallRule {
   /// fine.
   bool clear_falls = true;
   int least_depth = 0;  ///< halvings at least
+  /// The largest size of the rate, if known: where values cannot reach zero with it nothing is searched.
+  double fastest = std::numeric_limits<double>::infinity();
   int deepest = 14;     ///< halvings at most
 };
 

@@ -9,9 +9,9 @@
 namespace carom {
 
 ClockGroup::ClockGroup(const Assembly& assembly, const Detector& detector, const EventDriven& options,
-                       Index component, GroupMemory& memory)
+                       const GroupComponents& components, GroupMemory& memory)
     : memory_(&memory),
-      motion_(assembly, detector, component, options, memory.motion),
+      motion_(assembly, detector, components, options, memory.motion),
       failure_(motion_.model(), clock_),
       detector_(motion_, failure_, unbounded_, memory.detection),
       impacts_(options, failure_, memory.impacts, memory.chain),
@@ -58,7 +58,8 @@ void ClockGroup::advance(double target, EventBalance& balance) try {
     }
   }
   output(target, balance);  // changes nothing of the run
-  flow_.leave(phase_.kind == Phase::at_rest, motion_.model().assembly->components().size() == 1);
+  flow_.leave(phase_.kind == Phase::at_rest,
+              motion_.model().parts().size() == motion_.model().assembly->components().size());
 } catch (const EvaluationLimit::Reached&) {
   limits_.fail_evaluations();
 }
@@ -73,6 +74,7 @@ void ClockGroup::resolve_event(EventBalance& balance) {
   at.touch_gap = starts ? motion_.model().options->gap_tolerance : 4.0 * at.scales.gap_noise;
   if (starts && !motion_.active().list().empty()) projection_.apply_to_known_contacts(at);
   at.take_contacts_before();
+  at.find_islands();
   if (impacts_.resolve(at)) {
     modes_.forget_ends();  // what stopped moves again,
     at.update();           // and loads may depend on velocities
@@ -91,7 +93,7 @@ void ClockGroup::arrive(const Event& event, EventInstant& at) {
   // Contacts push but do not pull: where the rate of a driver jumps, what was closed may part, or be hit.
   // Slower jumps count as none, as impacts do.
   if (event.guard == Guard::discontinuity) {
-    const ComponentModel& model = motion_.model();
+    const GroupModel& model = motion_.model();
     const std::span<double> velocities = at.y.subspan(model.unknowns.q_size(), model.unknowns.v_size());
     const std::span<const double> impulses = motion_.joints().follow_jump(
         at.now, velocities, model.options->capture_speed, at.balance.flows[EnergyFlow::external]);
@@ -108,7 +110,7 @@ void ClockGroup::arrive(const Event& event, EventInstant& at) {
 
 /// Records events of elements and of laws of time.
 void ClockGroup::record_event(const Event& event, EventBalance& balance) {
-  const ComponentModel& model = motion_.model();
+  const GroupModel& model = motion_.model();
   if (event.guard == Guard::switching_point) {
     balance.record(EventKind::switching_point, event.time, {}, *model.assembly).element =
         motion_.guards().element(event.which);
@@ -132,9 +134,8 @@ Phase::Kind ClockGroup::start_flow(EventInstant& at) {
     failure_.fail("the forces of closed contacts contradict each other", {});
   }
   if (projection_.apply(now, y_, at.balance)) motion_.sample(at.time, y_.data(), Forces::all, now);
-  const ComponentModel& model = motion_.model();
-  const ElementId lost =
-      find_without_direction(*model.assembly, model.index, now.view(), now.evaluation, at.scales.speed_noise);
+  const GroupModel& model = motion_.model();
+  const ElementId lost = model.find_without_direction(now, at.scales.speed_noise);
   if (lost.valid()) {
     failure_.fail(tell_without_direction(*model.assembly, lost), {model.assembly->system().name(lost)});
   }
@@ -150,14 +151,15 @@ Phase::Kind ClockGroup::start_flow(EventInstant& at) {
 /// overwritten
 bool ClockGroup::is_at_rest(MotionSample& now) {
   constexpr double no_speed = 1e-14, no_acceleration = 1e-12;
-  const ComponentModel& model = motion_.model();
+  const GroupModel& model = motion_.model();
   if (model.loads.depends_on_time || model.unknowns.z_size() != 0) return false;
-  const Range v = model.ranges().v;
   const auto largest = [&](const std::vector<double>& numbers) {
     double size = 0.0;
-    for (Index i = v.begin; i < v.end; ++i) {
-      size = std::max(size, std::abs(numbers[i]) * memory_->motion.lengths[i]);
-    }
+    model.unknowns.for_velocities([&](Range v, std::size_t) {
+      for (Index i = v.begin; i < v.end; ++i) {
+        size = std::max(size, std::abs(numbers[i]) * memory_->motion.lengths[i]);
+      }
+    });
     return size;
   };
   if (largest(now.state.v) > no_speed) return false;

@@ -37,12 +37,12 @@ namespace carom {
 /// Modes by contact.
 using ContactModes = std::vector<std::pair<ConstraintKey, ContactMode>>;
 
-/// Components that share one time: one, as long as bodies touch the ground only.
+/// Components that share one time: one, or those whose bodies may touch each other.
 class CAROM_API ClockGroup {
 public:
   /// All must outlive it. Throws ModelError for contact in space.
-  ClockGroup(const Assembly& assembly, const Detector& detector, const EventDriven& options, Index component,
-             GroupMemory& memory);
+  ClockGroup(const Assembly& assembly, const Detector& detector, const EventDriven& options,
+             const GroupComponents& components, GroupMemory& memory);
   ClockGroup(const ClockGroup&) = delete;
   ClockGroup& operator=(const ClockGroup&) = delete;
 
@@ -55,7 +55,7 @@ public:
   void advance(double target, EventBalance& balance);
   /// Time last advanced to [s].
   [[nodiscard]] double time() const { return clock_.output; }
-  /// Time up to which it can meet no other group: for ever, where bodies touch the ground only [s].
+  /// Time up to which it can meet no other group [s]: for ever, since all that may ever meet is in one group.
   [[nodiscard]] static constexpr double horizon() { return std::numeric_limits<double>::infinity(); }
   /// Writes the group's part of the state at the time last advanced to, and the modes of closed contacts.
   void write(State& state, ContactModes& modes) const;

@@ -45,19 +45,24 @@ ConstraintProjection project_onto_constraints(SmoothMotion& motion, const Motion
   assert(motion.joints().is_at(at));
   ConstraintProjection result;
   ActiveSet& active = motion.active();
-  JointConstraints& joints = motion.joints().rows();
+  const GroupJoints& joints = motion.joints().rows();
   if (active.list().empty() && joints.empty()) return result;
   MotionMemory& memory = motion.memory();
-  const Assembly& assembly = *motion.model().assembly;
-  const Component& all = motion.model().ranges();
+  const GroupModel& model = motion.model();
+  const Assembly& assembly = *model.assembly;
   std::vector<double>&of_position = memory.of_position, &of_velocity = memory.of_velocity;
-  std::fill(of_position.begin() + all.v.begin, of_position.begin() + all.v.end, 0.0);
-  std::fill(of_velocity.begin() + all.v.begin, of_velocity.begin() + all.v.end, 0.0);
-  if (!joints.empty() && leaves_joints(joints, all.q, at, memory)) {
-    joints.project(JointLevel::displacement, of_position.data());
+  for (const auto& part : model.parts()) {
+    const Range v = part.ranges.v;
+    std::fill(of_position.begin() + v.begin, of_position.begin() + v.end, 0.0);
+    std::fill(of_velocity.begin() + v.begin, of_velocity.begin() + v.end, 0.0);
+  }
+  for (const GroupJoints::Part& part : joints.parts()) {
+    const Component& all = assembly.components()[part.component];
+    if (!leaves_joints(*part.joints, all.q, at, memory)) continue;
+    part.joints->project(JointLevel::displacement, of_position.data());
     std::copy(at.state.v.begin() + all.v.begin, at.state.v.begin() + all.v.end,
               of_velocity.begin() + all.v.begin);
-    joints.project(JointLevel::velocity, of_velocity.data());
+    part.joints->project(JointLevel::velocity, of_velocity.data());
     for (Index i = all.v.begin; i < all.v.end; ++i) of_velocity[i] -= at.state.v[i];
   }
   result.changed = active.corrections(assembly, at.state.v.data(), of_position.data(), of_velocity.data()) ||
@@ -65,20 +70,25 @@ ConstraintProjection project_onto_constraints(SmoothMotion& motion, const Motion
   if (!result.changed) return result;
   // The potential changes by minus the work of its forces, to first order: the rest is the square of
   // rounding.
-  for (Index i = all.v.begin; i < all.v.end; ++i) {
-    result.lost += at.evaluation.force[i] * of_position[i];
-    result.shift = std::max(result.shift, std::abs(of_position[i]) * memory.lengths[i]);
+  for (const auto& part : model.parts()) {
+    const Range v = part.ranges.v;
+    for (Index i = v.begin; i < v.end; ++i) {
+      result.lost += at.evaluation.force[i] * of_position[i];
+      result.shift = std::max(result.shift, std::abs(of_position[i]) * memory.lengths[i]);
+    }
   }
-  const Index component = motion.model().index;
-  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+  model.for_bodies([&](const BodyKind& kind, Range slots, Index q, Index v, const auto& part) {
     kind.apply_mass(slots, of_velocity.data() + v, memory.impulse.data() + v);
-    kind.advance(slots, at.state.q.data() + q, of_position.data() + v, y.data() + (q - all.q.begin));
+    kind.advance(slots, at.state.q.data() + q, of_position.data() + v,
+                 y.data() + part.q + (q - part.ranges.q.begin));
   });
-  const std::size_t v_begin = motion.model().unknowns.q_size();
-  for (Index i = all.v.begin; i < all.v.end; ++i) {
-    result.lost -= (at.state.v[i] + 0.5 * of_velocity[i]) * memory.impulse[i];
-    result.velocity_energy += 0.5 * of_velocity[i] * memory.impulse[i];
-    y[v_begin + (i - all.v.begin)] += of_velocity[i];
+  for (const auto& part : model.parts()) {
+    const Range v = part.ranges.v;
+    for (Index i = v.begin; i < v.end; ++i) {
+      result.lost -= (at.state.v[i] + 0.5 * of_velocity[i]) * memory.impulse[i];
+      result.velocity_energy += 0.5 * of_velocity[i] * memory.impulse[i];
+      y[part.v + (i - v.begin)] += of_velocity[i];
+    }
   }
   return result;
 }
@@ -88,23 +98,26 @@ std::vector<std::string> causes_of_projection(SmoothMotion& motion, const Motion
   // Of the largest impulse: smaller ones are caused by others.
   constexpr double considerable = 0.1;
   MotionMemory& memory = motion.memory();
-  const ComponentModel& model = motion.model();
-  JointConstraints& joints = motion.joints().rows();
-  const Range v = model.ranges().v;
-  std::copy(at.state.v.begin() + v.begin, at.state.v.begin() + v.end, memory.of_velocity.begin() + v.begin);
+  const GroupModel& model = motion.model();
+  GroupJoints& joints = motion.joints().rows();
+  model.unknowns.for_velocities([&](Range v, std::size_t) {
+    std::copy(at.state.v.begin() + v.begin, at.state.v.begin() + v.end, memory.of_velocity.begin() + v.begin);
+  });
   memory.multipliers.assign(joints.size(), 0.0);
   joints.project(JointLevel::velocity, memory.of_velocity.data(), memory.multipliers.data());
   double largest = 0.0;
   for (const double impulse : memory.multipliers) largest = std::max(largest, std::abs(impulse));
   std::vector<std::string> names;
-  for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
-    bool takes_part = false;
-    for (Index row = joints.pattern().first_row(joint); row < joints.pattern().first_row(joint + 1); ++row) {
-      takes_part =
-          takes_part || (largest > 0.0 && std::abs(memory.multipliers[row]) >= considerable * largest);
+  for (const GroupJoints::Part& part : joints.parts()) {
+    const JointPattern& pattern = part.joints->pattern();
+    const double* const multipliers = memory.multipliers.data() + part.first_row;
+    for (std::size_t joint = 0; joint < pattern.size(); ++joint) {
+      bool takes_part = false;
+      for (Index row = pattern.first_row(joint); row < pattern.first_row(joint + 1); ++row) {
+        takes_part = takes_part || (largest > 0.0 && std::abs(multipliers[row]) >= considerable * largest);
+      }
+      if (takes_part) names.push_back(model.assembly->system().name(pattern.id(joint)));
     }
-    if (takes_part)
-      names.push_back(model.assembly->system().name(joints.joint(joints.pattern().first_row(joint))));
   }
   if (!names.empty()) return names;
   for (const ActiveContact& contact : motion.active().list()) {

@@ -15,6 +15,7 @@ enum class Guard : std::uint8_t {
   gap,              ///< a gap closes
   force,            ///< a contact force comes to its end
   slip,             ///< sliding stops
+  feature,          ///< a vertex comes to the end of the feature of an outline that it touches
   switching_point,  ///< loads of an element change their form
   discontinuity,    ///< a law of time jumps
   painleve,         ///< forces of contact grow without bound
@@ -26,7 +27,7 @@ enum class Guard : std::uint8_t {
 struct Event {
   double time = 0.0;  ///< [s]
   Guard guard = Guard::nothing;
-  std::size_t which = 0;  ///< pair, mechanism that touches, closed contact, or guard of an element
+  std::size_t which = 0;  ///< pair, island that touches, closed contact, or guard of an element
   double sign = 1.0;      ///< of the guard of an element before
 };
 

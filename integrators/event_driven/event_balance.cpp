@@ -83,6 +83,9 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
   if (contact.bodies == 0) return event;
   event.contact = contact.key;
   event.body = assembly.layout()->id(contact.body());
+  if (contact.type == ConstraintType::contact && contact.bodies == 2) {
+    event.other = assembly.layout()->id(contact.blocks[1].body);
+  }
   if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
     event.obstacle = {contact.key.b.serial, assembly.system().token()};
   }
@@ -125,8 +128,8 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
   return work.gain;
 }
 
-void EventBalance::book_joints(const SolvedImpact& impact, const ComponentModel& model,
-                               JointReactions& joints, const MotionSample& at) {
+void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& model, JointReactions& joints,
+                               const MotionSample& at) {
   if (joints.rows().empty()) return;
   const std::span<const double> multipliers = joints.impulses(impact.problem);
   // Prescribed coordinates move on: G v = -rate before and after.
@@ -146,12 +149,11 @@ void EventBalance::book_joints(const SolvedImpact& impact, const ComponentModel&
 }
 
 void EventBalance::list_joint_impulses(std::span<const double> multipliers, double time,
-                                       const ComponentModel& model, const MotionSample& at) {
+                                       const GroupModel& model, const MotionSample& at) {
   const Assembly& assembly = *model.assembly;
   std::size_t row = 0;
-  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+  const auto list = [&](Index k, Range range) {
     const JointKind& kind = *assembly.joint_kinds()[k];
-    const Range range = assembly.joints(model.index, k);
     for (Index joint = range.begin; joint < range.end; ++joint, row += kind.rows()) {
       const double* const of_joint = multipliers.data() + row;
       if (std::all_of(of_joint, of_joint + kind.rows(), [](double number) { return number == 0.0; }))
@@ -159,6 +161,9 @@ void EventBalance::list_joint_impulses(std::span<const double> multipliers, doub
       joint_impulses.push_back(
           {assembly.joint_id(k, joint), kind.reaction(at.joint_view(), joint, of_joint), time});
     }
+  };
+  for (const auto& part : model.parts()) {
+    for (Index k = 0; k < assembly.joint_kinds().size(); ++k) list(k, assembly.joints(part.component, k));
   }
 }
 

@@ -7,7 +7,7 @@
 #include <carom/core/constraint.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/component_model.h>
+#include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/joint_reactions.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/run/event_log.h>
@@ -24,11 +24,11 @@ namespace carom {
 /// An impact that was solved and applied.
 struct SolvedImpact {
   EventKind kind = EventKind::impact;
-  double time = 0.0;             ///< [s]
-  const IslandProblem& problem;  ///< the problem and its answer
-  const double* velocity;        ///< of the model, after
-  double energy_before = 0.0;    ///< kinetic energy of the mechanism [J],
-  double energy_after = 0.0;     ///< and after
+  double time = 0.0;                                                    ///< [s]
+  const IslandProblem& problem;                                         ///< the problem and its answer
+  const double* velocity;                                               ///< of the model, after
+  double energy_before = 0.0;                                           ///< kinetic energy of the island [J],
+  double energy_after = 0.0;                                            ///< and after
   double accumulation_time = std::numeric_limits<double>::quiet_NaN();  ///< EventRecord::accumulation_time
 };
 
@@ -74,10 +74,10 @@ struct CAROM_API EventBalance {
   /// added, beyond rounding [J].
   double book(const SolvedImpact& impact, const Assembly& assembly);
   /// Books what joints did in an impact. \param joints brought to `at`
-  void book_joints(const SolvedImpact& impact, const ComponentModel& model, JointReactions& joints,
+  void book_joints(const SolvedImpact& impact, const GroupModel& model, JointReactions& joints,
                    const MotionSample& at);
   /// Lists impulses of joints by the multipliers of their rows, where there are any.
-  void list_joint_impulses(std::span<const double> multipliers, double time, const ComponentModel& model,
+  void list_joint_impulses(std::span<const double> multipliers, double time, const GroupModel& model,
                            const MotionSample& at);
 
 private:

@@ -42,10 +42,28 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   scales_ = scales;
   is_active_.assign(motion_->model().pairs.size(), 0);
   for (const ActiveContact& contact : motion_->active().list()) is_active_[contact.place] = 1;
+  take_features(time, y);
   if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start)) {
     failure_->fail_loads(memory_->within);
   }
   guards_.update(ends_.start.sample.guards, scales_.guard_noise);
+}
+
+/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes next.
+void EventDetector::take_features(double time, const double* y) {
+  bool sampled = false;
+  for (ActiveContact& closed : motion_->active().list()) {
+    closed.feature = none;
+    if (closed.pair.other == none) continue;
+    if (!sampled) motion_->sample(time, y, Forces::without_contact, memory_->within);
+    sampled = true;
+    const FeatureRegions regions = motion_->regions(closed.pair, memory_->within);
+    if (!regions.has_several()) continue;
+    closed.feature = regions.nearest();
+    const FeatureMargin margin = regions.margin(closed.feature);
+    const bool at_border = margin.value <= 2.0 * scales_.beyond_feature();
+    if (at_border && margin.rate < -scales_.speed_noise) closed.feature = margin.beyond;
+  }
 }
 
 Event EventDetector::step(Flow& flow, double time, std::span<const double> y, double longest) {
@@ -128,6 +146,8 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
   if (predicted.guard == Guard::force && !(located.time > step.begin()) && !finds_unbounded_force(step.flow))
     return true;
   if (predicted.guard != Guard::gap) return false;
+  // A gap of two bodies may open and close again where the nearest feature changes.
+  if (predicted.which >= motion_->model().body_pairs) return !(located.time > step.begin());
   // A gap that opens: in steps of low order there would be one after each restart.
   const StepPolynomial::End &start = ends_.start.gaps[predicted.which],
                             &end = ends_.end.gaps[predicted.which];

@@ -46,6 +46,7 @@ public:
   [[nodiscard]] double force_noise(const Event& event) const;
 
 private:
+  void take_features(double time, const double* y);
   [[nodiscard]] Event first(SearchedStep& step);
   [[nodiscard]] bool is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] Event first_of(SearchedStep& step, const Event& predicted, const Event& located);

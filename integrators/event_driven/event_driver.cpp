@@ -1,6 +1,7 @@
 // Problem: clock groups at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
 
@@ -40,23 +41,50 @@ void check_options(const EventDriven& options) {
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
+namespace {
+
+/// Components whose bodies may ever touch each other are one group, wherever they are now: groups are not parted
+/// or joined in a run, so that no horizon is needed.
+std::vector<GroupComponents> find_groups(const Assembly& assembly, const Detector& detector) {
+  const auto count = static_cast<Index>(assembly.components().size());
+  const std::vector<ContactPair> pairs = detector.body_pairs();
+  UnionFind sets;
+  sets.start(count);
+  for (const ContactPair& pair : pairs) {
+    sets.join(assembly.component_of(pair.body), assembly.component_of(pair.other));
+  }
+  std::vector<GroupComponents> groups;
+  std::vector<Index> group_of(count, none);  // by the first component
+  for (Index component = 0; component < count; ++component) {
+    const Index first = sets.find(component);
+    if (group_of[first] == none) {
+      group_of[first] = static_cast<Index>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group_of[first]].components.push_back(component);
+  }
+  for (const ContactPair& pair : pairs) {
+    groups[group_of[sets.find(assembly.component_of(pair.body))]].body_pairs.push_back(pair);
+  }
+  return groups;
+}
+
+}  // namespace
+
 EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
       memory_(assembly, options, stop),
+      group_of_(assembly.components().size()),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
-  if (detector_.bodies_touch()) {
-    throw ModelError(
-        "event-driven mode: laws of contact let bodies touch each other; allowed: contact with obstacles "
-        "(time "
-        "stepping does both)");
-  }
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
+  for (const GroupComponents& components : find_groups(assembly, detector_)) {
+    const auto group = static_cast<Index>(groups_.size());
+    for (const Index component : components.components) group_of_[component] = group;
+    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, components, memory_));
   }
 }
 
@@ -188,7 +216,7 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   };
   while (!within(component)) ++component;
   return within_limit(state.time, [&] {
-    return groups_[component]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+    return groups_[group_of_[component]]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
 }
 
@@ -201,6 +229,7 @@ void EventDriver::report_contacts(StepReport& report) const {
     entry.key = event.contact;
     entry.body = event.body;
     entry.obstacle = event.obstacle;
+    entry.other = event.other;
     const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = limit ? 1 : assembly_->layout()->dimension();
     entry.velocity_before = event.velocity_before;

@@ -64,6 +64,7 @@ private:
   LawContinuity laws_;
   GroupMemory memory_;
   std::vector<std::unique_ptr<ClockGroup>> groups_;
+  std::vector<Index> group_of_;  // by component
   GroupQueue queue_;
   Evaluation evaluation_;
   State trial_;

@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/event_instant.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
 
@@ -15,12 +16,25 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       contacts(memory.contacts),
       before(memory.before),
       before_at(memory.before_at),
+      islands(memory.islands),
       balance(books) {}
 
 void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) motion.contact(i, now, contacts[i]);
+  const GroupModel& model = motion.model();
+  for (std::size_t i = 0; i < model.body_pairs; ++i) motion.contact(i, now, contacts[i]);
+  // Whatever touches or is captured is nearer.
+  const double near = 16.0 * model.options->gap_tolerance;
+  for (std::size_t i = model.body_pairs; i < contacts.size(); ++i) {
+    motion.contact_if_near(i, now, near, contacts[i]);
+    if (contacts[i].gap > near || model.bounds[i - model.body_pairs].rounding > 0.0) continue;
+    const FeatureRegions regions = motion.regions(model.pairs[i], now);
+    if (!regions.is_edge(regions.nearest())) {
+      contacts[i] = {};
+      contacts[i].gap = std::numeric_limits<double>::infinity();
+    }
+  }
 }
 
 void EventInstant::take_contacts_before() {
@@ -29,10 +43,21 @@ void EventInstant::take_contacts_before() {
   for (Index i = 0; i < before.size(); ++i) before_at[before[i].place] = i;
 }
 
+void EventInstant::find_islands() {
+  // Projections during the event move bodies by less than this.
+  constexpr double moved = 4.0;
+  const double near = moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+  const auto is_near = [&](std::size_t pair) {
+    return before_at[pair] != none || contacts[pair].gap <= near;
+  };
+  islands.find(motion.model(), is_near);
+}
+
 void EventInstant::take_velocities() {
-  const Range v = motion.model().ranges().v;
-  std::copy(now.state.v.begin() + v.begin, now.state.v.begin() + v.end,
-            y.begin() + static_cast<std::ptrdiff_t>(motion.model().unknowns.q_size()));
+  for (const auto& part : motion.model().parts()) {
+    const Range v = part.ranges.v;
+    std::copy(now.state.v.begin() + v.begin, now.state.v.begin() + v.end, y.data() + part.v);
+  }
 }
 
 }  // namespace carom

@@ -7,10 +7,12 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_balance.h>
+#include <carom/integrators/event_driven/event_islands.h>
 #include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -25,6 +27,7 @@ struct CAROM_API InstantMemory {
   std::vector<Constraint> contacts;
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
+  EventIslands islands;
 };
 
 /// One instant of one clock group.
@@ -40,19 +43,24 @@ struct CAROM_API EventInstant {
   std::vector<Constraint>& contacts;   ///< of all pairs in it
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
   std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
+  EventIslands& islands;               ///< bodies that touch each other, found by find_islands()
   EventBalance& balance;               ///< books
   EventScales scales{};                ///< of the phase to come
   double touch_gap = 0.0;              ///< gaps up to here touch [m]
   /// The rate of a driver jumps: contacts that were closed approach without having approached before.
   bool rate_jumps = false;
 
-  /// Brings the sample, without contact, and all contacts to the state.
+  /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch have
+  /// no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at an edge of
+  /// either, or not at all.
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
+  /// Finds the islands, by the contacts as they are; they stay during the event.
+  void find_islands();
   /// True if a pair touches.
   [[nodiscard]] bool touches(std::size_t pair) const {
-    return before_at[pair] != none || contacts[pair].gap <= touch_gap;
+    return contacts[pair].gap <= touch_gap || (before_at[pair] != none && std::isfinite(contacts[pair].gap));
   }
   /// Speed at which a pair approaches [m/s].
   [[nodiscard]] double approach(std::size_t pair) const {

@@ -2,6 +2,7 @@
 // sign first?
 
 #include <carom/core/numerics/fall_search.h>
+#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/event_prediction.h>
 
 #include <algorithm>
@@ -75,6 +76,21 @@ void predict_slips(SearchedStep& step, GuardSampler& sampler, Event& found) {
   }
 }
 
+void predict_features(SearchedStep& step, GuardSampler& sampler, Event& found) {
+  constexpr double fine = 1e-9;  // [m]
+  const std::vector<ActiveContact>& closed = step.motion.active().list();
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    if (closed[i].feature == none) continue;
+    FallRule rule;
+    rule.derivatives = 1;
+    rule.fine = fine;
+    rule.raise = step.scales.gap_noise - step.ends.feature_level(i, step.scales.beyond_feature());
+    rule.deepest = deepest;
+    const auto read = [i](const GuardSample& at) -> QuantityLook { return {at.time, at.features[i], 0.0}; };
+    search(step, sampler, rule, read, {never, Guard::feature, i}, found);
+  }
+}
+
 void predict_forces(SearchedStep& step, GuardSampler& sampler, const FalseAlarms& passed_over, Event& found) {
   for (std::size_t i = 0; i < step.ends.end.sample.margins.size(); ++i) {
     if (passed_over.forces[i] != 0) continue;
@@ -109,6 +125,7 @@ Event predict_event(SearchedStep& step, const FalseAlarms& passed_over) {
   if (end.margins.empty() && end.guards.empty()) return found;
   StepSampler sampler(step);
   predict_slips(step, sampler, found);
+  predict_features(step, sampler, found);
   predict_forces(step, sampler, passed_over, found);
   if (!end.guards.empty()) predict_switching_points(step, sampler, found);
   return found;
@@ -120,7 +137,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
   constexpr int least_of_moving = 2;
   const StepEnd &start = step.ends.start, &end = step.ends.end;
   Event found = before;
-  for (std::size_t i = 0; i < end.gaps.size(); ++i) {
+  for (std::size_t i = 0; i < step.motion.model().body_pairs; ++i) {
     if (step.is_active[i] != 0 || passed_over.gaps[i] != 0) continue;
     // The flow does not know the motion of shapes on ground.
     const bool moving = step.motion.model().detector->moves(step.motion.model().pairs[i]);
@@ -145,7 +162,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
             .first({step.begin(), start.gaps[i], curvature}, {step.end(), end.gaps[i], curvature});
     if (time < until(found)) found = {time, Guard::gap, i};
   }
-  return found;
+  return predict_body_gap(step, passed_over.gaps, found);
 }
 
 }  // namespace carom

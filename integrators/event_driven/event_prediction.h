@@ -14,7 +14,7 @@ namespace carom {
 /// Guards of a step that turned out to be false alarms.
 struct FalseAlarms {
   std::vector<char> gaps;    ///< by pair
-  std::vector<char> forces;  ///< by mechanism that touches
+  std::vector<char> forces;  ///< by island that touches
 };
 
 /// The first event, or `nothing` at the end of the step.

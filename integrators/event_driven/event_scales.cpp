@@ -21,16 +21,18 @@ constexpr double speed_rounding = 1e-12;
 
 EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
-  const Range q = motion.model().ranges().q, v = motion.model().ranges().v;
   const std::vector<double>& lengths = motion.memory().lengths;
   EventScales scales;
   double size = 1.0, velocity = 0.0;
-  for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(at.state.q[i]));
-  scales.gap_noise = gap_rounding * size;
-  for (Index i = v.begin; i < v.end; ++i) {
-    velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
-    scales.force = std::max(scales.force, std::abs(at.loads[i]) / lengths[i]);
+  for (const auto& part : motion.model().parts()) {
+    const Range q = part.ranges.q, v = part.ranges.v;
+    for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(at.state.q[i]));
+    for (Index i = v.begin; i < v.end; ++i) {
+      velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
+      scales.force = std::max(scales.force, std::abs(at.loads[i]) / lengths[i]);
+    }
   }
+  scales.gap_noise = gap_rounding * size;
   for (const Constraint& contact : contacts) {
     velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));
     velocity = std::max(velocity, std::abs(contact.surface_velocity[1]));

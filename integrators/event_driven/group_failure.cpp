@@ -17,7 +17,7 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
   std::string message = "event-driven at t = " + to_text(clock_->now) + " s: " + what;
   const Assembly& assembly = *model_->assembly;
   if (parts.empty()) {
-    parts.push_back(assembly.system().name(assembly.layout()->id(model_->ranges().bodies.begin)));
+    parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();
   } else {
     message += ":";
@@ -37,14 +37,18 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
 
 void GroupFailure::demand_finite_loads(const MotionSample& at) const {
   const Assembly& assembly = *model_->assembly;
-  const ElementId cause = find_non_finite(assembly, model_->index, at.view(), at.evaluation);
+  ElementId cause;
+  for (const auto& part : model_->parts()) {
+    cause = find_non_finite(assembly, part.component, at.view(), at.evaluation);
+    if (cause.valid()) break;
+  }
   if (!cause.valid()) return;
   const System& system = assembly.system();
   std::vector<std::string> parts{system.name(cause)};
   const auto place = system.force_kinds().place(cause.serial);
   std::vector<BodyId> ends;
   system.force_kinds().entries()[place.entry].kind->ends(place.slot, ends);
-  if (ends.empty()) ends.push_back(assembly.layout()->id(model_->ranges().bodies.begin));
+  if (ends.empty()) ends.push_back(model_->first_body());
   for (const BodyId body : ends) {
     if (body != ground) parts.push_back(system.name(body));
   }

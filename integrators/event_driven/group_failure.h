@@ -6,7 +6,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/errors.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/component_model.h>
+#include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
 #include <string>
@@ -24,7 +24,7 @@ struct GroupClock {
 class CAROM_API GroupFailure {
 public:
   /// Both must outlive it.
-  GroupFailure(const ComponentModel& model, const GroupClock& clock) : model_(&model), clock_(&clock) {}
+  GroupFailure(const GroupModel& model, const GroupClock& clock) : model_(&model), clock_(&clock) {}
 
   /// Throws a SolverError. \param parts named, the worst first; empty: a body of the group \param problem
   /// whose problem is attached, may be null
@@ -57,7 +57,7 @@ public:
   }
 
 private:
-  const ComponentModel* model_;
+  const GroupModel* model_;
   const GroupClock* clock_;
 };
 

@@ -50,29 +50,32 @@ void GroupLimits::demand_reachable(double target) const {
 }
 
 void GroupLimits::count_step(double time, const double* y, MotionSample& memory) {
-  const ComponentModel& model = motion_->model();
+  const GroupModel& model = motion_->model();
   const double limit = model.options->step_limit;
   if (!steps_.exceeds(limit, time)) return;
   const std::string what = "more than " + to_text(limit) + " steps of the integrator per second (step_limit)";
   const System& system = model.assembly->system();
   motion_->sample(time, y, Forces::all, memory);
-  std::vector<std::string> singular = nearly_singular(motion_->joints().rows(), system);
-  if (!singular.empty())
-    failure_->fail(what + "; near a singular position of the joints", std::move(singular));
-  const CouplingRating rating =
-      rate_couplings(*model.assembly, model.index, memory.view(), memory.evaluation, 1.0 / limit);
-  if (!rating.worst.valid()) failure_->fail(what, {});
-  failure_->fail(what + ", stiffest is", {system.name(rating.worst)});
+  for (const GroupJoints::Part& part : motion_->joints().rows().parts()) {
+    std::vector<std::string> singular = nearly_singular(*part.joints, system);
+    if (!singular.empty())
+      failure_->fail(what + "; near a singular position of the joints", std::move(singular));
+  }
+  for (const auto& part : model.parts()) {
+    const CouplingRating rating =
+        rate_couplings(*model.assembly, part.component, memory.view(), memory.evaluation, 1.0 / limit);
+    if (rating.worst.valid()) failure_->fail(what + ", stiffest is", {system.name(rating.worst)});
+  }
+  failure_->fail(what, {});
 }
 
 void GroupLimits::count_event(const Event& event, const MotionSample& at) {
-  const ComponentModel& model = motion_->model();
+  const GroupModel& model = motion_->model();
   if (!events_.exceeds(model.options->event_limit, event.time)) return;
   std::string what = "more than " + to_text(model.options->event_limit) + " events per second (event_limit)";
   // Where two ends have met, their line turns round by rounding, and with it the force, at one event after
   // the other.
-  const ElementId lost = find_without_direction(*model.assembly, model.index, at.view(), at.evaluation,
-                                                std::numeric_limits<double>::infinity());
+  const ElementId lost = model.find_without_direction(at, std::numeric_limits<double>::infinity());
   if (lost.valid()) what += "; " + tell_without_direction(*model.assembly, lost);
   failure_->fail(what, parts_of(event, at));
 }
@@ -82,7 +85,7 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
   const System& system = motion_->model().assembly->system();
   if (event.guard == Guard::switching_point) return {system.name(motion_->guards().element(event.which))};
   const std::vector<ActiveContact>& closed = motion_->active().list();
-  if (event.guard == Guard::slip) return {failure_->name(closed[event.which].at)};
+  if (event.guard == Guard::slip || event.guard == Guard::feature) return {failure_->name(closed[event.which].at)};
   if (event.guard == Guard::gap) {
     Constraint contact;
     motion_->contact(event.which, at, contact);

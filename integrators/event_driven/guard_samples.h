@@ -17,7 +17,9 @@ namespace carom {
 struct GuardSample {
   double time = 0.0;                       ///< [s]
   std::vector<StepPolynomial::End> slips;  ///< sliding velocities and their rates, by closed contact
-  std::vector<double> margins;             ///< of forces, by mechanism that touches
+  /// Margins of features, by closed contact; largest where there is but one feature.
+  std::vector<StepPolynomial::End> features;
+  std::vector<double> margins;             ///< of forces, by island that touches
   std::vector<GuardMotion> guards;         ///< of elements
 };
 

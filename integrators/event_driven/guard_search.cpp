@@ -31,7 +31,7 @@ bool GuardSearch::passes_at_once(const Passage& passage, const GuardMotion& star
          passage.sign * start.first <= 0.0;
 }
 
-GuardSearch::Passage GuardSearch::first(const ComponentGuards& guards, const GuardSample& start,
+GuardSearch::Passage GuardSearch::first(const GroupGuards& guards, const GuardSample& start,
                                         const GuardSample& end, GuardSamples& samples, GuardSampler& sampler,
                                         double noise, double until) const {
   // Bisections of a guard without derivatives: its samples are as many as longest_step lets them be.

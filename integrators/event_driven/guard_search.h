@@ -5,7 +5,7 @@
 /// a step.
 
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/component_guards.h>
+#include <carom/integrators/event_driven/group_guards.h>
 #include <carom/integrators/event_driven/guard_samples.h>
 
 #include <cstddef>
@@ -36,7 +36,7 @@ public:
   [[nodiscard]] bool passes_at_once(const Passage& passage, const GuardMotion& start, double rounding) const;
   /// The first passage in a step. \param start, end samples at its ends \param until of no interest
   /// behind
-  [[nodiscard]] Passage first(const ComponentGuards& guards, const GuardSample& start, const GuardSample& end,
+  [[nodiscard]] Passage first(const GroupGuards& guards, const GuardSample& start, const GuardSample& end,
                               GuardSamples& samples, GuardSampler& sampler, double noise, double until) const;
 
 private:

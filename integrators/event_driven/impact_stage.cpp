@@ -1,7 +1,6 @@
 // Problem: impacts at one instant, where they come from and where they lead to.
 
 #include <carom/contact/impact_restitution.h>
-#include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 
@@ -22,10 +21,11 @@ bool ImpactStage::resolve(EventInstant& at) {
   bool struck = false;
   for (int round = 0; round < most_impacts_at_once; ++round) {
     bool any = false;
-    for (const Range pairs : at.motion.model().mechanisms) {
+    for (std::size_t island = 0; island < at.islands.size(); ++island) {
+      const std::span<const Index> pairs = at.islands.pairs(island);
       const double fastest = fastest_approach(pairs, at);
       if (!(fastest > at.scales.speed_noise)) continue;
-      resolve_mechanism(pairs, fastest, at);
+      resolve_island(pairs, fastest, at);
       any = struck = true;
     }
     if (!any) return struck;
@@ -40,15 +40,15 @@ bool ImpactStage::resolve(EventInstant& at) {
                  std::move(names));
 }
 
-double ImpactStage::fastest_approach(Range pairs, const EventInstant& at) const {
+double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventInstant& at) const {
   double fastest = 0.0;
-  for (Index i = pairs.begin; i < pairs.end; ++i) {
+  for (const Index i : pairs) {
     if (at.touches(i)) fastest = std::max(fastest, at.approach(i));
   }
   return fastest;
 }
 
-void ImpactStage::resolve_mechanism(Range pairs, double fastest, EventInstant& at) {
+void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, EventInstant& at) {
   list_touching(pairs, at);
   std::vector<Constraint>& touching = memory_->touching;
   share_impact_restitution(touching, at.velocities(), 0.0);
@@ -68,10 +68,10 @@ void ImpactStage::resolve_mechanism(Range pairs, double fastest, EventInstant& a
 }
 
 /// Lists the contacts of an impact, with the friction of their present sliding.
-void ImpactStage::list_touching(Range pairs, const EventInstant& at) {
+void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Constraint>& touching = memory_->touching;
   touching.clear();
-  for (Index i = pairs.begin; i < pairs.end; ++i) {
+  for (const Index i : pairs) {
     if (!at.touches(i)) continue;
     // Friction in a joint that is bound by a constant has no impulse.
     if (at.contacts[i].has_dry_friction() && !at.motion.joints().depends_on_joint_force(at.contacts[i]))
@@ -89,10 +89,8 @@ void ImpactStage::list_touching(Range pairs, const EventInstant& at) {
 void ImpactStage::fail_unsolved(const EventInstant& at) const {
   const IslandProblem& problem = memory_->problem;
   const std::vector<Constraint>& touching = memory_->touching;
-  const ComponentModel& model = at.motion.model();
   std::string what = "the contact problem of an impact is not solved (" +
-                     std::string(to_string(problem.report().outcome)) +
-                     driven_by(*model.assembly, model.index) + ")";
+                     std::string(to_string(problem.report().outcome)) + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
   failure_->fail(what, failure_->names(touching), &problem);
 }
@@ -108,13 +106,12 @@ std::string ImpactStage::fastest_of(const std::vector<Constraint>& contacts, con
 }
 
 void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInstant& at) {
-  const ComponentModel& model = at.motion.model();
-  const Index body = problem.constraints().front().body();
+  const GroupModel& model = at.motion.model();
   SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
-  impact.energy_before = model.kinetic_energy_of_mechanism(body, at.velocities());
+  impact.energy_before = model.kinetic_energy_of(problem.constraints(), at.velocities());
   problem.map().add_velocities(at.velocities());
   at.take_velocities();
-  impact.energy_after = model.kinetic_energy_of_mechanism(body, at.velocities());
+  impact.energy_after = model.kinetic_energy_of(problem.constraints(), at.velocities());
   // Before the impacts of this instant are remembered.
   if (kind == EventKind::accumulation) impact.accumulation_time = accumulation_.end(at.time);
   const double gain = at.balance.book(impact, *model.assembly);
@@ -131,9 +128,9 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
 }
 
 /// Adds contacts that are about to close too, and takes the restitution out of all.
-void ImpactStage::add_captured(Range pairs, const EventInstant& at) {
+void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant& at) {
   const double limit = options_->capture_speed * options_->capture_speed;
-  for (Index i = pairs.begin; i < pairs.end; ++i) {
+  for (const Index i : pairs) {
     if (at.touches(i)) continue;
     const Constraint& contact = at.contacts[i];
     // Almost without loads what is slow is far off all the same.

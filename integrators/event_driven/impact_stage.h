@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Impacts at one instant, mechanism by mechanism, until nothing that touches approaches; those slower than
+/// Impacts at one instant, island by island, until nothing that touches approaches; those slower than
 /// the capture speed close their contacts (accumulations).
 
 #include <carom/contact/active_set.h>
@@ -13,6 +13,7 @@
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/group_failure.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,14 +39,14 @@ public:
   /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
   /// loads and accelerations those before.
   [[nodiscard]] bool resolve(EventInstant& at);
-  /// Applies the answer of a problem of contacts of one mechanism, books and records it.
+  /// Applies the answer of a problem of contacts of one island, books and records it.
   void apply(EventKind kind, const IslandProblem& problem, EventInstant& at);
 
 private:
-  [[nodiscard]] double fastest_approach(Range pairs, const EventInstant& at) const;
-  void resolve_mechanism(Range pairs, double fastest, EventInstant& at);
-  void list_touching(Range pairs, const EventInstant& at);
-  void add_captured(Range pairs, const EventInstant& at);
+  [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
+  void resolve_island(std::span<const Index> pairs, double fastest, EventInstant& at);
+  void list_touching(std::span<const Index> pairs, const EventInstant& at);
+  void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(EventInstant& at);
   bool close_captured(bool stopping, double slow, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;

@@ -1,7 +1,6 @@
-// Problem: what joints add to the motion of a component: their reactions, friction in them, jumps of what
+// Problem: what joints add to the motion of a clock group: their reactions, friction in them, jumps of what
 // drives them.
 
-#include <carom/core/dynamics/body_response.h>
 #include <carom/integrators/event_driven/joint_reactions.h>
 
 #include <algorithm>
@@ -10,11 +9,30 @@
 
 namespace carom {
 
-JointReactions::JointReactions(const Assembly& assembly, Index component, MotionMemory& memory)
-    : assembly_(&assembly), component_(component), memory_(&memory), joints_(assembly, component) {
-  if (joints_.empty()) return;
-  joints_.factors().reveal_rank(true);
-  bounds_ = FrictionBounds(assembly, component, joints_);
+namespace {
+
+void copy(const std::vector<Range>& ranges, const std::vector<double>& from, std::vector<double>& to) {
+  for (const Range v : ranges) std::copy(from.begin() + v.begin, from.begin() + v.end, to.begin() + v.begin);
+}
+
+}  // namespace
+
+JointReactions::JointReactions(const Assembly& assembly, std::span<const Index> components,
+                               MotionMemory& memory)
+    : assembly_(&assembly),
+      components_(components.begin(), components.end()),
+      memory_(&memory),
+      joints_(assembly, components) {
+  // Neighbours are one range.
+  for (const Index component : components) {
+    const Range v = assembly.components()[component].v;
+    if (!velocities_.empty() && velocities_.back().end == v.begin) {
+      velocities_.back().end = v.end;
+    } else {
+      velocities_.push_back(v);
+    }
+  }
+  for (const GroupJoints::Part& part : joints_.parts()) bounds_.add(assembly, part.component, *part.joints);
 }
 
 void JointReactions::react(MotionSample& at) {
@@ -28,14 +46,15 @@ std::span<const double> JointReactions::multipliers(const MotionSample& at,
                                                     std::span<const ActiveContact> contacts) {
   assert(is_at(at));
   std::vector<double>& answer = memory_->of_velocity;
-  const Range v = assembly_->components()[component_].v;
-  std::copy(at.loads.begin() + v.begin, at.loads.begin() + v.end, answer.begin() + v.begin);
+  copy(velocities_, at.loads, answer);
   for (const ActiveContact& contact : contacts) {
     contact.at.add_force(contact.normal, contact.tangential, answer.data());
   }
-  assembly_->for_bodies(component_, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-    kind.apply_inverse_mass(slots, answer.data() + first, answer.data() + first);
-  });
+  for (const GroupJoints::Part& part : joints_.parts()) {
+    assembly_->for_bodies(part.component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+      kind.apply_inverse_mass(slots, answer.data() + first, answer.data() + first);
+    });
+  }
   memory_->multipliers.resize(joints_.size());
   joints_.project(JointLevel::acceleration, answer.data(), memory_->multipliers.data());
   return memory_->multipliers;
@@ -43,12 +62,11 @@ std::span<const double> JointReactions::multipliers(const MotionSample& at,
 
 bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
   if (bounds_.empty()) return active.add_reactions(*assembly_, at.acceleration.data());
-  const Range v = assembly_->components()[component_].v;
   std::vector<double>& free = memory_->free;
-  std::copy(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end, free.begin() + v.begin);
+  copy(velocities_, at.acceleration, free);
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
-    std::copy(free.begin() + v.begin, free.begin() + v.end, at.acceleration.begin() + v.begin);
+    copy(velocities_, free, at.acceleration);
     double change = 0.0;
     iteration.begin();
     if (!update_bounds_once(active, at, iteration, change)) return false;
@@ -82,12 +100,11 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
                                             std::vector<ForceMargin>& margins, BoundIteration& iteration,
                                             double& change) {
   assert(is_at(at));
-  const Range v = assembly_->components()[component_].v;
   std::vector<double>& free = memory_->free;
-  std::copy(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end, free.begin() + v.begin);
+  copy(velocities_, at.acceleration, free);
   active.list().swap(contacts);
   const bool found = update_bounds_once(active, at, iteration, change);
-  std::copy(free.begin() + v.begin, free.begin() + v.end, at.acceleration.begin() + v.begin);
+  copy(velocities_, free, at.acceleration);
   active.margins(margins);
   active.list().swap(contacts);
   return found;
@@ -95,18 +112,17 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
 
 /// Loads without reactions: forces small against them are rounding.
 double JointReactions::largest_load(const MotionSample& at) const {
-  const Range v = assembly_->components()[component_].v;
   double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) largest = std::max(largest, std::abs(at.loads[i]));
+  for (const Range v : velocities_) {
+    for (Index i = v.begin; i < v.end; ++i) largest = std::max(largest, std::abs(at.loads[i]));
+  }
   return largest;
 }
 
 void JointReactions::build(IslandProblem& problem, std::span<const Constraint> contacts,
                            const double* velocity_before) {
   problem.build(contacts, velocity_before);
-  MassResponse masses(*assembly_);
-  JointResponse with_joints(joints_);
-  problem.respond(joints_.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
+  problem.respond(joints_.response());
 }
 
 bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contacts, const MotionSample& at,
@@ -125,8 +141,7 @@ bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contact
 
 std::span<const double> JointReactions::impulses(const IslandProblem& problem) {
   std::vector<double>& change = memory_->of_velocity;
-  const Range v = assembly_->components()[component_].v;
-  std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
+  for (const Range v : velocities_) std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
   problem.map().add_loads(1.0, change.data());
   joints_.apply_inverse_mass(change.data());
   memory_->multipliers.resize(joints_.size());
@@ -138,23 +153,29 @@ std::span<const double> JointReactions::follow_jump(const MotionSample& at, std:
                                                     double noise, double& work) {
   assert(is_at(at));
   if (!joints_.depends_on_time()) return {};
-  const Range v = assembly_->components()[component_].v;
   std::vector<double>&change = memory_->of_velocity, &impulse = memory_->impulse;
-  std::copy(at.state.v.begin() + v.begin, at.state.v.begin() + v.end, change.begin() + v.begin);
+  copy(velocities_, at.state.v, change);
   memory_->multipliers.resize(joints_.size());
   joints_.project(JointLevel::velocity, change.data(), memory_->multipliers.data());
   double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    change[i] -= at.state.v[i];
-    largest = std::max(largest, std::abs(change[i]) * memory_->lengths[i]);
+  for (const Range v : velocities_) {
+    for (Index i = v.begin; i < v.end; ++i) {
+      change[i] -= at.state.v[i];
+      largest = std::max(largest, std::abs(change[i]) * memory_->lengths[i]);
+    }
   }
   if (!(largest > noise)) return {};
-  assembly_->for_bodies(component_, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-    kind.apply_mass(slots, change.data() + first, impulse.data() + first);
-  });
-  for (Index i = v.begin; i < v.end; ++i) {
-    work += (at.state.v[i] + 0.5 * change[i]) * impulse[i];
-    velocities[i - v.begin] += change[i];
+  std::size_t place = 0;
+  for (const Index component : components_) {
+    assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+      kind.apply_mass(slots, change.data() + first, impulse.data() + first);
+    });
+  }
+  for (const Range v : velocities_) {
+    for (Index i = v.begin; i < v.end; ++i, ++place) {
+      work += (at.state.v[i] + 0.5 * change[i]) * impulse[i];
+      velocities[place] += change[i];
+    }
   }
   return memory_->multipliers;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Reactions of the joints of one component, to loads and to impulses, and friction in joints that they
+/// Reactions of the joints of one clock group, to loads and to impulses, and friction in joints that they
 /// bound.
 
 #include <carom/contact/active_set.h>
@@ -9,9 +9,9 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/bound_iteration.h>
+#include <carom/integrators/event_driven/group_joints.h>
 #include <carom/integrators/event_driven/motion_memory.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 
@@ -20,18 +20,18 @@
 
 namespace carom {
 
-/// The joints of one component. A sample given must be that of the last react(): the rows belong to it.
+/// The joints of one group. A sample given must be that of the last react(): the rows belong to it.
 /// Multipliers handed out are valid until the next call.
 class CAROM_API JointReactions {
 public:
-  /// \param assembly, memory must outlive it
-  JointReactions(const Assembly& assembly, Index component, MotionMemory& memory);
+  /// \param assembly, memory must outlive it \param components of the group, ascending
+  JointReactions(const Assembly& assembly, std::span<const Index> components, MotionMemory& memory);
   JointReactions(const JointReactions&) = delete;
   JointReactions& operator=(const JointReactions&) = delete;
 
   /// The rows.
-  [[nodiscard]] JointConstraints& rows() { return joints_; }
-  [[nodiscard]] const JointConstraints& rows() const { return joints_; }
+  [[nodiscard]] GroupJoints& rows() { return joints_; }
+  [[nodiscard]] const GroupJoints& rows() const { return joints_; }
   /// Bounds of friction that follow from forces.
   [[nodiscard]] FrictionBounds& friction_bounds() { return bounds_; }
   [[nodiscard]] const FrictionBounds& friction_bounds() const { return bounds_; }
@@ -67,7 +67,7 @@ public:
 
   /// Where a law of time of joints jumps in its rate: the impulses that make joints follow, contacts aside,
   /// if a velocity is off by more than `noise`; empty otherwise. Adds the change to the velocities of the
-  /// component and the work of the impulses [J].
+  /// group and the work of the impulses [J].
   [[nodiscard]] std::span<const double> follow_jump(const MotionSample& at, std::span<double> velocities,
                                                     double noise, double& work);
 
@@ -76,9 +76,10 @@ private:
   [[nodiscard]] double largest_load(const MotionSample& at) const;
 
   const Assembly* assembly_;
-  Index component_;
+  std::vector<Index> components_;
+  std::vector<Range> velocities_;  // of these
   MotionMemory* memory_;
-  JointConstraints joints_;
+  GroupJoints joints_;
   FrictionBounds bounds_;
   const MotionSample* sample_ = nullptr;  // that the rows were brought to last
 };

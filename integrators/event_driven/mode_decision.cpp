@@ -1,4 +1,4 @@
-// Problem: modes of the contacts of a mechanism from its accelerations.
+// Problem: modes of the contacts of an island from its accelerations.
 
 #include <carom/integrators/event_driven/mode_decision.h>
 
@@ -42,11 +42,12 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
   return decision;
 }
 
-/// Accelerations without contact, of the component.
+/// Accelerations without contact, of the group.
 void ModeDecision::take_accelerations(const SmoothMotion& motion, const MotionSample& now) {
-  const Range v = motion.model().ranges().v;
-  std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
-            acceleration_.begin() + v.begin);
+  motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
+    std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
+              acceleration_.begin() + v.begin);
+  });
 }
 
 Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Which contacts of a mechanism stay closed, which of these stick? Decided on the level of accelerations
+/// Which contacts of an island stay closed, which of these stick? Decided on the level of accelerations
 /// (docs/method.md, section 7): contacts that touch without speed get forces by the law of contact with e =
 /// 0, written for accelerations; one that slips already has its friction against the motion. A problem
 /// without answer, or with several, is Painleve's: the contact and the quantity that cause it are named.
@@ -44,7 +44,7 @@ enum class Decision : std::uint8_t {
   failed       ///< no solver found an answer
 };
 
-/// Decides for the contacts of one mechanism at a time. Keeps memory only.
+/// Decides for the contacts of one island at a time. Keeps memory only.
 class CAROM_API ModeDecision {
 public:
   /// \param now sample without contacts that the motion made last; its accelerations are put back

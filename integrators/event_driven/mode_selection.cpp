@@ -45,12 +45,13 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
 void ModeSelection::select(EventInstant& at) {
   constexpr int most_rounds = 100;  // impacts without collision change the candidates
   at.motion.active().list().clear();
-  for (const Range pairs : at.motion.model().mechanisms) {
+  for (std::size_t island = 0; island < at.islands.size(); ++island) {
+    const std::span<const Index> pairs = at.islands.pairs(island);
     int rounds = 0;
-    while (!select_mechanism(pairs, at)) {
+    while (!select_island(pairs, at)) {
       if (++rounds < most_rounds) continue;
       failure_->fail("impacts without collision do not come to an end",
-                     {failure_->name(at.contacts[pairs.begin])});
+                     {failure_->name(at.contacts[pairs.front()])});
     }
   }
   record_changes(at);
@@ -58,7 +59,7 @@ void ModeSelection::select(EventInstant& at) {
 }
 
 /// False if an impact without collision happened: then everything is to be decided anew.
-bool ModeSelection::select_mechanism(Range pairs, EventInstant& at) {
+bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at) {
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
   const Decision decision = decide_candidates(pairs, at);
@@ -77,12 +78,12 @@ bool ModeSelection::select_mechanism(Range pairs, EventInstant& at) {
   return true;
 }
 
-void ModeSelection::collect_candidates(Range pairs, const EventInstant& at) {
+void ModeSelection::collect_candidates(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Candidate>& candidates = memory_->candidates;
   candidates.clear();
   const double speed_noise = at.scales.speed_noise;
   const double* const velocity = at.velocities();
-  for (Index i = pairs.begin; i < pairs.end; ++i) {
+  for (const Index i : pairs) {
     const Constraint& contact = at.contacts[i];
     if (!at.touches(i) || contact.normal_velocity(velocity) > speed_noise) continue;
     Candidate& candidate = candidates.emplace_back();
@@ -120,7 +121,7 @@ Decision ModeSelection::decide(EventInstant& at) {
 /// takes to be behind. Where that decides nothing, and forces are neither found nor excluded, there are none
 /// to keep what slides: closed contacts in line stand there within rounding of a singular position, on one
 /// side of which there are none and on the other ones without bound.
-Decision ModeSelection::decide_candidates(Range pairs, EventInstant& at) {
+Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventInstant& at) {
   const bool unbounded = has_unbounded_force();
   if (!unbounded) {
     const Decision decision = decide(at);
@@ -143,7 +144,7 @@ Decision ModeSelection::decide_candidates(Range pairs, EventInstant& at) {
 }
 
 /// `impossible` if friction that is larger by little leaves no forces; `failed` otherwise.
-Decision ModeSelection::decide_by_excess(Range pairs, EventInstant& at) {
+Decision ModeSelection::decide_by_excess(std::span<const Index> pairs, EventInstant& at) {
   constexpr double least_excess = 1e-12, growth = 4.0;
   for (double excess = least_excess; excess * UnboundedForces::growth <= 1.0; excess *= growth) {
     collect_candidates(pairs, at);
@@ -196,7 +197,7 @@ void ModeSelection::record_choice(EventInstant& at) const {
 /// Records which contacts changed their mode.
 void ModeSelection::record_changes(EventInstant& at) const {
   const double* const velocity = at.velocities();
-  const ComponentModel& model = at.motion.model();
+  const GroupModel& model = at.motion.model();
   const std::vector<ActiveContact>& active = at.motion.active().list();
   const auto change = [&](EventKind kind, const Constraint& contact, ContactMode mode) {
     EventRecord& event = at.balance.record(kind, at.time, contact, *model.assembly);
@@ -204,7 +205,7 @@ void ModeSelection::record_changes(EventInstant& at) const {
       event.velocity_before[static_cast<std::size_t>(row)] =
           event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
     }
-    event.energy_before = event.energy_after = model.kinetic_energy_of_mechanism(contact.body(), velocity);
+    event.energy_before = event.energy_after = model.kinetic_energy_of({&contact, 1}, velocity);
     event.mode = mode;
   };
   std::vector<char>& is_active = memory_->is_active;

@@ -14,6 +14,7 @@
 #include <carom/integrators/event_driven/mode_decision.h>
 #include <carom/integrators/event_driven/unbounded_forces.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ namespace carom {
 struct ModeMemory {
   ModeDecision decision;
   ImpactWithoutCollision impact;
-  std::vector<Candidate> candidates;  ///< of one mechanism
+  std::vector<Candidate> candidates;  ///< of one island
   std::vector<ForceMargin> margins;
   std::vector<char> is_active;  ///< by pair, after the selection
 };
@@ -54,11 +55,11 @@ private:
     double noise;  // of it
   };
 
-  void collect_candidates(Range pairs, const EventInstant& at);
-  [[nodiscard]] bool select_mechanism(Range pairs, EventInstant& at);
+  void collect_candidates(std::span<const Index> pairs, const EventInstant& at);
+  [[nodiscard]] bool select_island(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] Decision decide(EventInstant& at);
-  [[nodiscard]] Decision decide_by_excess(Range pairs, EventInstant& at);
-  [[nodiscard]] Decision decide_candidates(Range pairs, EventInstant& at);
+  [[nodiscard]] Decision decide_by_excess(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] Decision decide_candidates(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] bool has_unbounded_force() const;
   [[nodiscard]] std::vector<std::string> names_of_candidates() const;
   void close_candidates(ActiveSet& active) const;

@@ -1,4 +1,4 @@
-// Problem: how a component's rates change with its unknowns, for the implicit method. The equations of motion
+// Problem: how a group's rates change with its unknowns, for the implicit method. The equations of motion
 //
 //     M a = f + G^T l + D p,   G a + drift = 0,   N a + drift = 0
 //
@@ -52,47 +52,49 @@ BodySlot body_of(const Assembly& assembly, const Component& component, Index v) 
 
 }  // namespace
 
-MotionJacobian::MotionJacobian(const ComponentModel& model, JointReactions& reactions, ActiveSet& active,
+MotionJacobian::MotionJacobian(const GroupModel& model, JointReactions& reactions, ActiveSet& active,
                                MotionMemory& memory)
     : model_(&model), reactions_(&reactions), active_(&active), memory_(&memory) {}
 
 void MotionJacobian::append(MotionSample& sample, std::vector<RateDerivative>& out) {
   const Assembly& assembly = *model_->assembly;
-  const Range v = model_->ranges().v;
   // Masses are diagonal in the velocities (JointConstraints).
   std::vector<double>&ones = memory_->of_position, &masses = memory_->of_velocity;
-  std::fill(ones.begin() + v.begin, ones.begin() + v.end, 1.0);
-  assembly.for_bodies(model_->index, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-    kind.apply_mass(slots, ones.data() + first, masses.data() + first);
-  });
-  for (Index i = v.begin; i < v.end; ++i) {
-    out.push_back({.row = unknown(i), .column = unknown(i), .of_rate = masses[i]});
-  }
   derivatives_.clear();
-  append_derivatives({assembly, sample.view(), sample.evaluation, model_->index}, derivatives_);
+  for (const auto& part : model_->parts()) {
+    const Range v = part.ranges.v;
+    std::fill(ones.begin() + v.begin, ones.begin() + v.end, 1.0);
+    assembly.for_bodies(part.component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+      kind.apply_mass(slots, ones.data() + first, masses.data() + first);
+    });
+    for (Index i = v.begin; i < v.end; ++i) {
+      out.push_back({.row = unknown(i), .column = unknown(i), .of_rate = masses[i]});
+    }
+    append_derivatives({assembly, sample.view(), sample.evaluation, part.component}, derivatives_);
+  }
   for (const LoadDerivative& entry : derivatives_) {
     out.push_back({unknown(entry.row), unknown(entry.column), 0.0, entry.by_velocity, entry.by_position});
   }
-  differentiate_internals(sample, out);
+  for (const auto& part : model_->parts()) {
+    if (!part.ranges.z.empty()) differentiate_internals(sample, part, out);
+  }
   auto multiplier = static_cast<Index>(model_->unknowns.size());
   differentiate_joints(sample, out, multiplier);
   differentiate_contacts(sample, out, multiplier);
 }
 
 /// By central differences: elements tell no derivatives of what goes on inside.
-void MotionJacobian::differentiate_internals(const MotionSample& sample, std::vector<RateDerivative>& out) {
-  if (model_->unknowns.z_size() == 0) return;
+void MotionJacobian::differentiate_internals(const MotionSample& sample, const MotionUnknowns::Part& part,
+                                             std::vector<RateDerivative>& out) {
   const Assembly& assembly = *model_->assembly;
-  const auto z = [&](Index at) {
-    return static_cast<Index>(model_->unknowns.z_begin()) + (at - model_->ranges().z.begin);
-  };
+  const auto z = [&](Index at) { return static_cast<Index>(part.z) + (at - part.ranges.z.begin); };
   const auto v = [this](Index at) { return unknown(at); };
-  DifferenceDerivatives differences({assembly, sample.view(), sample.evaluation, model_->index});
+  DifferenceDerivatives differences({assembly, sample.view(), sample.evaluation, part.component});
   InternalDerivatives found;
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& force = *assembly.force_kinds()[kind];
     if (force.internal_size() == 0) continue;
-    const Range elements = assembly.elements(model_->index, kind);
+    const Range elements = assembly.elements(part.component, kind);
     for (Index element = elements.begin; element < elements.end; ++element) {
       const Index first = assembly.layout()->internal(assembly.element_id(kind, element)).first;
       differences.append_internal(force, element, {first, first + force.internal_size()}, found);
@@ -112,12 +114,20 @@ void MotionJacobian::differentiate_internals(const MotionSample& sample, std::ve
 
 void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vector<RateDerivative>& out,
                                           Index& multiplier) {
-  const JointConstraints& joints = reactions_->rows();
+  const GroupJoints& joints = reactions_->rows();
   if (joints.empty()) return;
   const std::span<const double> forces = reactions_->multipliers(sample, active_->list());
   joint_forces_.assign(forces.begin(), forces.end());
-  std::array<JointRowDerivative, std::size_t{JointKind::most_rows}> changes;
   row_multipliers_.assign(joints.size(), none);
+  for (const GroupJoints::Part& part : joints.parts()) {
+    differentiate_joints(sample, *part.joints, part.first_row, out, multiplier);
+  }
+}
+
+void MotionJacobian::differentiate_joints(const MotionSample& sample, const JointConstraints& joints,
+                                          std::size_t first_row, std::vector<RateDerivative>& out,
+                                          Index& multiplier) {
+  std::array<JointRowDerivative, std::size_t{JointKind::most_rows}> changes;
   constexpr auto most = static_cast<std::size_t>(JointRowDerivative::most);
   for (std::size_t joint = 0; joint < joints.pattern().size(); ++joint) {
     joints.pattern().derivatives(sample.joint_view(), joint, changes.data());
@@ -141,15 +151,13 @@ void MotionJacobian::differentiate_joints(const MotionSample& sample, std::vecto
       for (std::size_t j = 0; j < count; ++j) {
         double bent = change.drift_by_position[j];
         for (std::size_t i = 0; i < count; ++i) {
-          const Index v =
-              model_->ranges().v.begin + (columns[i] - static_cast<Index>(model_->unknowns.q_size()));
-          bent += change.jacobian[i][j] * sample.acceleration[v];
-          stiffness[i][j] += joint_forces_[r] * change.jacobian[i][j];
+          bent += change.jacobian[i][j] * sample.acceleration[model_->unknowns.velocity_at(columns[i])];
+          stiffness[i][j] += joint_forces_[first_row + r] * change.jacobian[i][j];
         }
         out.push_back({multiplier, columns[j], jacobian[j], -change.drift_by_velocity[j], -bent});
         out.push_back({.row = columns[j], .column = multiplier, .of_state = jacobian[j]});
       }
-      row_multipliers_[r] = multiplier++;
+      row_multipliers_[first_row + r] = multiplier++;
     }
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
@@ -188,9 +196,9 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
     for (std::size_t i = 0; i < 2; ++i) rows[i] = (rows[i] - rows_behind[i]) / (2.0 * step);
   };
   const Assembly& assembly = *model_->assembly;
-  const Component& all = model_->ranges();
   for (std::size_t c = 0; c < change.count; ++c) {
     const Index v = change.columns[c];
+    const Component& all = model_->unknowns.part_of(v).ranges;
     const BodySlot body = body_of(assembly, all, v);
     double& position = sample.state.q[all.q.begin + (v - all.v.begin)];
     double& velocity = sample.state.v[v];

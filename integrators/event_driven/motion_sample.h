@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// One state (t, y) of a component, evaluated; stages of an event and the search for events read it.
+/// One state (t, y) of a clock group, evaluated; stages of an event and the search for events read it.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
@@ -18,11 +18,11 @@ namespace carom {
 /// Forces that accelerations follow from; reactions of joints are among them always.
 enum class Forces : std::uint8_t { without_contact, all };
 
-/// One state of a component, with positions, loads and accelerations there. Arrays are over the whole model;
-/// those numbers hold that are of the component. SmoothMotion::sample() fills it. The rows of joints and the
+/// One state of a group, with positions, loads and accelerations there. Arrays are over the whole model;
+/// those numbers hold that are of the group. SmoothMotion::sample() fills it. The rows of joints and the
 /// forces of closed contacts of a motion belong to the sample that it made last.
 struct CAROM_API MotionSample {
-  /// Memory for any component of a model.
+  /// Memory for any group of a model.
   explicit MotionSample(const Assembly& assembly);
 
   State state;                                ///< time and unknowns

@@ -1,4 +1,4 @@
-// Problem: unknowns of a component between the state of the model and the numbers that a flow integrates.
+// Problem: unknowns of a clock group between the state of the model and the numbers that a flow integrates.
 
 #include <carom/integrators/event_driven/motion_unknowns.h>
 
@@ -6,26 +6,57 @@
 
 namespace carom {
 
-MotionUnknowns::MotionUnknowns(const Component& component, Index works)
-    : component_(&component),
-      works_(works),
-      q_size_(component.q.size()),
-      v_size_(component.v.size()),
-      z_size_(component.z.size()),
-      size_(q_size_ + v_size_ + z_size_ + works) {}
+MotionUnknowns::MotionUnknowns(const Assembly& assembly, std::span<const Index> components, Index works)
+    : works_(works) {
+  for (const Index component : components) {
+    Part& part = parts_.emplace_back();
+    part.component = component;
+    part.ranges = assembly.components()[component];
+    part.q = q_size_;
+    part.v = v_size_;
+    part.z = z_size_;
+    q_size_ += part.ranges.q.size();
+    v_size_ += part.ranges.v.size();
+    z_size_ += part.ranges.z.size();
+  }
+  for (Part& part : parts_) {
+    part.v += q_size_;
+    part.z += q_size_ + v_size_;
+  }
+  size_ = q_size_ + v_size_ + z_size_ + works_;
+}
+
+const MotionUnknowns::Part& MotionUnknowns::part_of(Index v) const {
+  if (parts_.size() == 1) return parts_.front();
+  const auto behind = std::upper_bound(parts_.begin(), parts_.end(), v,
+                                       [](Index at, const Part& part) { return at < part.ranges.v.begin; });
+  return *(behind - 1);
+}
+
+Index MotionUnknowns::velocity_at(std::size_t place) const {
+  const auto behind = std::upper_bound(parts_.begin(), parts_.end(), place,
+                                       [](std::size_t at, const Part& part) { return at < part.v; });
+  const Part& part = *(behind - 1);
+  return part.ranges.v.begin + static_cast<Index>(place - part.v);
+}
 
 void MotionUnknowns::gather(const State& state, std::span<double> y) const {
-  auto out = std::copy_n(state.q.begin() + component_->q.begin, q_size_, y.begin());
-  out = std::copy_n(state.v.begin() + component_->v.begin, v_size_, out);
-  out = std::copy_n(state.z.begin() + component_->z.begin, z_size_, out);
-  std::fill(out, y.end(), 0.0);
+  for (const Part& part : parts_) {
+    const Component& of = part.ranges;
+    std::copy_n(state.q.begin() + of.q.begin, of.q.size(), y.data() + part.q);
+    std::copy_n(state.v.begin() + of.v.begin, of.v.size(), y.data() + part.v);
+    std::copy_n(state.z.begin() + of.z.begin, of.z.size(), y.data() + part.z);
+  }
+  std::fill(y.begin() + static_cast<std::ptrdiff_t>(z_begin() + z_size_), y.end(), 0.0);
 }
 
 void MotionUnknowns::scatter(std::span<const double> y, State& state) const {
-  const double* from = y.data();
-  std::copy_n(from, q_size_, state.q.begin() + component_->q.begin);
-  std::copy_n(from + q_size_, v_size_, state.v.begin() + component_->v.begin);
-  std::copy_n(from + q_size_ + v_size_, z_size_, state.z.begin() + component_->z.begin);
+  for (const Part& part : parts_) {
+    const Component& of = part.ranges;
+    std::copy_n(y.data() + part.q, of.q.size(), state.q.begin() + of.q.begin);
+    std::copy_n(y.data() + part.v, of.v.size(), state.v.begin() + of.v.begin);
+    std::copy_n(y.data() + part.z, of.z.size(), state.z.begin() + of.z.begin);
+  }
 }
 
 }  // namespace carom

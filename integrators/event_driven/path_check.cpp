@@ -37,10 +37,11 @@ bool misses_loads(SearchedStep& step, double until) {
   const std::size_t count = follow(step, begin + 0.5 * length);
   DetectionMemory& memory = step.memory;
   step.motion.sample(begin + 0.5 * length, memory.y.data(), Forces::all, memory.within);
-  const double* const followed = memory.within.acceleration.data() + step.motion.model().ranges().v.begin;
+  const MotionUnknowns& unknowns = step.motion.model().unknowns;
   for (std::size_t i = 0; i < count; ++i) {
+    const double followed = memory.within.acceleration[unknowns.velocity_at(count + i)];
     // An acceleration that is missing like a parabola displaces by length^2/12.
-    const double off = std::abs(followed[i] - memory.path_acceleration[i]) * length * length / 12.0;
+    const double off = std::abs(followed - memory.path_acceleration[i]) * length * length / 12.0;
     if (!(off <= allowed_off_path(step.motion, i, memory.y[i]))) return true;
   }
   return false;

@@ -1,4 +1,4 @@
-// Problem: rates of a component's unknowns, and one state of it evaluated.
+// Problem: rates of a group's unknowns, and one state of it evaluated.
 
 #include <carom/integrators/event_driven/smooth_motion.h>
 
@@ -6,20 +6,35 @@
 
 namespace carom {
 
-SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, Index component,
+SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, const GroupComponents& group,
                            const EventDriven& options, MotionMemory& memory)
     : memory_(&memory),
-      joints_(assembly, component, memory),
-      model_(assembly, detector, component, options, joints_.rows()),
-      guards_(assembly, component),
+      joints_(assembly, group.components, memory),
+      model_(assembly, detector, group, options, joints_.rows()),
+      guards_(assembly, group.components),
       jacobian_(model_, joints_, active_, memory) {
   if (joints_.rows().empty()) return;
-  active_.bind(assembly, joints_.rows());
+  active_.bind(assembly, joints_.rows().response());
   if (!joints_.friction_bounds().empty()) active_.ask_least();  // bounds of friction follow from forces
 }
 
 void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint& out) const {
   model_.detector->contact(model_.pairs[pair], at.view(), at.evaluation, at.places, out);
+}
+
+void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, double near,
+                                   Constraint& out) const {
+  if (pair >= model_.body_pairs) {
+    const double least = model_.bounds[pair - model_.body_pairs].least_gap(at.view());
+    if (least > near) {
+      out.clear_bodies();
+      out.rows = 0;
+      out.surface_velocity = {};
+      out.gap = least;
+      return;
+    }
+  }
+  contact(pair, at, out);
 }
 
 void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSample& out) {
@@ -29,22 +44,26 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   out.state.time = time;
   model_.detector->place(time, out.places);
   const StateView state = out.view();
-  evaluate_positions(assembly, model_.index, state, out.evaluation);
+  for (const auto& part : model_.parts()) {
+    evaluate_positions(assembly, part.component, state, out.evaluation);
+  }
   double* const force = out.evaluation.force.data();
   const LoadTraits traits = model_.loads;
   Loads loads{force, force, force};
   if (traits.books_dissipative) loads.dissipative = out.dissipative.data();
   if (traits.books_external) loads.external = out.external.data();
-  evaluate_loads(assembly, model_.index, state, out.evaluation, loads);
-  const Range v = model_.ranges().v;
-  // Masses are accelerated by the sum of all causes, made where the reactions will be added.
-  for (Index i = v.begin; i < v.end; ++i) {
-    double sum = force[i];
-    if (traits.books_dissipative) sum += out.dissipative[i];
-    if (traits.books_external) sum += out.external[i];
-    out.loads[i] = sum;
+  for (const auto& part : model_.parts()) {
+    evaluate_loads(assembly, part.component, state, out.evaluation, loads);
+    const Range v = part.ranges.v;
+    // Masses are accelerated by the sum of all causes, made where the reactions will be added.
+    for (Index i = v.begin; i < v.end; ++i) {
+      double sum = force[i];
+      if (traits.books_dissipative) sum += out.dissipative[i];
+      if (traits.books_external) sum += out.external[i];
+      out.loads[i] = sum;
+    }
   }
-  assembly.for_bodies(model_.index, [&](const BodyKind& kind, Range slots, Index, Index at, Index) {
+  model_.for_bodies([&](const BodyKind& kind, Range slots, Index, Index at, const auto&) {
     kind.apply_inverse_mass(slots, out.loads.data() + at, out.acceleration.data() + at);
   });
   joints_.react(out);
@@ -59,23 +78,24 @@ void SmoothMotion::rates(double time, const double* y, double* rates) {
   sample(time, y, Forces::all, at);
   const Assembly& assembly = *model_.assembly;
   const MotionUnknowns& unknowns = model_.unknowns;
-  const Component& all = model_.ranges();
   const StateView state = at.view();
-  assembly.for_bodies(model_.index, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    kind.coordinate_rates(slots, state.q + q, state.v + v, rates + (q - all.q.begin));
+  model_.for_bodies([&](const BodyKind& kind, Range slots, Index q, Index v, const auto& part) {
+    kind.coordinate_rates(slots, state.q + q, state.v + v, rates + part.q + (q - part.ranges.q.begin));
   });
-  std::copy_n(at.acceleration.begin() + all.v.begin, unknowns.v_size(), rates + unknowns.q_size());
   double inside = 0.0;
-  if (unknowns.z_size() != 0) {
-    const EvaluationContext context{assembly, state, at.evaluation, model_.index};
+  for (const auto& part : unknowns.parts()) {
+    const Component& all = part.ranges;
+    std::copy_n(at.acceleration.begin() + all.v.begin, all.v.size(), rates + part.v);
+    if (all.z.empty()) continue;
+    const EvaluationContext context{assembly, state, at.evaluation, part.component};
     for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      const Range elements = assembly.elements(model_.index, kind);
+      const Range elements = assembly.elements(part.component, kind);
       const ForceKind& of_kind = *assembly.force_kinds()[kind];
       if (elements.empty() || of_kind.internal_size() == 0) continue;
       of_kind.internal_rates(context, elements, memory_->z_rates.data());
       inside += of_kind.internal_loss_rate(context, elements);
     }
-    std::copy_n(memory_->z_rates.begin() + all.z.begin, unknowns.z_size(), rates + unknowns.z_begin());
+    std::copy_n(memory_->z_rates.begin() + all.z.begin, all.z.size(), rates + part.z);
   }
   write_works(at, inside, rates);
 }
@@ -83,12 +103,14 @@ void SmoothMotion::rates(double time, const double* y, double* rates) {
 void SmoothMotion::write_works(const MotionSample& at, double lost_inside, double* rates) {
   const MotionUnknowns& unknowns = model_.unknowns;
   const LoadTraits traits = model_.loads;
-  const Range v = model_.ranges().v;
   const StateView state = at.view();
   double dashpot = lost_inside, external = 0.0, sliding = 0.0, in_joints = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    if (traits.books_dissipative) dashpot -= at.dissipative[i] * state.v[i];
-    if (traits.books_external) external += at.external[i] * state.v[i];
+  for (const auto& part : unknowns.parts()) {
+    const Range v = part.ranges.v;
+    for (Index i = v.begin; i < v.end; ++i) {
+      if (traits.books_dissipative) dashpot -= at.dissipative[i] * state.v[i];
+      if (traits.books_external) external += at.external[i] * state.v[i];
+    }
   }
   for (const ActiveContact& contact : active_.list()) {
     double& lost = contact.at.has_dry_friction() ? in_joints : sliding;
@@ -114,15 +136,20 @@ void SmoothMotion::jacobian(double time, const double* y, std::vector<RateDeriva
 
 void SmoothMotion::read_guards(const MotionSample& at, std::vector<GuardMotion>& out) {
   if (guards_.count() == 0) return;
-  guards_.read({*model_.assembly, at.view(), at.evaluation, model_.index}, at.acceleration.data(), out);
+  const Index first = model_.parts().front().component;
+  guards_.read({*model_.assembly, at.view(), at.evaluation, first}, at.acceleration.data(), out);
 }
 
 void SmoothMotion::read_guards(double time, const double* y, const double* acceleration, MotionSample& memory,
                                std::vector<GuardMotion>& out) {
   model_.unknowns.scatter({y, size()}, memory.state);
   memory.state.time = time;
-  evaluate_positions(*model_.assembly, model_.index, memory.view(), memory.evaluation);
-  std::copy_n(acceleration, model_.unknowns.v_size(), memory.acceleration.begin() + model_.ranges().v.begin);
+  for (const auto& part : model_.parts()) {
+    evaluate_positions(*model_.assembly, part.component, memory.view(), memory.evaluation);
+  }
+  model_.unknowns.for_velocities([&](Range v, std::size_t place) {
+    std::copy_n(acceleration + place, v.size(), memory.acceleration.begin() + v.begin);
+  });
   read_guards(memory, out);
 }
 

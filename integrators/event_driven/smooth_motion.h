@@ -1,17 +1,18 @@
 #pragma once
 
 /// \file
-/// The smooth motion of one component under fixed contact modes, as a problem for a flow:
+/// The smooth motion of one clock group under fixed contact modes, as a problem for a flow:
 ///
 ///     dq/dt = v,   M dv/dt = f + reactions of joints and closed contacts,   dz/dt by the elements,
 ///     and the works of dashpots, friction, prescribed loads and moving shapes on ground.
 
 #include <carom/contact/active_set.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/feature_margin.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/component_guards.h>
-#include <carom/integrators/event_driven/component_model.h>
+#include <carom/integrators/event_driven/group_guards.h>
+#include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/joint_reactions.h>
 #include <carom/integrators/event_driven/motion_jacobian.h>
 #include <carom/integrators/event_driven/motion_memory.h>
@@ -25,11 +26,11 @@
 
 namespace carom {
 
-/// The unknowns of one component: q, v, z, then works.
+/// The unknowns of one group: q, v, z, then works.
 class CAROM_API SmoothMotion final : public FlowProblem {
 public:
   /// All must outlive it.
-  SmoothMotion(const Assembly& assembly, const Detector& detector, Index component,
+  SmoothMotion(const Assembly& assembly, const Detector& detector, const GroupComponents& group,
                const EventDriven& options, MotionMemory& memory);
 
   [[nodiscard]] std::size_t size() const override { return model_.unknowns.size(); }
@@ -50,23 +51,29 @@ public:
   void sample(double time, const double* y, Forces forces, MotionSample& out);
   /// The contact of a pair in a sample.
   void contact(std::size_t pair, const MotionSample& at, Constraint& out) const;
-  /// Writes the guards of the component's elements in a sample, with derivatives.
+  /// Likewise; of two bodies farther from each other than `near` [m] only a lower bound of the gap, and no bodies.
+  void contact_if_near(std::size_t pair, const MotionSample& at, double near, Constraint& out) const;
+  /// Regions of the features of the outline of a pair of two bodies in a sample.
+  [[nodiscard]] FeatureRegions regions(const ContactPair& pair, const MotionSample& at) const {
+    return {*model_.assembly, model_.detector->bodies().outlines(), pair, at.view(), at.evaluation};
+  }
+  /// Writes the guards of the group's elements in a sample, with derivatives.
   void read_guards(const MotionSample& at, std::vector<GuardMotion>& out);
-  /// Writes guards at y with accelerations of the component's bodies, without loads. \param memory its
+  /// Writes guards at y with accelerations of the group's bodies, without loads. \param memory its
   /// positions and accelerations are overwritten
   void read_guards(double time, const double* y, const double* acceleration, MotionSample& memory,
                    std::vector<GuardMotion>& out);
 
-  /// Facts of the component.
-  [[nodiscard]] const ComponentModel& model() const { return model_; }
+  /// Facts of the group.
+  [[nodiscard]] const GroupModel& model() const { return model_; }
   /// Contacts that are closed.
   [[nodiscard]] ActiveSet& active() { return active_; }
   [[nodiscard]] const ActiveSet& active() const { return active_; }
-  /// Joints of the component.
+  /// Joints of the group.
   [[nodiscard]] JointReactions& joints() { return joints_; }
   [[nodiscard]] const JointReactions& joints() const { return joints_; }
-  /// Guards of the component's elements.
-  [[nodiscard]] const ComponentGuards& guards() const { return guards_; }
+  /// Guards of the group's elements.
+  [[nodiscard]] const GroupGuards& guards() const { return guards_; }
   /// True if guards can be sampled along a path of coordinates (step_path.h).
   [[nodiscard]] bool guards_follow_path() const {
     return guards_.count() != 0 && guards_.all_have_motion() && has_jacobian();
@@ -84,9 +91,9 @@ private:
 
   MotionMemory* memory_;
   JointReactions joints_;
-  ComponentModel model_;
+  GroupModel model_;
   ActiveSet active_;
-  ComponentGuards guards_;
+  GroupGuards guards_;
   MotionJacobian jacobian_;
 };
 

@@ -1,9 +1,11 @@
 // Problem: read off a state all that may end a smooth phase, with its rounding.
 
+#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -24,7 +26,7 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
   const StateView state = at.view();
   bool finite = true;
   Constraint contact;
-  for (std::size_t i = 0; i < out.gaps.size(); ++i) {
+  for (std::size_t i = 0; i < motion.model().body_pairs; ++i) {
     if (is_active[i] != 0) continue;
     motion.contact(i, at, contact);
     const Constraint::Block& body = contact.blocks[0];
@@ -35,7 +37,7 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
                    contact.normal_acceleration(at.acceleration.data())};
     finite = finite && std::isfinite(out.gaps[i].second);
   }
-  return finite;
+  return sample_body_gaps(motion, is_active, at, out) && finite;
 }
 
 }  // namespace
@@ -46,13 +48,34 @@ double StepEnds::slip_level(std::size_t contact) const {
   return std::min(0.0, start.sample.slips[contact].value);
 }
 
-double StepEnds::force_level(std::size_t mechanism) const {
-  return std::clamp(start.sample.margins[mechanism], -roundoff_growth * start.noises[mechanism], 0.0);
+double StepEnds::feature_level(std::size_t contact, double beyond) const {
+  return std::min(0.0, start.sample.features[contact].value) - beyond;
 }
 
-double StepEnds::force_noise(std::size_t mechanism) const {
-  return std::max(start.noises[mechanism], end.noises[mechanism]);
+double StepEnds::force_level(std::size_t island) const {
+  return std::clamp(start.sample.margins[island], -roundoff_growth * start.noises[island], 0.0);
 }
+
+double StepEnds::force_noise(std::size_t island) const {
+  return std::max(start.noises[island], end.noises[island]);
+}
+
+namespace {
+
+/// Margins of the features that closed contacts of two bodies are in; far of contacts with one feature.
+void read_features(const SmoothMotion& motion, const MotionSample& at, GuardSample& out) {
+  constexpr StepPolynomial::End far{std::numeric_limits<double>::max(), 0.0, 0.0};
+  const std::vector<ActiveContact>& closed = motion.active().list();
+  out.features.resize(closed.size());
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    out.features[i] = far;
+    if (closed[i].feature == none) continue;
+    const FeatureMargin margin = motion.regions(closed[i].pair, at).margin(closed[i].feature);
+    out.features[i] = {margin.value, margin.rate, 0.0};
+  }
+}
+
+}  // namespace
 
 void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector<ForceMargin>& margins,
                        GuardSample& out) {
@@ -63,6 +86,7 @@ void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector
     out.slips[i] = {sign * closed[i].at.tangential_velocity(at.state.v.data()),
                     sign * closed[i].at.tangential_acceleration(at.acceleration.data()), 0.0};
   }
+  read_features(motion, at, out);
   motion.active().margins(margins);
   out.margins.resize(margins.size());
   for (std::size_t i = 0; i < out.margins.size(); ++i) out.margins[i] = margins[i].margin;
@@ -76,10 +100,12 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
   bool finite = sample_gaps(motion, is_active, at, out) && at.has_forces;
   out.sample.time = time;
   if (motion.guards().count() != 0) {
-    const Range v = motion.model().ranges().v;
     out.path.time = time;
     out.path.y.assign(y, y + motion.size());
-    out.path.acceleration.assign(at.acceleration.begin() + v.begin, at.acceleration.begin() + v.end);
+    out.path.acceleration.resize(motion.model().unknowns.v_size());
+    motion.model().unknowns.for_velocities([&](Range v, std::size_t place) {
+      std::copy_n(at.acceleration.begin() + v.begin, v.size(), out.path.acceleration.data() + place);
+    });
   }
   read_guard_sample(motion, at, memory.margins, out.sample);
   for (const StepPolynomial::End& slip : out.sample.slips) finite = finite && std::isfinite(slip.first);

@@ -22,6 +22,10 @@ struct StepEnd {
   std::vector<StepPolynomial::End> gaps;  ///< by pair
   /// By pair: bound of the sixth derivative of the gap by turning [m/s^6].
   std::vector<double> gap_curvature_bound;
+  /// By pair of two bodies: true if the gap is known; else its value is a lower bound.
+  std::vector<char> gap_known;
+  std::vector<double> gap_speeds;         ///< by such pair: bound of the rate of the gap [m/s],
+  std::vector<double> gap_accelerations;  ///< and of what accelerations add to it [m/s^2]
   GuardSample sample;          ///< all other guards
   PathEnd path;                ///< where elements have guards
   std::vector<double> noises;  ///< rounding of the margins of forces [N]
@@ -36,10 +40,12 @@ struct CAROM_API StepEnds {
   [[nodiscard]] double gap_level(std::size_t pair) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
   [[nodiscard]] double slip_level(std::size_t contact) const;
+  /// Level of the margin of a feature [m]: a little beyond the border, where the next feature is the nearest one.
+  [[nodiscard]] double feature_level(std::size_t contact, double beyond) const;
   /// Level of the margin of a force [N].
-  [[nodiscard]] double force_level(std::size_t mechanism) const;
+  [[nodiscard]] double force_level(std::size_t island) const;
   /// Rounding of the margin of a force at either end [N].
-  [[nodiscard]] double force_noise(std::size_t mechanism) const;
+  [[nodiscard]] double force_noise(std::size_t island) const;
 };
 
 /// Memory of the detection of events, shared by clock groups.

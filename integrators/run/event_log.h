@@ -44,10 +44,11 @@ inline constexpr std::size_t event_kind_count = 11;
 /// Parts that an event is of.
 struct EventParts {
   ConstraintKey contact{};  ///< of a contact
-  BodyId body{};            ///< its body
+  BodyId body{};            ///< its body, that of `a` of the key
   ObstacleId obstacle{};    ///< what it touches; or whose law of time jumps
   ElementId element{};      ///< of a switching point, or whose law of time jumps
   JointId joint{};          ///< driver whose law of time jumps
+  BodyId other{};           ///< the other body, of a contact of two: that of `b` of the key
 };
 
 /// Answer of the contact solvers that an event follows from.
@@ -66,7 +67,7 @@ struct EventRecord : EventParts, EventSolution {
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
-  double energy_before = 0.0;               ///< kinetic energy of the body [J]
+  double energy_before = 0.0;               ///< kinetic energy of all bodies that answer [J]
   double energy_after = 0.0;                ///< likewise after
   /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration per unit of normal force while slipping
   /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].

@@ -21,7 +21,7 @@ struct OneComponent {
         detector(assembly),
         memory(assembly),
         sample(assembly),
-        motion(assembly, detector, 0, options, memory),
+        motion(assembly, detector, {{0}, {}}, options, memory),
         y(motion.size()) {
     motion.model().unknowns.gather(assembly.initial_state(), y);
   }

@@ -23,7 +23,7 @@ struct Flight {
         detector(assembly),
         memory(assembly),
         detection(assembly),
-        motion(assembly, detector, 0, options, memory),
+        motion(assembly, detector, {{0}, {}}, options, memory),
         failure(motion.model(), clock),
         events(motion, failure, unbounded, detection),
         flow(make_flow(options.method, motion, options.relative_tolerance)),

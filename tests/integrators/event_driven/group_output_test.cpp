@@ -17,7 +17,7 @@ TEST(GroupOutput, BooksWhatIsNewAndGivesProjectionsBack) {
   System system;
   system.add(Particle{.mass = 1.0});
   const Assembly assembly(system);
-  const MotionUnknowns unknowns(assembly.components().front(), work_lines - 1);
+  const MotionUnknowns unknowns(assembly, std::vector<Index>{0}, work_lines - 1);
   GroupOutput output(unknowns);
   output.start(std::vector<double>(unknowns.size(), 0.0));
   EventBalance balance;

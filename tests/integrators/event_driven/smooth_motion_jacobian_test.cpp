@@ -36,7 +36,7 @@ public:
       : assembly_(std::move(system)),
         detector_(assembly_),
         memory_(assembly_),
-        motion_(assembly_, detector_, 0, options_, memory_) {
+        motion_(assembly_, detector_, {{0}, {}}, options_, memory_) {
     EXPECT_EQ(assembly_.components().size(), 1u);
     for (const auto& [pair, mode] : closed) {
       ActiveContact contact;

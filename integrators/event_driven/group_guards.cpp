@@ -1,19 +1,23 @@
-// Problem: the guards of a component's elements, with derivatives where elements know them.
+// Problem: the guards of a group's elements, with derivatives where elements know them.
 
-#include <carom/integrators/event_driven/component_guards.h>
+#include <carom/integrators/event_driven/group_guards.h>
 
 #include <algorithm>
 
 namespace carom {
 
-ComponentGuards::ComponentGuards(const Assembly& assembly, Index component) {
+GroupGuards::GroupGuards(const Assembly& assembly, std::span<const Index> components) {
+  for (const Index component : components) add(assembly, component);
+}
+
+void GroupGuards::add(const Assembly& assembly, Index component) {
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& elements = *assembly.force_kinds()[kind];
     const Range acting = assembly.elements(component, kind);
     const Index each = elements.guard_size();
     if (acting.empty() || each == 0) continue;
     const std::size_t count = static_cast<std::size_t>(each) * acting.size();
-    runs_.push_back({kind, acting, elements_.size(), count});
+    runs_.push_back({component, kind, acting, elements_.size(), count});
     for (Index element = acting.begin; element < acting.end; ++element) {
       elements_.insert(elements_.end(), each, assembly.element_id(kind, element));
     }
@@ -25,10 +29,10 @@ ComponentGuards::ComponentGuards(const Assembly& assembly, Index component) {
   }
 }
 
-void ComponentGuards::read(const EvaluationContext& at, const double* acceleration,
-                           std::vector<GuardMotion>& out) {
+void GroupGuards::read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out) {
   out.resize(elements_.size());
   for (const Run& run : runs_) {
+    at.component = run.component;
     const ForceKind& kind = *at.assembly.force_kinds()[run.kind];
     if (kind.has_guard_motion()) {
       kind.guard_motion(at, acceleration, run.elements, out.data() + run.first);

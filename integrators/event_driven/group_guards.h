@@ -1,24 +1,25 @@
 #pragma once
 
 /// \file
-/// Guards of the elements of a component: numbers whose changes of sign are switching points of loads.
+/// Guards of the elements of a clock group: numbers whose changes of sign are switching points of loads.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/guard_motion.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace carom {
 
-/// All guards of one component, element by element.
-class CAROM_API ComponentGuards {
+/// All guards of the components of one group, element by element.
+class CAROM_API GroupGuards {
 public:
   /// None.
-  ComponentGuards() = default;
-  /// The assembly must outlive it.
-  ComponentGuards(const Assembly& assembly, Index component);
+  GroupGuards() = default;
+  /// The assembly must outlive it. \param components ascending
+  GroupGuards(const Assembly& assembly, std::span<const Index> components);
 
   /// How many there are.
   [[nodiscard]] std::size_t count() const { return elements_.size(); }
@@ -28,12 +29,15 @@ public:
   [[nodiscard]] bool has_motion(std::size_t guard) const { return has_motion_[guard] != 0; }
   /// True if they are known of all guards.
   [[nodiscard]] bool all_have_motion() const { return all_have_motion_; }
-  /// Writes all. \param acceleration of all velocity coordinates, reactions included
-  void read(const EvaluationContext& at, const double* acceleration, std::vector<GuardMotion>& out);
+  /// Writes all. \param at the evaluation, of any component \param acceleration of all velocity coordinates,
+  /// reactions included
+  void read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out);
 
 private:
+  void add(const Assembly& assembly, Index component);
+
   struct Run {
-    Index kind;
+    Index component, kind;
     Range elements;
     std::size_t first, count;
   };

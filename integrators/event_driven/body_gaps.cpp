@@ -1,0 +1,121 @@
+// Problem: many pairs of bodies, few of which come near each other in a step.
+
+#include <carom/core/numerics/fall_search.h>
+#include <carom/integrators/event_driven/body_gaps.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+/// Of two discs around their centres of mass without a contact: d = |c_a - c_b|.
+StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const MotionSample& at) {
+  const std::vector<double>&q = at.state.q, &v = at.state.v, &a = at.acceleration;
+  const double x = q[bound.a.q] - q[bound.b.q], y = q[bound.a.q + 1] - q[bound.b.q + 1];
+  const double u = v[bound.a.v] - v[bound.b.v], w = v[bound.a.v + 1] - v[bound.b.v + 1];
+  const double b = a[bound.a.v] - a[bound.b.v], c = a[bound.a.v + 1] - a[bound.b.v + 1];
+  const double distance = std::sqrt(x * x + y * y), rate = (x * u + y * w) / distance;
+  const double across = (x * w - y * u) / distance;
+  return {distance - bound.rounding, rate, (across * across + x * b + y * c) / distance};
+}
+
+/// (d^2 - rho^2)/(2 rho) by d - rho.
+StepPolynomial::End smooth_of(const StepPolynomial::End& gap, double rho) {
+  const double part = (gap.value + rho) / rho;
+  return {gap.value * (gap.value + 2.0 * rho) / (2.0 * rho), part * gap.first,
+          part * gap.second + gap.first * gap.first / rho};
+}
+
+/// The largest speed of a gap in a step.
+double fastest_in(const SearchedStep& step, std::size_t bound) {
+  const StepEnd &start = step.ends.start, &end = step.ends.end;
+  const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
+  if (step.motion.flies_freely()) return speed;
+  // Loads within the step are as at its ends, but for what steps may be wrong by.
+  constexpr double unseen = 2.0;
+  return speed + unseen * (step.end() - step.begin()) *
+                     std::max(start.gap_accelerations[bound], end.gap_accelerations[bound]);
+}
+
+/// About the first time at which a gap closes.
+double first_closing(SearchedStep& step, std::size_t pair, double fastest, double until) {
+  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
+  constexpr int deepest = 30, least_of_kinks = 2;
+  const SmoothMotion& motion = step.motion;
+  const std::size_t place = pair - motion.model().body_pairs;
+  const BodyPairBound& bound = motion.model().bounds[place];
+  const bool smooth = bound.round && bound.rounding > 0.0;
+  FallRule rule;
+  rule.raise = step.scales.gap_noise - step.ends.gap_level(pair);
+  rule.fine = fine;
+  rule.clear_falls = false;  // of several gaps the first is wanted
+  rule.measured = !(bound.central && smooth && motion.flies_freely());
+  rule.least_depth = smooth ? 0 : least_of_kinks;
+  rule.deepest = deepest;
+  if (!smooth) rule.fastest = fastest;
+  const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {
+    return {time, smooth ? smooth_of(gap, bound.rounding) : gap, 0.0};
+  };
+  QuantityOf gap([&](double time) { return look(time, body_gap(motion, pair, step.sample(time))); });
+  const auto at_end = [&](double time, const StepEnd& end) {
+    return end.gap_known[place] != 0 ? look(time, end.gaps[pair]) : gap.look(time);
+  };
+  const QuantityLook from = at_end(step.begin(), step.ends.start), to = at_end(step.end(), step.ends.end);
+  return FallSearch(gap, rule, until).first(from, to);
+}
+
+}  // namespace
+
+StepPolynomial::End body_gap(const SmoothMotion& motion, std::size_t pair, const MotionSample& at) {
+  const BodyPairBound& bound = motion.model().bounds[pair - motion.model().body_pairs];
+  if (bound.central) return gap_of_discs(bound, at);
+  Constraint contact;
+  motion.contact(pair, at, contact);
+  return {contact.gap, contact.normal_velocity(at.state.v.data()),
+          contact.normal_acceleration(at.acceleration.data())};
+}
+
+bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
+                      StepEnd& out) {
+  constexpr double soon = 0.1;  // bodies that may meet within this are looked at closely [s]
+  const GroupModel& model = motion.model();
+  out.gap_speeds.resize(model.bounds.size());
+  out.gap_accelerations.resize(model.bounds.size());
+  out.gap_known.resize(model.bounds.size());
+  bool finite = true;
+  for (std::size_t place = 0; place < model.bounds.size(); ++place) {
+    const std::size_t pair = model.body_pairs + place;
+    if (is_active[pair] != 0) continue;
+    const BodyPairBound& bound = model.bounds[place];
+    const double least = bound.least_gap(at.view()), speed = bound.most_speed(at.state.v.data());
+    out.gap_speeds[place] = speed;
+    out.gap_accelerations[place] = bound.most_speed(at.acceleration.data());
+    const bool known = bound.central || least <= soon * speed;
+    out.gap_known[place] = known ? 1 : 0;
+    out.gaps[pair] = known ? body_gap(motion, pair, at) : StepPolynomial::End{least, -speed, 0.0};
+    finite = finite && std::isfinite(out.gaps[pair].value) && std::isfinite(out.gap_accelerations[place]);
+  }
+  return finite;
+}
+
+Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Event before) {
+  const GroupModel& model = step.motion.model();
+  const StepEnd &start = step.ends.start, &end = step.ends.end;
+  const double length = step.end() - step.begin();
+  Event found = before;
+  for (std::size_t place = 0; place < model.bounds.size(); ++place) {
+    const std::size_t pair = model.body_pairs + place;
+    if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
+    const double fastest = fastest_in(step, place);
+    if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise) continue;
+    const double until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
+    const double time = first_closing(step, pair, fastest, until);
+    if (time < until) found = {time, Guard::gap, pair};
+  }
+  return found;
+}
+
+}  // namespace carom

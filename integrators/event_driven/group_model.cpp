@@ -1,0 +1,235 @@
+// Problem: facts of a group's bodies, elements, joints and shapes on ground, looked up once.
+
+#include <carom/core/dynamics/force_directions.h>
+#include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/integrators/event_driven/group_model.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+/// Pairs that may touch, those of one mechanism together, then those of two bodies.
+std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& detector,
+                                  const GroupComponents& group, const GroupJoints& joints) {
+  std::vector<ContactPair> all;
+  for (const Index component : group.components) {
+    std::vector<ContactPair> pairs = detector.pairs(component);
+    if (!joints.empty()) {
+      const std::vector<ContactPair> dry_friction = detector.joint_friction(component);
+      pairs.insert(pairs.end(), dry_friction.begin(), dry_friction.end());
+      std::stable_sort(pairs.begin(), pairs.end(), [&](const ContactPair& a, const ContactPair& b) {
+        return assembly.mechanism(a.body) < assembly.mechanism(b.body);
+      });
+    }
+    all.insert(all.end(), pairs.begin(), pairs.end());
+  }
+  all.insert(all.end(), group.body_pairs.begin(), group.body_pairs.end());
+  return all;
+}
+
+std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& detector,
+                                     const std::vector<ContactPair>& body_pairs) {
+  std::vector<BodyPairBound> bounds;
+  const BodyOutlines& outlines = detector.bodies().outlines();
+  for (const ContactPair& pair : body_pairs) {
+    const BodyOutline& of_vertex = outlines.list()[outlines.outline_of(pair.feature)];
+    const BodyOutline& outline = outlines.list()[pair.outline];
+    BodyPairBound& bound = bounds.emplace_back();
+    bound.a = assembly.layout()->bodies()[pair.body];
+    bound.b = assembly.layout()->bodies()[pair.other];
+    bound.lever = outlines.vertices()[pair.feature].norm();
+    bound.radius = of_vertex.radius;
+    bound.rounding = of_vertex.radius + outline.radius;
+    double farthest = 0.0;
+    for (const Vec<2>& vertex : outlines.described(outline).vertices) {
+      farthest = std::max(farthest, vertex.norm());
+    }
+    bound.reach = farthest + outline.radius;
+    bound.round = outline.vertices.size() == 1;
+    bound.central = bound.round && bound.lever == 0.0 && farthest == 0.0;
+  }
+  return bounds;
+}
+
+bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
+  return std::any_of(group.components.begin(), group.components.end(),
+                     [&](Index component) { return detector.has_dry_friction(component); });
+}
+
+void add_load_traits(const Assembly& assembly, Index component, LoadTraits& traits) {
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    if (assembly.elements(component, kind).empty()) continue;
+    const ForceKind& elements = *assembly.force_kinds()[kind];
+    traits.books_dissipative = traits.books_dissipative || elements.books_dissipative();
+    traits.books_external = traits.books_external || elements.books_external();
+    traits.depends_on_time = traits.depends_on_time || elements.depends_on_time();
+    traits.only_fields = traits.only_fields && elements.is_field() && !elements.books_dissipative() &&
+                         !elements.depends_on_time();
+  }
+}
+
+/// Discontinuities of the joints and force elements of a component.
+void add_discontinuities(const Assembly& assembly, Index component, std::vector<Discontinuity>& all) {
+  std::vector<double> times;
+  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+    const Range joints = assembly.joints(component, kind);
+    for (Index joint = joints.begin; joint < joints.end; ++joint) {
+      times.clear();
+      assembly.joint_kinds()[kind]->discontinuity_times(joint, times);
+      for (const double time : times) {
+        all.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
+      }
+    }
+  }
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const Range elements = assembly.elements(component, kind);
+    for (Index element = elements.begin; element < elements.end; ++element) {
+      times.clear();
+      assembly.force_kinds()[kind]->discontinuity_times(element, times);
+      for (const double time : times) {
+        all.push_back({.time = time, .element = assembly.element_id(kind, element)});
+      }
+    }
+  }
+}
+
+/// Those of all components and of shapes on ground, in ascending order.
+std::vector<Discontinuity> discontinuities_of(const Assembly& assembly, std::span<const Index> components,
+                                              const std::vector<Discontinuity>& of_obstacles) {
+  std::vector<Discontinuity> all;
+  for (const Index component : components) add_discontinuities(assembly, component, all);
+  all.insert(all.end(), of_obstacles.begin(), of_obstacles.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Discontinuity& a, const Discontinuity& b) { return a.time < b.time; });
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// Errors of works count relative to the mass, those of angles by the radius of gyration.
+std::vector<double> tolerances_of(const GroupModel& model, double tolerance_of_places) {
+  const MotionUnknowns& unknowns = model.unknowns;
+  std::vector<double> tolerances(unknowns.size(), tolerance_of_places);
+  double mass = 0.0;
+  model.for_bodies(
+      [&](const BodyKind& kind, Range slots, Index q, Index v, const MotionUnknowns::Part& part) {
+        for (Index slot = slots.begin; slot < slots.end; ++slot) {
+          mass += kind.mass(slot);
+          const Index body = slot - slots.begin;
+          for (Index i = 0; i < kind.v_size(); ++i) {
+            const double tolerance = tolerance_of_places / kind.length_scale(slot, i);
+            tolerances[part.v + (v - part.ranges.v.begin) + body * kind.v_size() + i] = tolerance;
+            // Orientations come last in both and are measured alike in the plane.
+            if (i < kind.q_size()) {
+              tolerances[part.q + (q - part.ranges.q.begin) + body * kind.q_size() + i] = tolerance;
+            }
+          }
+        }
+      });
+  for (Index i = 0; i < unknowns.work_count(); ++i) {
+    tolerances[unknowns.size() - 1 - i] = mass * tolerance_of_places;
+  }
+  return tolerances;
+}
+
+}  // namespace
+
+GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in, const GroupComponents& group,
+                       const EventDriven& options_in, const GroupJoints& joints)
+    : assembly(&assembly_in),
+      detector(&detector_in),
+      options(&options_in),
+      unknowns(assembly_in, group.components,
+               has_dry_friction(detector_in, group) ? work_lines : work_lines - 1),
+      pairs(pairs_of(assembly_in, detector_in, group, joints)),
+      body_pairs(pairs.size() - group.body_pairs.size()),
+      bounds(bounds_of(assembly_in, detector_in, group.body_pairs)),
+      tolerances(tolerances_of(*this, options->absolute_tolerance)) {
+  const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
+  loads.depends_on_time = joints.depends_on_time() || ground_moves;
+  for (const Index component : group.components) add_load_traits(*assembly, component, loads);
+  discontinuities = discontinuities_of(
+      *assembly, group.components, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
+}
+
+double BodyPairBound::least_gap(const StateView& state) const {
+  const double x = state.q[a.q] - state.q[b.q], y = state.q[a.q + 1] - state.q[b.q + 1];
+  return std::sqrt(x * x + y * y) - (lever + radius + reach);
+}
+
+double BodyPairBound::most_speed(const double* velocities) const {
+  const double x = velocities[a.v] - velocities[b.v], y = velocities[a.v + 1] - velocities[b.v + 1];
+  double speed = std::sqrt(x * x + y * y);
+  if (a.v_size > 2) speed += std::abs(velocities[a.v + 2]) * lever;
+  if (b.v_size > 2) speed += std::abs(velocities[b.v + 2]) * reach;
+  return speed;
+}
+
+ElementId GroupModel::find_without_direction(const MotionSample& at, double speed) const {
+  for (const MotionUnknowns::Part& part : parts()) {
+    const ElementId found =
+        carom::find_without_direction(*assembly, part.component, at.view(), at.evaluation, speed);
+    if (found.valid()) return found;
+  }
+  return {};
+}
+
+std::string GroupModel::driven() const {
+  for (const MotionUnknowns::Part& part : parts()) {
+    std::string drivers = driven_by(*assembly, part.component);
+    if (!drivers.empty()) return drivers;
+  }
+  return {};
+}
+
+double GroupModel::kinetic_energy(const double* velocities) const {
+  double sum = 0.0;
+  for_bodies([&](const BodyKind& kind, Range slots, Index, Index v, const MotionUnknowns::Part&) {
+    sum += kind.kinetic_energy(slots, velocities + v);
+  });
+  return sum;
+}
+
+double GroupModel::kinetic_energy_of_mechanism(Index body, const double* velocities) const {
+  const auto of_body = [&](Index one) {
+    const BodySlot slot = assembly->layout()->bodies()[one];
+    return assembly->body_kinds()[slot.kind]->kinetic_energy({slot.slot, slot.slot + 1}, velocities + slot.v);
+  };
+  if (!assembly->is_jointed(body)) return of_body(body);
+  double sum = 0.0;
+  const Range bodies = unknowns.part_of(assembly->layout()->bodies()[body].v).ranges.bodies;
+  for (Index other = bodies.begin; other < bodies.end; ++other) {
+    if (assembly->mechanism(other) == assembly->mechanism(body)) sum += of_body(other);
+  }
+  return sum;
+}
+
+double GroupModel::kinetic_energy_of(std::span<const Constraint> constraints,
+                                     const double* velocities) const {
+  double sum = 0.0;
+  // Each mechanism once, where it comes first.
+  const auto comes_before = [&](std::size_t c, int b) {
+    const auto mechanism = [&](const Constraint& at, int block) {
+      return assembly->mechanism(at.blocks[static_cast<std::size_t>(block)].body);
+    };
+    const Index wanted = mechanism(constraints[c], b);
+    for (std::size_t i = 0; i <= c; ++i) {
+      for (int block = 0; block < (i == c ? b : constraints[i].bodies); ++block) {
+        if (mechanism(constraints[i], block) == wanted) return true;
+      }
+    }
+    return false;
+  };
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    for (int b = 0; b < constraints[c].bodies; ++b) {
+      if (comes_before(c, b)) continue;
+      const Index body = constraints[c].blocks[static_cast<std::size_t>(b)].body;
+      sum += kinetic_energy_of_mechanism(body, velocities);
+    }
+  }
+  return sum;
+}
+
+}  // namespace carom
