@@ -1,6 +1,6 @@
-// Problem: when does a vertex that slides or rolls along an outline come to the end of an edge, or of a rounded
-// corner? In the frame of the outline the regions of features are bounded by straight lines, so that margins are
-// linear in the place of the vertex.
+// Problem: when does a vertex that slides or rolls along an outline come to the end of an edge, or of a
+// rounded corner? In the frame of the outline the regions of features are bounded by straight lines, so that
+// margins are linear in the place of the vertex.
 
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/gap_convex.h>
@@ -36,8 +36,8 @@ struct Frame {
 
 }  // namespace
 
-FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& outlines, const ContactPair& pair,
-                               const StateView& state, const Evaluation& evaluation)
+FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& outlines,
+                               const ContactPair& pair, const StateView& state, const Evaluation& evaluation)
     : outline_(outlines.described(outlines.list()[pair.outline])) {
   const BodySlots& bodies = assembly.layout()->bodies();
   const Frame of_vertex(bodies[pair.body], state, evaluation), frame(bodies[pair.other], state, evaluation);
@@ -49,8 +49,7 @@ FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& out
 
 Index FeatureRegions::nearest() const {
   std::array<GapPoint, 2> found;
-  static_cast<void>(
-      find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
+  static_cast<void>(find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
   return found[0].feature_b;
 }
 

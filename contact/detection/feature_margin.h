@@ -1,11 +1,11 @@
 #pragma once
 
 /// \file
-/// Which feature of a convex outline is nearest to a vertex of another body, and how far the vertex is from where
-/// that changes.
+/// Which feature of a convex outline is nearest to a vertex of another body, and how far the vertex is from
+/// where that changes.
 ///
-/// The normal of such a contact is continuous there, the rate at which it turns is not: the forces of a contact
-/// that lasts have a kink or a jump, over which no step of an integrator may pass.
+/// The normal of such a contact is continuous there, the rate at which it turns is not: the forces of a
+/// contact that lasts have a kink or a jump, over which no step of an integrator may pass.
 
 #include <carom/contact/detection/body_outlines.h>
 #include <carom/contact/detection/contact_pair.h>
@@ -19,9 +19,9 @@ namespace carom {
 
 /// Distance of a vertex from the border of the region in which a feature is the nearest one.
 struct FeatureMargin {
-  double value = 0.0;     ///< positive inside [m]
-  double rate = 0.0;      ///< its rate [m/s]
-  Index beyond = none;    ///< the feature beyond the border
+  double value = 0.0;   ///< positive inside [m]
+  double rate = 0.0;    ///< its rate [m/s]
+  Index beyond = none;  ///< the feature beyond the border
 };
 
 /// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.

@@ -49,7 +49,8 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   guards_.update(ends_.start.sample.guards, scales_.guard_noise);
 }
 
-/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes next.
+/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes
+/// next.
 void EventDetector::take_features(double time, const double* y) {
   bool sampled = false;
   for (ActiveContact& closed : motion_->active().list()) {

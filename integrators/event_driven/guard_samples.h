@@ -19,8 +19,8 @@ struct GuardSample {
   std::vector<StepPolynomial::End> slips;  ///< sliding velocities and their rates, by closed contact
   /// Margins of features, by closed contact; largest where there is but one feature.
   std::vector<StepPolynomial::End> features;
-  std::vector<double> margins;             ///< of forces, by island that touches
-  std::vector<GuardMotion> guards;         ///< of elements
+  std::vector<double> margins;      ///< of forces, by island that touches
+  std::vector<GuardMotion> guards;  ///< of elements
 };
 
 /// Maker of samples within a step.

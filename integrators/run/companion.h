@@ -7,6 +7,7 @@
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/core/constraint.h>
 #include <carom/core/energy_ledger.h>
+#include <carom/integrators/run/contact_history.h>
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/load_history.h>
 #include <carom/integrators/run/step_report.h>
@@ -52,6 +53,7 @@ struct Companion {
   double next_step = 0.0;       ///< of step control; 0: as described [s]
   PresentLoads loads;           ///< at the state
   std::vector<std::pair<ConstraintKey, ContactMode>> modes;  ///< contacts of the last step, by key
+  ContactHistory contacts;                                   ///< impulses of the last step in large islands
   std::vector<Rhythm> rhythms;  ///< of the periodic events, in the order of every()
 };
 

@@ -3,6 +3,7 @@
 /// \file
 /// Options of the time-stepping mode (Johansson 1999, section 4).
 
+#include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
 
 #include <cstddef>
@@ -120,6 +121,11 @@ struct TimeStepping {
   /// An existing directory where the contact problem of a SolverError is written to a file, whose name is in
   /// the message (docs/contact_problems.md). Empty: nothing is written.
   std::string failure_directory{};
+
+  /// Of contact problems of many constraints (from factored_constraints on, contact/island_problem.h), which
+  /// sweeps solve: how exact, and at which cost. Where the sweeps end above `residual` but below `accepted`
+  /// the step goes on, and its contacts have the outcome accepted_at_cap; `accepted` = 0 makes that an error.
+  SweepBudget contact_budget{};
 };
 
 }  // namespace carom

@@ -7,7 +7,8 @@
 
 namespace carom {
 
-ContactStage::ContactStage(const Assembly& assembly) : assembly_(&assembly), masses_(assembly) {
+ContactStage::ContactStage(const Assembly& assembly, const SweepBudget& budget)
+    : assembly_(&assembly), masses_(assembly) {
   Index most_blocks = 1, most_runs = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -15,6 +16,7 @@ ContactStage::ContactStage(const Assembly& assembly) : assembly_(&assembly), mas
   }
   block_problems_.resize(most_blocks);
   chains_.resize(most_runs);
+  for (SolverChain& chain : chains_) chain.set_budget(budget);
 }
 
 void ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
@@ -51,7 +53,23 @@ void ContactStage::part_problems(const StepInput& in, const StepIsland& island) 
   for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
     add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
     problems_[in_use_ - 1].respond(masses_);
+    if (problems_[in_use_ - 1].problem().is_factored()) start_sweeps(in, problems_[in_use_ - 1]);
   }
+}
+
+/// The impulses of the step before, by key, are where sweeps start.
+void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
+  const ContactHistory& before = in.companion.contacts;
+  if (before.empty()) return;
+  const double longer = in.step / before.step();
+  start_.clear();
+  for (const Constraint& constraint : problem.constraints()) {
+    const ContactHistory::Entry* const known = before.find(constraint.key);
+    for (int row = 0; row < constraint.rows; ++row) {
+      start_.push_back(known == nullptr ? 0.0 : longer * known->impulse[static_cast<std::size_t>(row)]);
+    }
+  }
+  problem.start_from(start_);
 }
 
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,

@@ -21,8 +21,8 @@ namespace carom {
 /// Solves contact. Keeps memory, and statistics of its solvers.
 class CAROM_API ContactStage {
 public:
-  /// \param assembly must outlive it
-  explicit ContactStage(const Assembly& assembly);
+  /// \param assembly must outlive it \param budget of large problems
+  ContactStage(const Assembly& assembly, const SweepBudget& budget);
 
   /// States the contact problems of an island. \param together its bodies answer together: one problem, whose
   /// matrix is still to be made; else bodies answer for themselves, and constraints that share bodies share a
@@ -64,6 +64,7 @@ private:
     const double* end;
   };
   void add_problem(const StepInput& in, std::span<Constraint> constraints);
+  void start_sweeps(const StepInput& in, IslandProblem& problem);
   void part_problems(const StepInput& in, const StepIsland& island);
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
@@ -79,6 +80,7 @@ private:
   Index first_run_ = 0;                // of the component at hand
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any
   std::vector<Index> struck_;          // ascending
+  std::vector<double> start_;          // impulses by row, of one problem
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 };
 

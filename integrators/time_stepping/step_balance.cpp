@@ -12,6 +12,7 @@ void StepBalance::begin(const StepInput& in) {
   result_.flows = {};
   result_.stored = {};
   result_.joint_friction_modes.clear();
+  result_.contacts.start(in.step);
   StepReport& report = result_.report;
   report.contacts.clear();
   report.joint_impulses.clear();
@@ -115,6 +116,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
       book_contact(problem, contact, work, entry);
     }
   }
+  if (problem.problem().is_factored()) keep_impulses(problem);
   return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
 }
 
@@ -217,6 +219,16 @@ void StepBalance::place(const Constraint& at, const StepInput& in, ContactRecord
     entry.point[i] += at.row(0)[2] * at.row(1)[i] - at.row(1)[2] * at.row(0)[i];
 }
 
+/// Impulses from which the next step starts.
+void StepBalance::keep_impulses(const IslandProblem& problem) {
+  for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
+    const auto row = static_cast<std::size_t>(problem.first_row(c));
+    std::array<double, 2> impulse{problem.impulses()[row], 0.0};
+    if (problem.constraints()[c].rows > 1) impulse[1] = problem.impulses()[row + 1];
+    result_.contacts.add(problem.constraints()[c].key, impulse);
+  }
+}
+
 void StepBalance::book_turning(double work) {
   result_.flows[EnergyFlow::external] -= work;
   coupling_work_.add(work);
@@ -241,6 +253,7 @@ StepResult& StepBalance::finish(const StepInput& in) {
   flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
   flows[EnergyFlow::coupling_discretisation] = -(result_.stored.potential() + energy_position_projection_ -
                                                  in.companion.ledger.potential() + coupling_work_.value());
+  result_.contacts.finish();
   return result_;
 }
 
@@ -300,6 +313,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   }
   std::swap(companion.rounding, trial.rounding);
   companion.ledger.book(result.flows, result.stored);
+  std::swap(companion.contacts, result.contacts);
   companion.modes = result.joint_friction_modes;
   for (const ContactRecord& contact : result.report.contacts) {
     if (contact.time < end_time) continue;  // an impact within the step, or contact up to it

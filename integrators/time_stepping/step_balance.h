@@ -9,6 +9,7 @@
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/compensated_sum.h>
+#include <carom/integrators/run/contact_history.h>
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/time_stepping.h>
@@ -26,9 +27,10 @@ namespace carom {
 
 /// Result of a step, beside the trial.
 struct StepResult {
-  EnergyFlows flows;      ///< energy that left, by cause [J]
-  StoredEnergies stored;  ///< at the end [J]
-  StepReport report;      ///< of the step
+  EnergyFlows flows;        ///< energy that left, by cause [J]
+  StoredEnergies stored;    ///< at the end [J]
+  StepReport report;        ///< of the step
+  ContactHistory contacts;  ///< of large islands
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
 };
 
@@ -72,6 +74,7 @@ private:
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
   ContactRecord& record(const IslandProblem& problem, std::size_t contact, const double* after);
+  void keep_impulses(const IslandProblem& problem);
   void place(const Constraint& at, const StepInput& in, ContactRecord& entry) const;
 
   const Assembly* assembly_;

@@ -73,6 +73,14 @@ void check_options(const TimeStepping& options) {
   if (!(is_admissible(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
+  const SweepBudget& budget = options.contact_budget;
+  if (!(is_admissible(budget.residual) && budget.residual > 0.0)) {
+    refuse("contact_budget.residual", budget.residual, "finite and > 0");
+  }
+  if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
+  if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
+    refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
+  }
   check_failure_directory(options.failure_directory, "time stepping");
 }
 

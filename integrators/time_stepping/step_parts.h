@@ -26,7 +26,7 @@ struct StepParts {
         options(chosen),
         rule(chosen.force_rule),
         constraints(model, chosen),
-        contacts(model),
+        contacts(model, chosen.contact_budget),
         located(model, constraints.detector(), chosen),
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),

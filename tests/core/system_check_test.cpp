@@ -43,7 +43,8 @@ TEST(SystemCheck, ShapesOfBodiesNeedALawToTouchEachOther) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].kind, FindingKind::law_without_effect);
   EXPECT_EQ(found[0].parts, (std::vector<std::string>{"steel", "ice"}));
-  EXPECT_TRUE(says(found[0], "no obstacle is of 'steel' or 'ice', and no two bodies that can touch each other"))
+  EXPECT_TRUE(
+      says(found[0], "no obstacle is of 'steel' or 'ice', and no two bodies that can touch each other"))
       << found[0].text;
   EXPECT_EQ(found[1].kind, FindingKind::touches_nothing);
   EXPECT_EQ(found[1].parts, (std::vector<std::string>{"disc #0", "disc #1"}));

@@ -55,7 +55,7 @@ public:
       : assembly_(net()),
         options_{.step = 1e-3, .threads = threads},
         constraints_(assembly_, options_),
-        contacts_(assembly_),
+        contacts_(assembly_, {}),
         trial_(assembly_, step_needs(assembly_, constraints_.detector(), false)),
         schedule_(assembly_, options_, trial_.needs),
         state_(assembly_.initial_state()) {
