@@ -31,13 +31,11 @@ public:
         sets_.join(node_of(constraint.body()), node_of(constraint.blocks[static_cast<std::size_t>(b)].body));
       }
     }
-    const auto island = [&](const Constraint& constraint) { return island_of(node_of(constraint.body())); };
-    const auto before = [&](const Constraint& a, const Constraint& b) { return island(a) < island(b); };
-    if (!std::is_sorted(constraints.begin(), constraints.end(), before)) {
-      std::stable_sort(constraints.begin(), constraints.end(), before);
-    }
+    names_.clear();
+    for (const Constraint& constraint : constraints) names_.push_back(island_of(node_of(constraint.body())));
+    if (!std::is_sorted(names_.begin(), names_.end())) bring_together(constraints);
     for (Index i = 0; i < constraints.size(); ++i) {
-      if (i == 0 || island(constraints[i]) != island(constraints[i - 1])) islands_.push_back({i, i});
+      if (i == 0 || names_[i] != names_[i - 1]) islands_.push_back({i, i});
       islands_.back().end = i + 1;
     }
     return islands_;
@@ -67,8 +65,14 @@ private:
     return true;
   }
 
+  /// Constraints are large: their order is found first, and each is moved once.
+  void bring_together(std::span<Constraint> constraints);
+
   UnionFind sets_;
   std::vector<Range> islands_;
+  std::vector<Index> names_;   // of the islands, by constraint
+  std::vector<Index> order_;   // places where constraints come from
+  std::vector<Constraint> moved_;
 };
 
 }  // namespace carom

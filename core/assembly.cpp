@@ -110,6 +110,8 @@ std::shared_ptr<Layout> Assembly::order_bodies(std::vector<Index>& component_of_
 }
 
 Index Assembly::component_of(Index body) const {
+  // Of bodies that nothing couples each is a component.
+  if (components_.size() == layout_->bodies().size()) return body;
   const auto at = std::upper_bound(
       components_.begin(), components_.end(), body,
       [](Index wanted, const Component& component) { return wanted < component.bodies.end; });

@@ -39,11 +39,13 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
                    [](const BodyOutline& a, const BodyOutline& b) { return a.body < b.body; });
   outline_of_.resize(vertices_.size());
   for (Index i = 0; i < list_.size(); ++i) {
-    by_key_.emplace_back(list_[i].key, i);
+    const FeatureKey& key = list_[i].key;
+    std::vector<Index>& first = key.owner == FeatureKey::Owner::shape ? of_shape_ : of_body_;
+    if (first.size() <= key.serial) first.resize(key.serial + 1, none);
+    if (key.feature == 0) first[key.serial] = i;
     const Range vertices = list_[i].vertices;
     std::fill(outline_of_.begin() + vertices.begin, outline_of_.begin() + vertices.end, i);
   }
-  std::sort(by_key_.begin(), by_key_.end());
 }
 
 void BodyOutlines::add(BodyOutline outline, std::span<const Vec<2>> vertices, MaterialId material) {
@@ -70,12 +72,15 @@ bool BodyOutlines::any_off_centre() const {
 }
 
 Index BodyOutlines::find(const FeatureKey& key) const {
-  // The last outline of the owner whose first feature is not behind.
-  const auto after = std::upper_bound(by_key_.begin(), by_key_.end(), std::pair(key, none));
-  if (after == by_key_.begin()) return none;
-  const auto& [first, outline] = *std::prev(after);
-  if (first.owner != key.owner || first.serial != key.serial) return none;
-  return key.feature <= list_[outline].surface().feature ? outline : none;
+  const std::vector<Index>& first = key.owner == FeatureKey::Owner::shape ? of_shape_ : of_body_;
+  if (key.serial >= first.size()) return none;
+  // Outlines of one shape follow one another, in the order of their features.
+  for (Index i = first[key.serial]; i < list_.size(); ++i) {
+    const FeatureKey& of = list_[i].key;
+    if (of.owner != key.owner || of.serial != key.serial) return none;
+    if (key.feature <= list_[i].surface().feature) return i;
+  }
+  return none;
 }
 
 void BodyOutlines::place(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,

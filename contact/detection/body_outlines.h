@@ -72,7 +72,8 @@ private:
   std::vector<Vec<2>> vertices_;
   std::vector<Index> outline_of_;  // by vertex
   std::vector<MaterialId> materials_;
-  std::vector<std::pair<FeatureKey, Index>> by_key_;  // ascending
+  // First outlines of bodies that touch at their centres, and of shapes, by serial number; none: it has none.
+  std::vector<Index> of_body_, of_shape_;
 };
 
 }  // namespace carom
