@@ -2,21 +2,29 @@
 
 #include <carom/contact/island_partition.h>
 
-#include <numeric>
-
 namespace carom {
 
+/// By counting: constraints are large, so that each is moved once, and there are few islands of many.
 void IslandPartition::bring_together(std::span<Constraint> constraints) {
-  order_.resize(constraints.size());
-  std::iota(order_.begin(), order_.end(), Index{0});
-  std::sort(order_.begin(), order_.end(), [this](Index a, Index b) {
-    return names_[a] != names_[b] ? names_[a] < names_[b] : a < b;
-  });
-  moved_.assign(constraints.begin(), constraints.end());
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    if (order_[i] != i) constraints[i] = moved_[order_[i]];
+  distinct_.clear();
+  for (const Index name : names_) {
+    if (name >= next_.size()) next_.resize(name + 1, 0);
+    if (next_[name]++ == 0) distinct_.push_back(name);
   }
-  std::sort(names_.begin(), names_.end());
+  std::sort(distinct_.begin(), distinct_.end());
+  Index place = 0;
+  for (const Index name : distinct_) {
+    const Index count = next_[name];
+    next_[name] = place;
+    place += count;
+  }
+  moved_.assign(constraints.begin(), constraints.end());
+  for (std::size_t i = 0; i < moved_.size(); ++i) constraints[next_[names_[i]]++] = moved_[i];
+  place = 0;
+  for (const Index name : distinct_) {
+    std::fill(names_.begin() + place, names_.begin() + next_[name], name);
+    place = std::exchange(next_[name], 0);
+  }
 }
 
 }  // namespace carom

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -65,13 +66,13 @@ private:
     return true;
   }
 
-  /// Constraints are large: their order is found first, and each is moved once.
   void bring_together(std::span<Constraint> constraints);
 
   UnionFind sets_;
   std::vector<Range> islands_;
-  std::vector<Index> names_;   // of the islands, by constraint
-  std::vector<Index> order_;   // places where constraints come from
+  std::vector<Index> names_;     // of the islands, by constraint
+  std::vector<Index> distinct_;  // names that occur
+  std::vector<Index> next_;      // by name, zero between calls: how many, or the next place
   std::vector<Constraint> moved_;
 };
 

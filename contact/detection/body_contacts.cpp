@@ -147,13 +147,22 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
     pairs.emplace_back(i, j);
   };
   for (const BoxPair& pair : memory.broad.update(memory.boxes, query.margin)) add(pair.first, pair.second);
-  if (query.lasting != nullptr) {
-    for (const ConstraintKey& key : query.lasting->keys()) {
-      if (key.b.owner != FeatureKey::Owner::shape) continue;
-      const Index i = outlines_.find(key.a), j = outlines_.find(key.b);
-      if (i != none && j != none) add(i, j);
-    }
+  if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
+  if (query.lasting != nullptr) add_lasting_pairs(*query.lasting, pairs);
+}
+
+/// Pairs that touched in the step before and whose boxes do not overlap any more.
+void BodyContacts::add_lasting_pairs(const LastingContacts& lasting,
+                                     std::vector<std::pair<Index, Index>>& pairs) const {
+  const auto known = static_cast<std::ptrdiff_t>(pairs.size());
+  for (const ConstraintKey& key : lasting.keys()) {
+    if (key.b.owner != FeatureKey::Owner::shape) continue;
+    const std::pair pair(outlines_.find(key.a), outlines_.find(key.b));
+    if (pair.first == none || pair.second == none) continue;
+    if (std::binary_search(pairs.begin(), pairs.begin() + known, pair)) continue;
+    if (may_touch(outlines_.list()[pair.first], outlines_.list()[pair.second])) pairs.push_back(pair);
   }
+  if (static_cast<std::ptrdiff_t>(pairs.size()) == known) return;
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }

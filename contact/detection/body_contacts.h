@@ -60,6 +60,7 @@ private:
   void find_laws(const System& system);
   void exclude_jointed(const Assembly& assembly);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
+  void add_lasting_pairs(const LastingContacts& lasting, std::vector<std::pair<Index, Index>>& pairs) const;
   void add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
            std::vector<Constraint>& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,

@@ -4,23 +4,9 @@
 
 namespace carom {
 
-namespace {
-
-// Contacts come in the order of the step before, in which they mostly are in order.
-template <class T>
-void sort_if_needed(std::vector<T>& items) {
-  if (!std::is_sorted(items.begin(), items.end())) std::sort(items.begin(), items.end());
-}
-
-}  // namespace
-
+/// Contacts come in the order of the step before, in which their bodies mostly are in order.
 void LastingContacts::put_in_order() {
-  sort_if_needed(keys_);
-  sort_if_needed(centres_);
-}
-
-bool LastingContacts::contains(const ConstraintKey& key) const {
-  return std::binary_search(keys_.begin(), keys_.end(), key);
+  if (!std::is_sorted(centres_.begin(), centres_.end())) std::sort(centres_.begin(), centres_.end());
 }
 
 bool LastingContacts::any_centre(Range bodies) const {

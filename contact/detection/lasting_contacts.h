@@ -8,7 +8,7 @@
 /// section 6), a contact that the law holds at gamma_n+ = 0 begins the next step with gamma_n- = h d and has
 /// opened by h^2 d. It is closed in the motion that the steps approach, so it stays in the contact problem.
 
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_table.h>
 #include <carom/core/export.h>
 
 #include <vector>
@@ -30,25 +30,26 @@ public:
   void start(double step, double slack = 0.0) {
     step_ = step;
     slack_ = slack;
-    keys_.clear();
+    contacts_.clear();
     centres_.clear();
   }
   /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
   void add(const ConstraintKey& key, Index centre = none) {
-    keys_.push_back(key);
+    contacts_.add(key);
     if (centre != none) centres_.push_back(centre);
   }
   /// Makes the contacts ready to be looked up.
   void finish() {
-    if (keys_.size() > 1) put_in_order();
+    contacts_.finish();
+    if (centres_.size() > 1) put_in_order();
   }
 
   /// True if there are none.
-  [[nodiscard]] bool empty() const { return keys_.empty(); }
-  /// All, ascending, after finish().
-  [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return keys_; }
+  [[nodiscard]] bool empty() const { return contacts_.keys().empty(); }
+  /// All, in the order of add().
+  [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return contacts_.keys(); }
   /// True if a contact is among them.
-  [[nodiscard]] bool contains(const ConstraintKey& key) const;
+  [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
@@ -64,8 +65,8 @@ private:
   void put_in_order();
 
   double step_ = 0.0, slack_ = 0.0;
-  std::vector<ConstraintKey> keys_;  // ascending
-  std::vector<Index> centres_;       // likewise
+  ConstraintTable contacts_;
+  std::vector<Index> centres_;  // ascending
 };
 
 }  // namespace carom

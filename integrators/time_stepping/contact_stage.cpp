@@ -60,13 +60,13 @@ void ContactStage::part_problems(const StepInput& in, const StepIsland& island) 
 /// The impulses of the step before, by key, are where sweeps start.
 void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
   const ContactHistory& before = in.companion.contacts;
-  if (before.empty()) return;
-  const double longer = in.step / before.step();
+  if (before.impulses.empty()) return;
+  const double longer = in.step / before.step;
   start_.clear();
   for (const Constraint& constraint : problem.constraints()) {
-    const ContactHistory::Entry* const known = before.find(constraint.key);
-    for (int row = 0; row < constraint.rows; ++row) {
-      start_.push_back(known == nullptr ? 0.0 : longer * known->impulse[static_cast<std::size_t>(row)]);
+    const Index known = before.contacts.find(constraint.key);
+    for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
+      start_.push_back(known == none ? 0.0 : longer * before.impulses[known][row]);
     }
   }
   problem.start_from(start_);
@@ -85,13 +85,29 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
       if (struck_.empty() || struck_.back() != body) struck_.push_back(body);
     }
   }
-  if (!std::is_sorted(struck_.begin(), struck_.end())) std::sort(struck_.begin(), struck_.end());
+  if (!std::is_sorted(struck_.begin(), struck_.end())) put_struck_in_order();
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
   const double* const loads = in.companion.loads.total.data();
   for (IslandProblem& problem : problems()) {
     if (!solve(in, {loads, loads}, problem, chains_.front(), trial)) return &problem;
   }
   return nullptr;
+}
+
+/// Many bodies are ticked off faster than they are sorted.
+void ContactStage::put_struck_in_order() {
+  const auto [first, last] = std::minmax_element(struck_.begin(), struck_.end());
+  const Index begin = *first, count = *last - begin + 1;
+  if (count > 2 * struck_.size()) {
+    std::sort(struck_.begin(), struck_.end());
+    return;
+  }
+  is_struck_.assign(count, 0);
+  for (const Index body : struck_) is_struck_[body - begin] = 1;
+  struck_.clear();
+  for (Index i = 0; i < count; ++i) {
+    if (is_struck_[i] != 0) struck_.push_back(begin + i);
+  }
 }
 
 std::span<const Index> ContactStage::struck(Range bodies) const {

@@ -66,6 +66,7 @@ private:
   void add_problem(const StepInput& in, std::span<Constraint> constraints);
   void start_sweeps(const StepInput& in, IslandProblem& problem);
   void part_problems(const StepInput& in, const StepIsland& island);
+  void put_struck_in_order();
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
@@ -80,7 +81,8 @@ private:
   Index first_run_ = 0;                // of the component at hand
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any
   std::vector<Index> struck_;          // ascending
-  std::vector<double> start_;          // impulses by row, of one problem
+  std::vector<char> is_struck_;
+  std::vector<double> start_;        // impulses by row, of one problem
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 };
 

@@ -253,7 +253,7 @@ StepResult& StepBalance::finish(const StepInput& in) {
   flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
   flows[EnergyFlow::coupling_discretisation] = -(result_.stored.potential() + energy_position_projection_ -
                                                  in.companion.ledger.potential() + coupling_work_.value());
-  result_.contacts.finish();
+  result_.contacts.contacts.finish();
   return result_;
 }
 
