@@ -50,6 +50,7 @@ run_example 04_block_on_a_moving_plane scripts/plot_shaker.py
 run_example 05_squeezing_mechanism scripts/plot_squeezer.py
 run_example 06_slider_crank_and_stop scripts/plot_slider_crank.py
 run_example 07_pendulums_and_wall scripts/plot_pendulums.py
+run_example 08_discs_in_a_box scripts/plot_discs.py
 
 if $update_docs; then
   mkdir -p docs/figures
