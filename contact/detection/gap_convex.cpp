@@ -118,7 +118,8 @@ int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double ma
   const OutlineEdge& face = is_of_a ? face_a.edge : face_b.edge;
   const ConvexOutline &of_face = is_of_a ? a : b, &other = is_of_a ? b : a;
   const OutlineEdge facing = facing_edge(other, face);
-  const EdgeMeeting meeting(face, facing, of_face, other);
+  const bool overlap = (is_of_a ? face_a : face_b).separation <= 0.0;
+  const EdgeMeeting meeting(face, facing, of_face, other, overlap);
   int found = 0;
   for (int i = 0; i < meeting.size(); ++i) {
     FeaturePair pair = meeting[i];

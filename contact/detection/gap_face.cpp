@@ -25,10 +25,10 @@ struct Corner {
   Turn turn;
   bool is_free;
   Vec<2> at;
-  Vec<2> along;  // unit direction of the neighbour, in the same sense as that of the face
+  Vec<2> along;   // unit direction of the neighbour, in the same sense as that of the face
+  double length;  // of the neighbour
 
   [[nodiscard]] double height(const Vec<2>& point) const { return normal_of(along).dot(point - at); }
-  [[nodiscard]] double coordinate(const Vec<2>& point) const { return along.dot(point - at); }
 };
 
 /// \param out direction from one of the two to the next \param sine of the turn to the left, which is convex
@@ -60,11 +60,13 @@ public:
     for (const Vec<2>& vertex : a_.vertices) separation = std::min(separation, edge_.height(vertex));
     if (separation > enough) return 0;
     OutlineEdge best;  // of the outline, if it separates more
+    bool overlap = separation <= 0.0;
     for (Index i = 0; i < a_.size() && a_.size() > 1; ++i) {
       const OutlineEdge edge(a_, i);
-      if (edge.length == 0.0 || !is_between_faces(-edge.normal())) continue;
+      if (edge.length == 0.0) continue;
       const double along_it = std::min(edge.height(ends_[0]), edge.height(ends_[1]));
-      if (!(along_it > separation)) continue;
+      overlap = overlap && along_it <= 0.0;
+      if (!(along_it > separation) || !is_between_faces(-edge.normal())) continue;
       separation = along_it;
       best = edge;
     }
@@ -74,7 +76,7 @@ public:
     const OutlineEdge& face = is_of_ground ? edge_ : best;
     const ConvexOutline &of_face = is_of_ground ? ground_ : a_, &other = is_of_ground ? a_ : ground_;
     const OutlineEdge facing = facing_edge(other, face);
-    const EdgeMeeting meeting(face, facing, of_face, other, is_of_ground ? opening(tail_) : 0.0,
+    const EdgeMeeting meeting(face, facing, of_face, other, overlap, is_of_ground ? opening(tail_) : 0.0,
                               is_of_ground ? opening(head_) : 0.0);
     int found = 0;
     for (int i = 0; i < meeting.size(); ++i) {
@@ -87,16 +89,16 @@ public:
 
 private:
   Corner corner_at_tail(const GroundFace& face) const {
-    if (face.tail_is_free) return {Corner::Turn::convex, true, face.tail, edge_.normal()};
+    if (face.tail_is_free) return {Corner::Turn::convex, true, face.tail, edge_.normal(), 0.0};
     const std::array<Vec<2>, 2> ends{face.before, face.tail};
-    const Vec<2> along = OutlineEdge({ends, 0.0}, 0).along;
-    return {turn_of(along, edge_.along), false, face.tail, along};
+    const OutlineEdge neighbour({ends, 0.0}, 0);
+    return {turn_of(neighbour.along, edge_.along), false, face.tail, neighbour.along, neighbour.length};
   }
   Corner corner_at_head(const GroundFace& face) const {
-    if (face.head_is_free) return {Corner::Turn::convex, true, face.head, -edge_.normal()};
+    if (face.head_is_free) return {Corner::Turn::convex, true, face.head, -edge_.normal(), 0.0};
     const std::array<Vec<2>, 2> ends{face.head, face.behind};
-    const Vec<2> along = OutlineEdge({ends, 0.0}, 0).along;
-    return {turn_of(edge_.along, along), false, face.head, along};
+    const OutlineEdge neighbour({ends, 0.0}, 0);
+    return {turn_of(edge_.along, neighbour.along), false, face.head, neighbour.along, neighbour.length};
   }
   // The face goes on beyond a corner that touches nothing itself; belongs_here() says how far.
   static double opening(const Corner& corner) {
@@ -119,39 +121,48 @@ private:
     const bool is_head = at.feature_b == 1;
     const Corner& corner = is_head ? head_ : tail_;
     if (corner.turn != Corner::Turn::convex || !(is_head || corner.is_free)) return false;
-    if (at.gap + a_.radius < -depth_) return false;
-    return at.kind != GapKind::vertices || is_between_faces(at.normal);
+    if (at.kind == GapKind::vertices) return is_between_faces(at.normal);
+    const double height = at.gap + a_.radius;
+    return height >= -depth_ &&
+           (height >= 0.0 || is_nearest_edge(at.feature_a - a_.size(), corner.at, height));
+  }
+  // True if no other edge of the outline is nearer to a point inside it.
+  [[nodiscard]] bool is_nearest_edge(Index edge, const Vec<2>& point, double height) const {
+    for (Index i = 0; i < a_.size(); ++i) {
+      if (i != edge && OutlineEdge(a_, i).height(point) > height) return false;
+    }
+    return true;
+  }
+  // Distance of the outline from the line through a corner of the ground, negative behind it.
+  [[nodiscard]] double separation_at(const Vec<2>& corner, const Vec<2>& along) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec<2>& vertex : a_.vertices) least = std::min(least, normal_of(along).dot(vertex - corner));
+    return least;
   }
   // True if it is this face, and not a neighbour, that a vertex stands before.
   [[nodiscard]] bool has_before_it(const Vec<2>& vertex) const {
     if (edge_.height(vertex) < -depth_) return false;
-    const double beyond_head = edge_.along.dot(vertex - head_.at),
-                 beyond_tail = edge_.along.dot(vertex - tail_.at);
-    const double height_at_head = edge_.normal().dot(vertex - head_.at);
-    const double height_at_tail = edge_.normal().dot(vertex - tail_.at);
-    switch (head_.turn) {
-      case Corner::Turn::concave:  // in a corner of the free space, both faces go on
-        if (beyond_head > 0.0 && head_.height(vertex) > 0.0) return false;
-        break;
-      case Corner::Turn::flat:
-        if (Vec<2>(edge_.along + head_.along).dot(vertex - head_.at) > 0.0) return false;
-        break;
-      case Corner::Turn::convex:  // inside a ridge: the side that is nearer
-        if (!head_.is_free && height_at_head < 0.0 && head_.coordinate(vertex) > 0.0 &&
-            head_.height(vertex) > height_at_head) {
-          return false;
-        }
-    }
-    switch (tail_.turn) {
-      case Corner::Turn::concave:
-        return !(beyond_tail < 0.0 && tail_.height(vertex) > 0.0);
-      case Corner::Turn::flat:
-        return Vec<2>(tail_.along + edge_.along).dot(vertex - tail_.at) > 0.0;
+    return is_this_side(head_, vertex, 1.0) && is_this_side(tail_, vertex, -1.0);
+  }
+  // Likewise at one end. \param sense 1 at the head, -1 at the tail
+  [[nodiscard]] bool is_this_side(const Corner& corner, const Vec<2>& vertex, double sense) const {
+    const Vec<2> from_corner = vertex - corner.at;
+    const double beyond = sense * edge_.along.dot(from_corner);
+    const double beyond_neighbour = sense * corner.along.dot(from_corner), height = corner.height(vertex);
+    switch (corner.turn) {
+      case Corner::Turn::flat: {
+        const double across = Vec<2>(edge_.along + corner.along).dot(from_corner);
+        return sense > 0.0 ? across <= 0.0 : across > 0.0;
+      }
+      case Corner::Turn::concave:  // beyond it only what is inside the neighbour, and so behind both
+        return beyond <= 0.0 || (height <= 0.0 && height >= -depth_ && beyond_neighbour <= corner.length);
       case Corner::Turn::convex:
         break;
     }
-    return tail_.is_free || height_at_tail >= 0.0 || tail_.coordinate(vertex) >= 0.0 ||
-           tail_.height(vertex) < height_at_tail;
+    // Inside the ridge, before both faces: the face along which the outline overlaps less.
+    if (corner.is_free || beyond_neighbour <= 0.0 || !(edge_.normal().dot(from_corner) < 0.0)) return true;
+    const double own = separation_at(corner.at, edge_.along), other = separation_at(corner.at, corner.along);
+    return sense > 0.0 ? own >= other : own > other;
   }
 
   const ConvexOutline& a_;

@@ -86,7 +86,9 @@ TEST(GapFace, FacesOfAHillAreTheHill) {
     const auto contacts = find(a, faces, margin);
     ASSERT_FALSE(contacts.empty());
     EXPECT_NEAR(least_gap(contacts), expected[0].gap, tolerance);
-    for (int k = 0; k < count; ++k) {  // each of them is among those of the faces
+    // Each of them is among those of the faces, but a second one at a large angle, which a neighbour may stand for.
+    const bool is_flat = count == 2 && expected[0].normal.dot(expected[1].normal) > 0.99;
+    for (int k = 0; k < (is_flat ? 2 : 1); ++k) {
       const GapPoint& at = expected[static_cast<std::size_t>(k)];
       EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
                               [&](const FaceContact& contact) {
@@ -96,7 +98,7 @@ TEST(GapFace, FacesOfAHillAreTheHill) {
           << k << " " << at.gap;
     }
     overlapping += expected[0].gap + a.radius < 0.0 ? 1 : 0;
-    with_two += count == 2 ? 1 : 0;
+    with_two += is_flat ? 1 : 0;
   }
   EXPECT_GT(overlapping, 1000);
   EXPECT_GT(with_two, 200);
@@ -165,7 +167,7 @@ TEST(GapFace, NormalsAtCornersLieBetweenThoseOfTheFaces) {
   for (int k = 0; k < 30; ++k) line.push_back({k - 15.0, 0.3 * std::sin(0.9 * k)});
   const auto faces = faces_along(line, false, 0.1);
   int at_corners = 0;
-  for (int i = 0; i < 5000 && !HasFailure(); ++i) {
+  for (int i = 0; i < 20000 && !HasFailure(); ++i) {
     const OwnedOutline disc{{{random.uniform(-10.0, 10.0), random.uniform(0.5, 1.2)}}, 0.5};
     for (const FaceContact& contact : find(disc, faces, 0.1)) {
       const auto normal = [&](std::size_t face) {
