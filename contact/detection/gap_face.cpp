@@ -60,12 +60,10 @@ public:
     for (const Vec<2>& vertex : a_.vertices) separation = std::min(separation, edge_.height(vertex));
     if (separation > enough) return 0;
     OutlineEdge best;  // of the outline, if it separates more
-    bool overlap = separation <= 0.0;
     for (Index i = 0; i < a_.size() && a_.size() > 1; ++i) {
       const OutlineEdge edge(a_, i);
       if (edge.length == 0.0) continue;
       const double along_it = std::min(edge.height(ends_[0]), edge.height(ends_[1]));
-      overlap = overlap && along_it <= 0.0;
       if (!(along_it > separation) || !is_between_faces(-edge.normal())) continue;
       separation = along_it;
       best = edge;
@@ -76,12 +74,13 @@ public:
     const OutlineEdge& face = is_of_ground ? edge_ : best;
     const ConvexOutline &of_face = is_of_ground ? ground_ : a_, &other = is_of_ground ? a_ : ground_;
     const OutlineEdge facing = facing_edge(other, face);
+    const bool overlap = separation <= 0.0 && is_cut_by(ends_);
     const EdgeMeeting meeting(face, facing, of_face, other, overlap, is_of_ground ? opening(tail_) : 0.0,
                               is_of_ground ? opening(head_) : 0.0);
     int found = 0;
     for (int i = 0; i < meeting.size(); ++i) {
       const GapPoint at = gap_of_pair(meeting[i], a_, ground_, !is_of_ground);
-      if (at.gap <= margin && belongs_here(at)) out[static_cast<std::size_t>(found++)] = at;
+      if (at.gap <= margin && belongs_here(at, best)) out[static_cast<std::size_t>(found++)] = at;
     }
     if (found == 2 && out[1].gap < out[0].gap) std::swap(out[0], out[1]);
     return found;
@@ -113,25 +112,61 @@ private:
     }
     return tail_.turn == Corner::Turn::convex && cross(normal_of(tail_.along), direction) >= -slack;
   }
-  [[nodiscard]] bool belongs_here(const GapPoint& at) const {
+  // \param best edge of the outline that separates most
+  [[nodiscard]] bool belongs_here(const GapPoint& at, const OutlineEdge& best) const {
     if (at.kind == GapKind::edge_of_b) {
       return at.feature_b == ground_.size() && has_before_it(a_.vertices[at.feature_a]);
     }
-    // A corner of the ground: of this face its head, and a free tail.
     const bool is_head = at.feature_b == 1;
     const Corner& corner = is_head ? head_ : tail_;
-    if (corner.turn != Corner::Turn::convex || !(is_head || corner.is_free)) return false;
-    if (at.kind == GapKind::vertices) return is_between_faces(at.normal);
+    if (corner.turn != Corner::Turn::convex) return false;
+    if (at.kind == GapKind::vertices) return (is_head || corner.is_free) && is_between_faces(at.normal);
+    if (!takes_edge(at.normal, corner, is_head)) return false;
     const double height = at.gap + a_.radius;
-    return height >= -depth_ &&
-           (height >= 0.0 || is_nearest_edge(at.feature_a - a_.size(), corner.at, height));
-  }
-  // True if no other edge of the outline is nearer to a point inside it.
-  [[nodiscard]] bool is_nearest_edge(Index edge, const Vec<2>& point, double height) const {
-    for (Index i = 0; i < a_.size(); ++i) {
-      if (i != edge && OutlineEdge(a_, i).height(point) > height) return false;
+    if (height >= 0.0) return true;
+    // Behind that edge: not too deep; along the edge that separates most, if the ground cuts the outline at
+    // all; else inside the outline, and not nearer to another edge.
+    if (height < -depth_) return false;
+    const Index edge = at.feature_a - a_.size();
+    if (best.length > 0.0 && best.tail == edge) {
+      const double reach = is_head ? corner.length : -corner.length;
+      const std::array<Vec<2>, 2> neighbour{corner.at, corner.at + reach * corner.along};
+      return is_cut_by(ends_) || (!corner.is_free && is_cut_by(neighbour));
     }
-    return true;
+    return height_above_others(edge, corner.at) <= height;
+  }
+  // True if the hull of the outline's vertices and a segment have points in common.
+  [[nodiscard]] bool is_cut_by(const std::array<Vec<2>, 2>& segment) const {
+    const OutlineEdge line({segment, 0.0}, 0);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (Index i = 0; i < a_.size(); ++i) {
+      least = std::min(least, line.height(a_.vertices[i]));
+      most = std::max(most, line.height(a_.vertices[i]));
+      const OutlineEdge edge(a_, i);
+      if (edge.length > 0.0 && std::min(edge.height(segment[0]), edge.height(segment[1])) > 0.0) return false;
+    }
+    return least <= 0.0 && most >= 0.0;
+  }
+  // True if this face, and not its neighbour, touches an edge of the outline with their common corner. That
+  // is so between the two normals at its head, and where the edge lies nearly along the face. \param normal
+  // of the contact
+  [[nodiscard]] bool takes_edge(const Vec<2>& normal, const Corner& corner, bool is_head) const {
+    constexpr double nearly_along = 0.7;  // 45 degrees
+    const Vec<2> own = edge_.normal(), other = normal_of(corner.along);
+    const bool is_along = own.dot(normal) > nearly_along;
+    if (is_head) {
+      return (corner.is_free || cross(normal, other) > 0.0) && (is_along || cross(own, normal) >= 0.0);
+    }
+    if (corner.is_free) return is_along || cross(normal, own) >= 0.0;
+    return is_along && cross(normal, own) <= 0.0;
+  }
+  // Largest height of a point over the edges of the outline but one.
+  [[nodiscard]] double height_above_others(Index edge, const Vec<2>& point) const {
+    double most = -std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < a_.size(); ++i) {
+      if (i != edge) most = std::max(most, OutlineEdge(a_, i).height(point));
+    }
+    return most;
   }
   // Distance of the outline from the line through a corner of the ground, negative behind it.
   [[nodiscard]] double separation_at(const Vec<2>& corner, const Vec<2>& along) const {
@@ -159,10 +194,11 @@ private:
       case Corner::Turn::convex:
         break;
     }
-    // Inside the ridge, before both faces: the face along which the outline overlaps less.
-    if (corner.is_free || beyond_neighbour <= 0.0 || !(edge_.normal().dot(from_corner) < 0.0)) return true;
-    const double own = separation_at(corner.at, edge_.along), other = separation_at(corner.at, corner.along);
-    return sense > 0.0 ? own >= other : own > other;
+    // Inside the ridge, before both faces: the nearer one has it, if it looks at this vertex.
+    const double own = edge_.normal().dot(from_corner);
+    if (corner.is_free || beyond_neighbour <= 0.0 || own >= 0.0) return true;
+    if (sense > 0.0 ? own >= height : own > height) return true;
+    return separation_at(corner.at, corner.along) < height;
   }
 
   const ConvexOutline& a_;
