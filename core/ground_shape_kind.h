@@ -6,6 +6,8 @@
 #include <carom/core/shape_kind.h>
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace carom {
@@ -31,11 +33,38 @@ struct GroundMotion {
   bool spin_given = false;               ///< likewise
 };
 
-/// All shapes on ground of one kind. Points of bodies touch them; they touch nothing themselves.
+/// A piece of the boundary of a shape on ground in the plane. Places are measured from the point o about
+/// which the shape turns (GroundMotion), as the shape is described.
+struct GroundPiece {
+  /// Forms of pieces.
+  enum class Form : std::uint8_t {
+    solid,  ///< a convex set: the vertices of its outline, counter-clockwise
+    face,  ///< one face of a polyline, free space on its right: the vertex before it, its tail, its head, and
+           ///< the vertex behind it
+    hollow  ///< everything but the inside of a circle: the circle's centre
+  };
+  Form form = Form::solid;       ///< what it is
+  std::vector<Vec<2>> points{};  ///< as its form says [m]
+  double radius = 0.0;           ///< of a solid's outline, or of the circle [m]
+  bool tail_is_free = false;  ///< of a face: it has no neighbour at its tail, and the first point no meaning
+  bool head_is_free = false;  ///< likewise at its head
+  double depth =
+      std::numeric_limits<double>::infinity();  ///< of a face: how far below it the ground is solid [m]
+};
+
+/// All shapes on ground of one kind. Bodies touch them, with points or with outlines; they touch nothing
+/// themselves.
 class CAROM_API GroundShapeKind : public ShapeKind {
 public:
   [[nodiscard]] BodyId body(Index /*slot*/) const final { return ground; }
   void rounded_points(Index /*slot*/, std::vector<RoundedPoint>& /*out*/) const final {}
+
+  /// Appends the pieces that the outlines of bodies touch, in a fixed order. None: rounded points of bodies
+  /// touch the shape, as gap() says. A shape that has pieces is infinitely far for gap().
+  virtual void pieces(Index /*slot*/, std::vector<GroundPiece>& /*out*/) const {}
+  /// Velocity of the surface of a shape with pieces along itself, beside that of its motion: of a conveyor.
+  /// Positive to the right of someone who stands on it [m/s].
+  [[nodiscard]] virtual double surface_speed(Index /*slot*/) const { return 0.0; }
 
   /// True if the shape has a prescribed motion. For one at rest gap() is called; for a moving one place()
   /// once for each time, and moved_gap() for each point.

@@ -65,12 +65,14 @@ inline GapPoint gap_of_pair(const FeaturePair& pair, const ConvexOutline& a, con
 class EdgeMeeting {
 public:
   /// \param facing of `other`, outlives this, as does `face`
+  /// \param overlap whether the hulls of the vertices overlap (or touch, but for rounding)
   /// \param open_tail,open_head the face counts as longer by this much at its ends [m]
   EdgeMeeting(const OutlineEdge& face, const OutlineEdge& facing, const ConvexOutline& of_face,
-              const ConvexOutline& other, double open_tail = 0.0, double open_head = 0.0)
+              const ConvexOutline& other, bool overlap, double open_tail = 0.0, double open_head = 0.0)
       : face_(face),
         facing_(facing),
         face_head_(of_face.vertices[face.head]),
+        overlap_(overlap),
         from_(-open_tail),
         to_(face.length + open_head),
         tail_at_(face.coordinate(other.vertices[facing.head])),  // the facing edge runs the other way
@@ -90,9 +92,11 @@ public:
   [[nodiscard]] const FeaturePair& operator[](int i) const { return pairs_[static_cast<std::size_t>(i)]; }
 
 private:
-  // True if a vertex stands beyond the end of an edge; behind the edge's line only if by more than it is
-  // deep: deep inside, the foot of a vertex is beyond the end because of rounding only.
-  static bool is_off(double beyond, double height) { return beyond > 0.0 && beyond > -height; }
+  // True if a vertex stands beyond the end of an edge. Where hulls overlap, the foot of a vertex that is
+  // deeper than this is beyond the end because of rounding only.
+  [[nodiscard]] bool is_off(double beyond, double height) const {
+    return beyond > 0.0 && !(overlap_ && beyond <= -height);
+  }
 
   void add(const FeaturePair& pair) { pairs_[static_cast<std::size_t>(size_++)] = pair; }
   void add_on_face(Index vertex) { add({true, false, face_.tail, vertex}); }
@@ -142,6 +146,7 @@ private:
 
   const OutlineEdge &face_, &facing_;
   Vec<2> face_head_;
+  bool overlap_;
   double from_, to_;          // ends of the face, along it
   double tail_at_, head_at_;  // of the facing edge
   std::array<FeaturePair, 2> pairs_{};

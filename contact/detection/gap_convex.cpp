@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -92,6 +93,13 @@ bool comes_first(const Face& face, const Face& other) {
   return order(face) >= order(other);
 }
 
+/// True if two vertices are in one place but for rounding, so that the line between them has no direction.
+bool coincide(const Vec<2>& one, const Vec<2>& other) {
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  const double apart = std::max(std::abs(one[0] - other[0]), std::abs(one[1] - other[1]));
+  return apart <= rounding * std::max(std::abs(one[0]), std::abs(one[1]));
+}
+
 }  // namespace
 
 int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double margin,
@@ -110,10 +118,17 @@ int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double ma
   const OutlineEdge& face = is_of_a ? face_a.edge : face_b.edge;
   const ConvexOutline &of_face = is_of_a ? a : b, &other = is_of_a ? b : a;
   const OutlineEdge facing = facing_edge(other, face);
-  const EdgeMeeting meeting(face, facing, of_face, other);
+  const bool overlap = (is_of_a ? face_a : face_b).separation <= 0.0;
+  const EdgeMeeting meeting(face, facing, of_face, other, overlap);
   int found = 0;
   for (int i = 0; i < meeting.size(); ++i) {
-    const GapPoint at = gap_of_pair(meeting[i], a, b, is_of_a);
+    FeaturePair pair = meeting[i];
+    const bool is_of_vertices = !pair.face_side_is_edge && !pair.other_side_is_edge;
+    if (is_of_vertices && coincide(of_face.vertices[pair.face_side], other.vertices[pair.other_side])) {
+      pair.face_side_is_edge = true;  // they touch; the face has a normal
+      pair.face_side = face.tail;
+    }
+    const GapPoint at = gap_of_pair(pair, a, b, is_of_a);
     if (!(at.gap <= margin)) continue;
     out[static_cast<std::size_t>(found++)] = at;
   }
