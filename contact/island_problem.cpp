@@ -79,7 +79,7 @@ void IslandProblem::set_row(std::size_t constraint, int row) {
 
 /// Whether the constraints are many and share several bodies in the plane.
 bool IslandProblem::may_be_factored() const {
-  if (constraints_.size() < factored_constraints) return false;
+  if (constraints_.size() < factors_from_ || constraints_.empty()) return false;
   const Index first = constraints_.front().body();
   const auto planar = [](const Constraint& at) { return at.rows <= 2; };
   const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };

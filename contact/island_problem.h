@@ -14,19 +14,24 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace carom {
 
-/// Constraints of an island from which on W stays in factors and sweeps solve it (nonlinear_cg_solver.h),
-/// where bodies of the plane answer for themselves and there are several. Below, the exact chain costs little
-/// and ends exactly.
+/// Constraints from which on an island that may do so leaves W in factors. The exact chain is slower from
+/// about five contacts on, and takes milliseconds from about 40 on; up to here it is worth its exact answers.
 inline constexpr std::size_t factored_constraints = 50;
 
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
 public:
+  /// Lets W stay in factors, and sweeps solve it (nonlinear_cg_solver.h), from so many constraints on, where
+  /// these belong to several bodies of the plane that answer for themselves. Never, unless this was called:
+  /// answers are only as exact then as the budget of the sweeps says.
+  void allow_factors(std::size_t constraints = factored_constraints) { factors_from_ = constraints; }
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
   /// forgotten; respond() is to be called next.
   void build(std::span<const Constraint> constraints, const double* velocity_before);
@@ -80,6 +85,7 @@ private:
   void set_row(std::size_t constraint, int row);
   [[nodiscard]] bool may_be_factored() const;
 
+  std::size_t factors_from_ = std::numeric_limits<std::size_t>::max();
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
   Delassus delassus_;

@@ -12,6 +12,10 @@ namespace {
 // Sweeps between two looks at the residual, at most.
 constexpr int look_every = 8;
 
+// Where the residual grows between two looks the sweeps go on without a direction for as many looks: of a
+// body with hundreds of contacts beta stays below one although the steps along d lead away.
+constexpr int plain_looks = 8;
+
 // What the sweeps aim at is a little less than what is asked for: whoever judges adds in another order.
 constexpr double aim = 0.9;
 
@@ -26,22 +30,27 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
   if (!problem.is_factored()) return {Outcome::not_solved, false, 0, "not applicable"};
   const double target = aim * budget_.residual;
   sweeps_.begin(problem, impulse);
-  double best = sweeps_.judge();
+  double best = sweeps_.judge(), last = best;
   if (best <= target) return {Outcome::solved, false, 0, {}};
-  double before = 0.0;
-  int sweep = 0;
+  double before = 0.0;  // |g|^2 of the sweep before
+  int sweep = 0, plain = 0;
   while (sweep < budget_.sweeps && best <= std::numeric_limits<double>::max()) {
     const SweepChange change = sweeps_.sweep();
     ++sweep;
-    if (change.largest <= target * sweeps_.scale() || sweep % look_every == 0 || sweep == budget_.sweeps) {
+    const bool regular_look = sweep % look_every == 0;
+    if (change.largest <= target * sweeps_.scale() || regular_look || sweep == budget_.sweeps) {
       const double found = sweeps_.judge();
       if (found <= best) {
         best = found;
         sweeps_.write(problem, impulse);
       }
       if (best <= target) return {Outcome::solved, false, sweep, {}};
+      if (regular_look) {
+        plain = found > last ? plain_looks : std::max(plain - 1, 0);
+        last = found;
+      }
     }
-    if (before > 0.0 && change.square <= before) {
+    if (plain == 0 && before > 0.0 && change.square <= before) {
       sweeps_.step(change.square / before);
     } else {
       sweeps_.restart();

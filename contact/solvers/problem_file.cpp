@@ -126,6 +126,56 @@ void read_matrix(const Reader& in, const Json& rows, ContactProblem& problem) {
   }
 }
 
+// M^-1 by slot, and H by row: a list of blocks, each a slot and its numbers.
+void read_factors(const Reader& in, const Json& masses, const Json& rows, ContactProblem& problem) {
+  constexpr int columns = ResponseFactors::columns, most = ResponseFactors::most_slots;
+  ResponseFactors& factors = problem.factors();
+  const int slots = static_cast<int>(factors.slots());
+  for (int slot = 0; slot < slots; ++slot) {
+    const std::string field = at("inverse_masses", slot);
+    const Json& of_slot = in.list(masses[static_cast<std::size_t>(slot)], field, columns, "numbers");
+    for (int k = 0; k < columns; ++k) {
+      double& inverse = factors.inverse_mass[static_cast<std::size_t>(columns * slot + k)];
+      inverse = in.number(of_slot[static_cast<std::size_t>(k)], field + at("", k));
+      if (inverse < 0.0) in.refuse(field + at("", k), to_text(inverse), ">= 0");
+    }
+  }
+  for (int r = 0; r < problem.rows(); ++r) {
+    const Json& blocks = rows[static_cast<std::size_t>(r)];
+    if (!blocks.is_array() || blocks.size() > std::size_t{most}) {
+      in.refuse(at("H", r), Reader::shown(blocks), "a list of up to " + std::to_string(most) + " blocks");
+    }
+    ResponseFactors::Row& row = factors.rows[static_cast<std::size_t>(r)];
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::string field = at("H", r) + at("", static_cast<int>(i));
+      const Json& block = in.list(blocks[i], field, columns + 1, "numbers, the first of them a slot");
+      row.slot[i] =
+          in.whole(block[0], field + "[0]", 0, slots - 1, "a slot, 0 to " + std::to_string(slots - 1));
+      for (std::size_t k = 0; k < columns; ++k) {
+        row.h[columns * i + k] = in.number(block[k + 1], field + at("", static_cast<int>(k) + 1));
+      }
+    }
+  }
+}
+
+// W, as a matrix or in factors. Their lists bound the number of rows before anything is allocated for it.
+void read_response(const Reader& in, const Json& file, int rows, ContactProblem& problem) {
+  if (file.contains("H")) {
+    if (file.contains("W")) in.refuse("W is given beside H; allowed: one of them");
+    in.list(file["H"], "H", rows, "rows");
+    const Json& masses = in.member(file, "", "inverse_masses");
+    if (!masses.is_array())
+      in.refuse("inverse_masses", Reader::shown(masses), "a list, three numbers a slot");
+    problem.reset_factors(rows, static_cast<int>(masses.size()));
+    return read_factors(in, masses, file["H"], problem);
+  }
+  const Json& matrix = in.member(file, "", "W");
+  in.list(matrix, "W", rows, "rows");
+  if (rows > 0) in.list(matrix[0], at("W", 0), rows, "numbers");
+  problem.reset(rows);
+  read_matrix(in, matrix, problem);
+}
+
 RowSet read_set(const Reader& in, const Json& value, int row) {
   const std::string field = at("sets", row);
   if (!value.is_object()) in.refuse(field, Reader::shown(value), "an object with a kind");
@@ -221,19 +271,16 @@ ProblemFile load_problem(const std::string& path) {
   const Reader in(path);
   const Json file = parsed(in, read_file(path, problem_format::label));
   demand_this_format(in, file);
-  in.demand_fields(file, "", {"format", "version", "comment", "time", "contacts", "rows", "W", "b", "sets"});
+  in.demand_fields(
+      file, "",
+      {"format", "version", "comment", "time", "contacts", "rows", "W", "inverse_masses", "H", "b", "sets"});
   ProblemFile result;
   ContactProblem& problem = result.problem;
-  // The list bounds the number of rows before anything is allocated for it.
-  const Json& matrix = in.member(file, "", "W");
   const int rows = in.whole(in.member(file, "", "rows"), "rows", 0, std::numeric_limits<int>::max(),
                             "a whole number >= 0");
-  in.list(matrix, "W", rows, "rows");
+  read_response(in, file, rows, problem);
   const Json& b = in.list(in.member(file, "", "b"), "b", rows, "numbers");
   const Json& sets = in.list(in.member(file, "", "sets"), "sets", rows, "sets");
-  if (rows > 0) in.list(matrix[0], at("W", 0), rows, "numbers");
-  problem.reset(rows);
-  read_matrix(in, matrix, problem);
   for (int row = 0; row < rows; ++row) {
     const auto place = static_cast<std::size_t>(row);
     problem.vector()[place] = in.number(b[place], at("b", row));

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <utility>
 
 namespace carom {
 
@@ -55,6 +57,32 @@ Json written(const RowSet& set) {
   return out;
 }
 
+// The numbers of each slot.
+Json inverse_masses(const ResponseFactors& factors) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  Json list = Json::array();
+  for (std::size_t slot = 0; slot < factors.slots(); ++slot) {
+    list.push_back(numbers(std::span(factors.inverse_mass).subspan(columns * slot, columns)));
+  }
+  return list;
+}
+
+// Each row as its blocks: slot and numbers.
+Json factor_rows(const ResponseFactors& factors) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  Json list = Json::array();
+  for (const ResponseFactors::Row& row : factors.rows) {
+    Json blocks = Json::array();
+    for (std::size_t i = 0; i < row.slot.size() && row.slot[i] != ResponseFactors::no_slot; ++i) {
+      Json block = Json::array({row.slot[i]});
+      for (std::size_t k = 0; k < columns; ++k) block.push_back(number(row.h[columns * i + k]));
+      blocks.push_back(std::move(block));
+    }
+    list.push_back(std::move(blocks));
+  }
+  return list;
+}
+
 // One field on a line; of lists of lists (W, sets) one element.
 std::string laid_out(const Json& fields) {
   std::string text = "{";
@@ -88,8 +116,13 @@ void save_problem(const std::string& path, const ContactProblem& problem, const 
   if (notes.time) file["time"] = number(*notes.time);
   if (!notes.contacts.empty()) file["contacts"] = notes.contacts;
   file["rows"] = problem.rows();
-  file["W"] = Json::array();
-  for (std::size_t i = 0; i < n; ++i) file["W"].push_back(numbers(problem.matrix().subspan(i * n, n)));
+  if (problem.is_factored()) {
+    file["inverse_masses"] = inverse_masses(problem.factors());
+    file["H"] = factor_rows(problem.factors());
+  } else {
+    file["W"] = Json::array();
+    for (std::size_t i = 0; i < n; ++i) file["W"].push_back(numbers(problem.matrix().subspan(i * n, n)));
+  }
   file["b"] = numbers(problem.vector());
   file["sets"] = Json::array();
   for (const RowSet& set : problem.sets()) file["sets"].push_back(written(set));

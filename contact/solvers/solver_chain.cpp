@@ -2,8 +2,8 @@
 
 #include <carom/contact/solvers/solver_chain.h>
 
+#include <carom/contact/solvers/large_problem_solver.h>
 #include <carom/contact/solvers/newton_polish.h>
-#include <carom/contact/solvers/nonlinear_cg_solver.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
 #include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/single_contact.h>
@@ -54,13 +54,12 @@ struct SolverChain::Workspace {
   SolutionList list;
   NewtonPolish polish;
   WarmStart warm_start;
-  NonlinearCgSolver sweeps;
+  LargeProblemSolver large;
   ChainStatistics statistics;
   std::vector<double> trial, trial_xi, xi;
   std::vector<ContactMode> modes;
   std::vector<double> start;  // impulses of a start
   std::vector<ContactMode> start_modes;
-  std::vector<double> slot_velocity;  // of a problem in factors
 
   // Result of the solvers tried so far.
   struct Attempt {
@@ -89,7 +88,7 @@ struct SolverChain::Workspace {
       case SolverId::projection:
         return projection;
       case SolverId::nonlinear_cg:
-        return sweeps;
+        return large.sweeps();
       case SolverId::single_contact:
       case SolverId::enumeration:
         break;
@@ -238,33 +237,10 @@ void SolverChain::Workspace::conclude(const ContactProblem& problem, std::span<d
   }
 }
 
-// A problem in factors: sweeps alone, from the impulses at hand, unless these are an answer.
+// A problem in factors, from the impulses at hand.
 void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<double> impulse,
                                    ContactReport& report) {
-  if (!begin(problem, impulse, report)) return;
-  constexpr auto id = static_cast<std::size_t>(SolverId::nonlinear_cg);
-  const SweepBudget& budget = sweeps.budget();
-  report.solver = solver_names[id];
-  report.tried = 1u << id;
-  problem.velocities(impulse, xi, slot_velocity);
-  Residual found = residual(problem, impulse, xi);
-  if (!(found.value <= budget.residual)) {
-    const SolverAnswer answer = sweeps.improve(problem, impulse);
-    report.iterations = answer.iterations;
-    report.reason = answer.reason;
-    problem.velocities(impulse, xi, slot_velocity);
-    found = residual(problem, impulse, xi);
-  }
-  report.residual = found.value;
-  report.worst_group = found.group;
-  if (found.value <= budget.residual) {
-    report.outcome = Outcome::solved;
-  } else {
-    report.outcome = found.value <= budget.accepted ? Outcome::accepted_at_cap : Outcome::not_solved;
-  }
-  for (std::size_t g = 0; g < modes.size(); ++g) {
-    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
-  }
+  if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
 }
 
 SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
@@ -363,12 +339,7 @@ ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& pro
   return report;
 }
 
-void SolverChain::set_budget(const SweepBudget& budget) {
-  if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
-    throw std::invalid_argument("contact solver: a budget has sweeps >= 0, residual > 0 and accepted >= 0");
-  }
-  work_->sweeps.set_budget(budget);
-}
+void SolverChain::set_budget(const SweepBudget& budget) { work_->large.set_budget(budget); }
 
 std::span<const double> SolverChain::velocities() const { return work_->xi; }
 std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }

@@ -25,6 +25,8 @@ struct PileOptions {
   double radius = 0.02;
   double friction = 0.3;
   double restitution = 0.0;  ///< of normal and tangential direction
+  double gravity = 9.81;
+  double speed = 0.1;  ///< largest at the start, each way [m/s]
   double step = 1e-3;
   std::uint64_t seed = 1;
 };
@@ -41,7 +43,7 @@ public:
       x_.push_back(1.2 * options.radius + pitch * (i % columns) + random.uniform(0.0, 0.1 * options.radius));
       y_.push_back(1.2 * options.radius + pitch * row);
       r_.push_back(options.radius * random.uniform(0.8, 1.0));
-      for (int k = 0; k < 3; ++k) v_.push_back(k < 2 ? random.uniform(-0.1, 0.1) : 0.0);
+      for (int k = 0; k < 3; ++k) v_.push_back(k < 2 ? random.uniform(-options.speed, options.speed) : 0.0);
     }
     for (const double r : r_) {
       const double mass = 1000.0 * 3.14159 * r * r;
@@ -60,13 +62,27 @@ public:
     problem_.group();
     return problem_;
   }
-  /// Solves it and moves on.
-  const ContactReport& advance(SolverChain& chain) {
+  /// Solves it and moves on. \tparam Chain SolverChain, or what solves as it does
+  template <class Chain>
+  const ContactReport& advance(Chain& chain) {
     chain.solve(problem_, solution_);
     move();
     return solution_.report;
   }
-  const ContactReport& step(SolverChain& chain) {
+  /// Moves on with the impulses of solution().
+  void move() {
+    for (std::size_t i = 0; i < x_.size(); ++i) v_[3 * i + 1] -= options_.gravity * options_.step;
+    const double before = kinetic_energy();
+    problem_.factors().respond(solution_.impulse, change_);
+    for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change_[i];
+    gain_ = kinetic_energy() - before;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      x_[i] += options_.step * v_[3 * i];
+      y_[i] += options_.step * v_[3 * i + 1];
+    }
+  }
+  template <class Chain>
+  const ContactReport& step(Chain& chain) {
     state();
     return advance(chain);
   }
@@ -158,7 +174,7 @@ private:
       double sum = 0.0;
       for (std::size_t i = 0; i < 2 && row.slot[i] >= 0; ++i) {
         const double* const v = v_.data() + 3 * row.slot[i];
-        sum += row.h[3 * i] * v[0] + row.h[3 * i + 1] * (v[1] - free * 9.81 * options_.step) +
+        sum += row.h[3 * i] * v[0] + row.h[3 * i + 1] * (v[1] - free * options_.gravity * options_.step) +
                row.h[3 * i + 2] * v[2];
       }
       return sum;
@@ -175,18 +191,6 @@ private:
     const auto from = static_cast<std::size_t>(2 * (old - before_.begin()));
     solution_.impulse[2 * c] = impulse_before_[from];
     solution_.impulse[2 * c + 1] = impulse_before_[from + 1];
-  }
-
-  void move() {
-    for (std::size_t i = 0; i < x_.size(); ++i) v_[3 * i + 1] -= 9.81 * options_.step;
-    const double before = kinetic_energy();
-    problem_.factors().respond(solution_.impulse, change_);
-    for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += change_[i];
-    gain_ = kinetic_energy() - before;
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      x_[i] += options_.step * v_[3 * i];
-      y_[i] += options_.step * v_[3 * i + 1];
-    }
   }
 
   PileOptions options_;

@@ -78,6 +78,7 @@ TEST_F(FactoredIsland, IsTheSameProblem) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const std::vector<Constraint> list = constraints(60 + static_cast<int>(seed), seed);
     IslandProblem island;
+    island.allow_factors();
     island.build(list, before_.data());
     island.respond(masses_);
     ASSERT_TRUE(island.problem().is_factored());
@@ -124,6 +125,7 @@ TEST_F(FactoredIsland, IsTheSameProblem) {
 TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
   const std::vector<Constraint> list = constraints(80, 4);
   IslandProblem island;
+  island.allow_factors();
   island.build(list, before_.data());
   island.respond(masses_);
   island.set_free_velocity(free_.data());
@@ -131,6 +133,7 @@ TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
   EXPECT_GT(island.report().iterations, 0);
   const std::vector<double> answer(island.impulses().begin(), island.impulses().end());
   IslandProblem next;
+  next.allow_factors();
   next.build(list, before_.data());
   next.respond(masses_);
   next.start_from(answer);
@@ -147,6 +150,8 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
     island.respond(masses_);
     return island.problem().is_factored();
   };
+  EXPECT_FALSE(respond(constraints(factored_constraints, 1)));  // not allowed
+  island.allow_factors();
   EXPECT_FALSE(respond(constraints(factored_constraints - 1, 1)));
   EXPECT_TRUE(respond(constraints(factored_constraints, 1)));
   std::vector<Constraint> of_one = constraints(factored_constraints, 1);
@@ -154,6 +159,29 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
     one = constraints(1, 2).front();
   }
   EXPECT_FALSE(respond(of_one));
+  // Nor where bodies do not answer for themselves; W is a matrix then, whatever was expected.
+  class Together final : public BodyResponse {
+  public:
+    explicit Together(MassResponse& masses) : masses_(&masses) {}
+    [[nodiscard]] Range reach(Index body) const override { return masses_->reach(body); }
+    void answer(Index body, double* x, std::size_t columns, char* held) override {
+      masses_->answer(body, x, columns, held);
+    }
+
+  private:
+    MassResponse* masses_;
+  } together(masses_);
+  const std::vector<Constraint> list = constraints(factored_constraints, 1);
+  island.build(list, before_.data());
+  island.respond(masses_);
+  const ContactProblem factored = island.problem();
+  island.build(list, before_.data());
+  island.respond(together);
+  ASSERT_FALSE(island.problem().is_factored());
+  const ContactProblem dense = factored.dense();
+  for (std::size_t i = 0; i < dense.matrix().size(); ++i) {
+    EXPECT_NEAR(island.problem().matrix()[i], dense.matrix()[i], 1e-14);
+  }
 }
 
 }  // namespace
