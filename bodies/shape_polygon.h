@@ -23,6 +23,7 @@ struct Polygon {
   BodyId body{};                   ///< the body (required)
   std::vector<Vec<2>> vertices{};  ///< at least three, in the body's frame [m]
   MaterialId material{};           ///< for laws between materials
+  ContactFilter filter{};          ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {

@@ -24,6 +24,7 @@ struct Segment {
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< one end, in the body's frame [m]
   Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< the other end [m]
   MaterialId material{};                                                   ///< for laws between materials
+  ContactFilter filter{};                                                  ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {

@@ -11,8 +11,8 @@ namespace carom {
 
 std::string_view to_string(FindingKind kind) {
   constexpr std::array<std::string_view, finding_kind_count> names{
-      "law without effect", "contact without a law", "touches nothing",
-      "untouched obstacle", "body without a shape",  "kept without a joint"};
+      "law without effect",   "contact without a law", "touches nothing",   "untouched obstacle",
+      "body without a shape", "kept without a joint",  "hidden by a filter"};
   return enum_name(names, kind);
 }
 
@@ -31,27 +31,29 @@ std::string listed(const PartNames& parts) {
   return text;
 }
 
-/// A material and the first part that has it.
+/// A material and a filter, and the first part that has both.
 struct Toucher {
   MaterialId material;
+  ContactFilter filter;
   std::string name;
 };
 
 /// Everything that can touch a shape on ground.
 struct Touching {
-  std::vector<Toucher> by_material;
-  PartNames intended;  // shapes, and particles with a material: made to touch something
+  std::vector<Toucher> kinds;  // by material and filter
+  PartNames intended;          // shapes, and particles with a material: made to touch something
   bool any = false;
 };
 
 Touching touching_parts(const System& system) {
   Touching all;
-  const auto add = [&](MaterialId material, bool intended, auto id) {
+  const auto add = [&](MaterialId material, const ContactFilter& filter, bool intended, auto id) {
     all.any = true;
     if (intended) all.intended.push_back(system.name(id));
-    const auto known = std::find_if(all.by_material.begin(), all.by_material.end(),
-                                    [&](const Toucher& toucher) { return toucher.material == material; });
-    if (known == all.by_material.end()) all.by_material.push_back({material, system.name(id)});
+    const auto known = std::find_if(all.kinds.begin(), all.kinds.end(), [&](const Toucher& toucher) {
+      return toucher.material == material && toucher.filter == filter;
+    });
+    if (known == all.kinds.end()) all.kinds.push_back({material, filter, system.name(id)});
   };
   // PartNames are made of few parts only where there are shapes on ground: then none is listed as intended.
   const bool lists = system.obstacles().empty();
@@ -59,19 +61,21 @@ Touching touching_parts(const System& system) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (!entry.kind->has_contact_point(slot)) continue;
       const MaterialId material = entry.kind->material(slot);
-      add(material, lists && material.valid(), BodyId{entry.serials[slot], system.token()});
+      add(material, entry.kind->filter(slot), lists && material.valid(),
+          BodyId{entry.serials[slot], system.token()});
     }
   }
   for (const auto& entry : system.shape_kinds().entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      add(entry.kind->material(slot), lists, ShapeId{entry.serials[slot], system.token()});
+      add(entry.kind->material(slot), entry.kind->filter(slot), lists,
+          ShapeId{entry.serials[slot], system.token()});
     }
   }
   return all;
 }
 
 bool has(const Touching& touching, MaterialId material) {
-  return std::any_of(touching.by_material.begin(), touching.by_material.end(),
+  return std::any_of(touching.kinds.begin(), touching.kinds.end(),
                      [&](const Toucher& toucher) { return toucher.material == material; });
 }
 
@@ -124,10 +128,65 @@ void find_bodies_without_shape(const System& system, std::vector<ModelFinding>& 
   out.push_back({FindingKind::body_without_shape, std::move(bare), std::move(text)});
 }
 
+ContactFilter filter_of(const System& system, ObstacleId obstacle) {
+  const auto place = system.ground_shape_kinds().place(obstacle.serial);
+  return system.ground_shape_kinds().entries()[place.entry].kind->filter(place.slot);
+}
+
+/// Finds parts whose filters leave them nothing to touch: shapes, particles made to touch something (with a
+/// material or a filter), obstacles.
+void find_hidden(const System& system, const Touching& touching, std::vector<ModelFinding>& out) {
+  std::vector<ContactFilter> solid;
+  for (const ObstacleId obstacle : system.obstacles()) solid.push_back(filter_of(system, obstacle));
+  const auto hidden = [&](const ContactFilter& filter) {
+    return std::none_of(solid.begin(), solid.end(),
+                        [&](const ContactFilter& other) { return may_touch(filter, other); });
+  };
+  // Most models have few filters: parts are looked at where one of these is hidden only.
+  const auto is_hidden = [&](const Toucher& toucher) { return hidden(toucher.filter); };
+  PartNames parts;
+  if (std::any_of(touching.kinds.begin(), touching.kinds.end(), is_hidden)) {
+    for (const auto& entry : system.body_kinds().entries()) {
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+        const ContactFilter filter = entry.kind->filter(slot);
+        const bool intended = entry.kind->material(slot).valid() || filter != ContactFilter{};
+        if (!entry.kind->has_contact_point(slot) || !intended || !hidden(filter)) continue;
+        parts.push_back(system.name(BodyId{entry.serials[slot], system.token()}));
+      }
+    }
+    for (const auto& entry : system.shape_kinds().entries()) {
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+        if (!hidden(entry.kind->filter(slot))) continue;
+        parts.push_back(system.name(ShapeId{entry.serials[slot], system.token()}));
+      }
+    }
+  }
+  if (!parts.empty()) {
+    std::string text = listed(parts) +
+                       ": filters let it touch no obstacle; allowed: groups and touches that meet "
+                       "those of an obstacle";
+    out.push_back({FindingKind::hidden_by_filter, std::move(parts), std::move(text)});
+  }
+  PartNames obstacles;
+  for (const ObstacleId obstacle : system.obstacles()) {
+    const ContactFilter filter = filter_of(system, obstacle);
+    const bool is_touched =
+        std::any_of(touching.kinds.begin(), touching.kinds.end(),
+                    [&](const Toucher& toucher) { return may_touch(toucher.filter, filter); });
+    if (!is_touched) obstacles.push_back(system.name(obstacle));
+  }
+  if (obstacles.empty() || !touching.any) return;
+  std::string text = listed(obstacles) +
+                     ": filters let nothing touch it; allowed: groups and touches that meet those "
+                     "of a shape or a particle";
+  out.push_back({FindingKind::hidden_by_filter, std::move(obstacles), std::move(text)});
+}
+
 void find_contacts_without_law(const System& system, const Touching& touching,
                                std::vector<ModelFinding>& out) {
   for (const ObstacleId obstacle : system.obstacles()) {
-    for (const Toucher& toucher : touching.by_material) {
+    for (const Toucher& toucher : touching.kinds) {
+      if (!may_touch(toucher.filter, filter_of(system, obstacle))) continue;
       if (system.law(toucher.material, obstacle)) continue;
       const std::string name = system.name(obstacle);
       out.push_back({FindingKind::contact_without_law,
@@ -170,6 +229,7 @@ std::vector<ModelFinding> System::check() const {
     }
   } else {
     find_contacts_without_law(*this, touching, found);
+    find_hidden(*this, touching, found);
     if (!touching.any) {
       PartNames untouched;
       for (const ObstacleId obstacle : obstacles()) untouched.push_back(name(obstacle));
