@@ -4,6 +4,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
+#include <carom/integrators/event_driven/event_motions.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
 
@@ -46,9 +47,11 @@ namespace {
 
 /// Record of a contact that took part in the answer of its island.
 EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std::size_t c, double time,
-                     const double* velocity_after) {
+                     const EventMotions& before, const double* velocity_after) {
   const Constraint& contact = island.constraints()[c];
   EventRecord event;
+  event.motions = before;
+  set_after(contact, velocity_after, assembly, event.motions);
   event.time = time;
   event.kind = EventKind::mode_switch;
   event.contact = contact.key;
@@ -115,6 +118,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
   std::vector<EventRecord> recorded;
+  std::vector<EventMotions> motions;
   std::vector<ConstraintKey> opened;
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
@@ -137,9 +141,12 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
       problem.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
       problem.set_free_velocity(trial.v.data());
       if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
+      motions.clear();
+      for (const Constraint& contact : of_body)
+        motions.push_back(motions_of(contact, trial.view(), assembly));
       problem.map().add_velocities(trial.v.data());
       for (std::size_t c = 0; c < of_body.size(); ++c) {
-        recorded.push_back(event_of(assembly, problem, c, state.time, trial.v.data()));
+        recorded.push_back(event_of(assembly, problem, c, state.time, motions[c], trial.v.data()));
       }
     }
     // All of them: out of one shape a body may come into another.
@@ -159,6 +166,8 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   report = {};
   report.time = state.time;
   report.projected = shift;
+  const std::int64_t instant = events.empty() ? 0 : events.back().instant + 1;
+  for (EventRecord& event : recorded) event.instant = instant;
   events.insert(events.end(), recorded.begin(), recorded.end());
 }
 

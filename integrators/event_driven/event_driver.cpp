@@ -48,7 +48,9 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       memory_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
-      balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
+      balance_({.records = options.record_events,
+                .zero_impulses = options.record_zero_impulses,
+                .limit = static_cast<std::size_t>(options.record_limit)}) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
     groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
@@ -110,6 +112,8 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
 /// Records go to those that there are, of which the latest are kept.
 void EventDriver::append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const {
   if (fresh.empty()) return;
+  const std::int64_t next = events.empty() ? 0 : events.back().instant + 1;
+  for (EventRecord& event : fresh) event.instant += next;
   if (events.empty()) {
     events.swap(fresh);
   } else {

@@ -112,6 +112,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   const Index body = problem.constraints().front().body();
   SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
   impact.energy_before = model.kinetic_energy_of_mechanism(body, at.velocities());
+  at.balance.note_before(problem, at.now.view(), *model.assembly);
   problem.map().add_velocities(at.velocities());
   at.take_velocities();
   impact.energy_after = model.kinetic_energy_of_mechanism(body, at.velocities());

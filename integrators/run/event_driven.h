@@ -55,6 +55,8 @@ struct EventDriven {
   /// Keep a record of every event (Simulation::events()). Without it no record is made, and the report of a
   /// step lists neither contacts nor impulses of joints; statistics count events all the same.
   bool record_events = true;
+  /// Keep records of contacts that were closed in an impact and took no impulse, too.
+  bool record_zero_impulses = false;
   /// Keep at most so many records, the latest; the report of a step lists the contacts of these. 0: all.
   std::int64_t record_limit = 0;
 
