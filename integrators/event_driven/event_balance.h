@@ -36,8 +36,8 @@ struct SolvedImpact {
 /// Which records of events are kept.
 struct EventKeeping {
   bool records = true;         ///< false: none
-  bool zero_impulses = false;  ///< those of contacts without impulse in impacts, too
   std::size_t limit = 0;       ///< at most so many, the latest; 0: all
+  bool zero_impulses = false;  ///< those of contacts without impulse in impacts, too
 };
 
 /// Counts for the statistics, of the records of events.

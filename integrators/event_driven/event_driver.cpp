@@ -49,8 +49,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({.records = options.record_events,
-                .zero_impulses = options.record_zero_impulses,
-                .limit = static_cast<std::size_t>(options.record_limit)}) {
+                .limit = static_cast<std::size_t>(options.record_limit),
+                .zero_impulses = options.record_zero_impulses}) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
     groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, component, memory_));
   }
