@@ -35,9 +35,9 @@ struct SolvedImpact {
 
 /// Which records of events are kept.
 struct EventKeeping {
-  bool records = true;         ///< false: none
-  std::size_t limit = 0;       ///< at most so many, the latest; 0: all
-  bool zero_impulses = false;  ///< those of contacts without impulse in impacts, too
+  bool records = true;        ///< false: none
+  std::size_t limit = 0;      ///< at most so many, the latest; 0: all
+  bool zero_impulses = true;  ///< false: none of contacts without impulse in an impact
 };
 
 /// Counts for the statistics, of the records of events.
