@@ -73,6 +73,19 @@ EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std:
   return event;
 }
 
+/// Applies the answer of an island, and appends the records of its contacts.
+void apply_and_record(const Assembly& assembly, const IslandProblem& island, State& trial,
+                      std::vector<EventRecord>& recorded) {
+  std::vector<EventMotions> before;
+  for (const Constraint& contact : island.constraints()) {
+    before.push_back(motions_of(contact, trial.view(), assembly));
+  }
+  island.map().add_velocities(trial.v.data());
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    recorded.push_back(event_of(assembly, island, c, trial.time, before[c], trial.v.data()));
+  }
+}
+
 /// Appends contacts of a component that a displacement has opened: they are closed no more, though they were
 /// in the step before. \param evaluation brought to `after`
 void find_opened(const Assembly& assembly, Index component, const Detector& detector,
@@ -118,7 +131,6 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
   std::vector<EventRecord> recorded;
-  std::vector<EventMotions> motions;
   std::vector<ConstraintKey> opened;
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
@@ -141,13 +153,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
       problem.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
       problem.set_free_velocity(trial.v.data());
       if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
-      motions.clear();
-      for (const Constraint& contact : of_body)
-        motions.push_back(motions_of(contact, trial.view(), assembly));
-      problem.map().add_velocities(trial.v.data());
-      for (std::size_t c = 0; c < of_body.size(); ++c) {
-        recorded.push_back(event_of(assembly, problem, c, state.time, motions[c], trial.v.data()));
-      }
+      apply_and_record(assembly, problem, trial, recorded);
     }
     // All of them: out of one shape a body may come into another.
     const GapProjection::Result result = projection.project(assembly, component, detector, places,
