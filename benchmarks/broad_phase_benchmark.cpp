@@ -24,7 +24,7 @@ using carom::BoxPair;
 using carom::Index;
 using Boxes = std::vector<Box<2>>;
 
-constexpr double slow = 1e-3, fast = 1.0;  // ways between calls
+constexpr double slow_way = 1e-3, fast_way = 1.0;  // ways between calls
 enum class Sizes { equal, even, few_large };
 enum class Motion { slow, fast, few_fast };
 constexpr double largest = 100.0;  // of mixed sizes, the least is 1
@@ -51,7 +51,7 @@ public:
       }
       const double angle = uniform(0.0, 6.28);
       const bool hurries = motion == Motion::fast || (motion == Motion::few_fast && i % 100 == 50);
-      const double way = hurries ? fast : slow;
+      const double way = hurries ? fast_way : slow_way;
       velocities_.emplace_back(way * std::cos(angle), way * std::sin(angle));
     }
   }

@@ -17,6 +17,7 @@ void ParticleKind<D>::add(const Particle<D>& part, const PartCheck& check) {
   velocity_.push_back(part.velocity);
   contact_.push_back(part.contact ? 1 : 0);
   material_.push_back(part.material);
+  filter_.push_back(part.filter);
 }
 
 template <int D>
@@ -39,6 +40,7 @@ void ParticleKind<D>::remove(Index slot) {
   velocity_.erase(slot);
   contact_.erase(slot);
   material_.erase(slot);
+  filter_.erase(slot);
 }
 
 template <int D>

@@ -30,6 +30,7 @@ struct Particle {
   Vec<D> velocity = Vec<D>::Zero();                        ///< at the start [m/s]
   bool contact = true;                                     ///< touches obstacles
   MaterialId material{};                                   ///< for laws between materials
+  ContactFilter filter{};                                  ///< what it may touch
 };
 
 /// All particles of a system.
@@ -59,6 +60,7 @@ public:
   [[nodiscard]] double length_scale(Index, Index) const override { return 1.0; }
   [[nodiscard]] bool has_contact_point(Index slot) const override { return contact_[slot] != 0; }
   [[nodiscard]] MaterialId material(Index slot) const override { return material_[slot]; }
+  [[nodiscard]] ContactFilter filter(Index slot) const override { return filter_[slot]; }
   void initial(Index slot, double* q, double* v) const override;
   void rotations(Range, const double*, double*) const override {}
   void advance(Range slots, const double* q0, const double* delta, double* q1) const override;
@@ -76,6 +78,7 @@ private:
   Column<Vec<D>> position_, velocity_;
   Column<std::uint8_t> contact_;
   Column<MaterialId> material_;
+  Column<ContactFilter> filter_;
 };
 
 extern template class ParticleKind<2>;

@@ -23,6 +23,7 @@ struct Disc {
   double radius = std::numeric_limits<double>::quiet_NaN();  ///< > 0 [m]
   Vec<2> centre = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
   MaterialId material{};           ///< for laws between materials
+  ContactFilter filter{};          ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {

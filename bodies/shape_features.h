@@ -12,7 +12,8 @@
 namespace carom::generic {
 
 /// All shapes of one description. `P` has body, material, label, check(PartCheck),
-/// features(std::vector<RoundedPoint>&) and, if it touches other bodies, Outline outline(PartCheck).
+/// features(std::vector<RoundedPoint>&) and, if it touches other bodies, Outline outline(PartCheck); it may
+/// have a filter.
 template <class P>
 class FeatureShapeKind final : public ShapeKind {
 public:
@@ -36,6 +37,13 @@ public:
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] BodyId body(Index slot) const override { return parts_[slot].body; }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  [[nodiscard]] ContactFilter filter(Index slot) const override {
+    if constexpr (requires { parts_[slot].filter; }) {
+      return parts_[slot].filter;
+    } else {
+      return ShapeKind::filter(slot);
+    }
+  }
   void rounded_points(Index slot, std::vector<RoundedPoint>& out) const override {
     parts_[slot].features(out);
   }

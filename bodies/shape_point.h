@@ -21,6 +21,7 @@ struct Point {
   BodyId body{};                     ///< the body (required)
   Vec<2> position = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
   MaterialId material{};             ///< for laws between materials
+  ContactFilter filter{};            ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const { check.finite({position.data(), 2}, "position", "m"); }

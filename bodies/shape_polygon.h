@@ -25,6 +25,7 @@ struct Polygon {
   std::vector<Vec<2>> vertices{};  ///< at least three, in the body's frame [m]
   MaterialId material{};           ///< for laws between materials
   double radius = 0.0;             ///< >= 0: widens it all around, with rounded corners [m]
+  ContactFilter filter{};          ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {

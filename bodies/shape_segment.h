@@ -26,6 +26,7 @@ struct Segment {
   Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< the other end [m]
   MaterialId material{};                                                   ///< for laws between materials
   double radius = 0.0;                                                     ///< >= 0: rounds it off [m]
+  ContactFilter filter{};                                                  ///< what it may touch
 
   /// Throws ModelError for invalid values.
   void check(const PartCheck& check) const {

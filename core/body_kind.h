@@ -4,6 +4,7 @@
 /// Interface of a kind of bodies. Bodies of one kind are stored together; every call is for a range of
 /// them.
 
+#include <carom/core/contact_filter.h>
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
 #include <carom/core/ids.h>
@@ -40,7 +41,7 @@ public:
   /// A copy.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> clone() const = 0;
   /// A kind with the data of a run for the bodies named by `order`, in that order. Starting values, contact
-  /// points and materials are read from the described kind only and need not be copied.
+  /// points, materials and filters are read from the described kind only and need not be copied.
   [[nodiscard]] virtual std::unique_ptr<BodyKind> arranged(std::span<const Index> order) const = 0;
   /// Removes the body at a slot; later ones move up.
   virtual void remove(Index slot) = 0;
@@ -68,6 +69,8 @@ public:
   [[nodiscard]] virtual bool has_contact_point(Index slot) const = 0;
   /// Material of that contact point.
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;
+  /// What that contact point may touch. The fingerprint of a system takes it from here.
+  [[nodiscard]] virtual ContactFilter filter(Index /*slot*/) const { return {}; }
 
   /// Writes coordinates and velocities as described.
   virtual void initial(Index slot, double* q, double* v) const = 0;

@@ -143,16 +143,22 @@ private:
       for (const BodyId body : system_.bodies()) {
         const Index slot = system_.body_kinds().place(body.serial).slot;
         const BodyKind& kind = system_.body_kinds().kind_of(body.serial);
-        if (kind.has_contact_point(slot)) draw_contact(node(body), kind.material(slot), obstacle);
+        if (kind.has_contact_point(slot))
+          draw_contact(node(body), kind.material(slot), kind.filter(slot), obstacle);
       }
       for (const ShapeId shape : system_.shapes()) {
         const Index slot = system_.shape_kinds().place(shape.serial).slot;
-        draw_contact(node(shape), system_.shape_kinds().kind_of(shape.serial).material(slot), obstacle);
+        const ShapeKind& kind = system_.shape_kinds().kind_of(shape.serial);
+        draw_contact(node(shape), kind.material(slot), kind.filter(slot), obstacle);
       }
     }
   }
 
-  void draw_contact(const std::string& from, MaterialId material, ObstacleId obstacle) {
+  void draw_contact(const std::string& from, MaterialId material, const ContactFilter& filter,
+                    ObstacleId obstacle) {
+    const auto place = system_.ground_shape_kinds().place(obstacle.serial);
+    if (!may_touch(filter, system_.ground_shape_kinds().entries()[place.entry].kind->filter(place.slot)))
+      return;
     const std::optional<Surface> law = system_.law(material, obstacle);
     text_ += "  " + from + " -- " + node(obstacle) + " [style=dashed, label=";
     if (law) {

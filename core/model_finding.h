@@ -20,10 +20,11 @@ enum class FindingKind : std::uint8_t {
   touches_nothing,      ///< shapes, or particles with a material, without obstacles or a law between bodies
   untouched_obstacle,   ///< obstacles in a system in which nothing can touch an obstacle
   body_without_shape,   ///< rigid bodies on which only fields act, without a shape, beside obstacles
-  keep_without_joint    ///< System::keep_place() of bodies that no joint binds
+  keep_without_joint,   ///< System::keep_place() of bodies that no joint binds
+  hidden_by_filter      ///< parts that could touch each other, but for their filters
 };
 /// Number of kinds.
-inline constexpr std::size_t finding_kind_count = 6;
+inline constexpr std::size_t finding_kind_count = 7;
 
 /// Name of a kind: "law without effect", ...
 [[nodiscard]] CAROM_API std::string_view to_string(FindingKind kind);

@@ -3,6 +3,7 @@
 /// \file
 /// Interface of a kind of shapes: fixed to bodies, or to the ground (core/ground_shape_kind.h).
 
+#include <carom/core/contact_filter.h>
 #include <carom/core/export.h>
 #include <carom/core/fingerprint.h>
 #include <carom/core/ids.h>
@@ -42,6 +43,8 @@ public:
   [[nodiscard]] virtual Index size() const = 0;                     ///< number of shapes
   [[nodiscard]] virtual BodyId body(Index slot) const = 0;          ///< the body it is fixed to, or `ground`
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
+  /// What it may touch. The fingerprint of a system takes it from here.
+  [[nodiscard]] virtual ContactFilter filter(Index /*slot*/) const { return {}; }
   /// Appends the points that may touch a shape on ground, in a fixed order (their places are feature
   /// numbers).
   virtual void rounded_points(Index slot, std::vector<RoundedPoint>& out) const = 0;

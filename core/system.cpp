@@ -153,6 +153,9 @@ void System::remove(BodyId id) {
   }
   remove_from(Role::body, bodies_, id, "body");
   kept_.erase(id.serial);
+  std::erase_if(contact_decisions_, [&](const auto& decision) {
+    return decision.first.first == id.serial || decision.first.second == id.serial;
+  });
 }
 void System::remove(ElementId id) { remove_from(Role::force, forces_, id, "element"); }
 void System::remove(JointId id) {
@@ -195,6 +198,27 @@ void System::keep_place(BodyId body, bool keep) {
 bool System::keeps_place(BodyId body) const {
   PartCheck("place to keep", *this).body(body, "body", false);
   return kept_.contains(body.serial);
+}
+
+std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
+  const PartCheck check("contact of two bodies", *this);
+  for (const BodyId body : {a, b}) check.body(body, "body", false);
+  if (a == b) check.refuse("second body", name(b) + ", the first", "another body");
+  return std::minmax(a.serial, b.serial);
+}
+
+void System::allow_contact(BodyId a, BodyId b, std::optional<bool> allowed) {
+  const std::pair<Index, Index> pair = two_bodies(a, b);
+  if (allowed) {
+    contact_decisions_.insert_or_assign(pair, *allowed);
+  } else {
+    contact_decisions_.erase(pair);
+  }
+}
+
+std::optional<bool> System::is_contact_allowed(BodyId a, BodyId b) const {
+  const auto found = contact_decisions_.find(two_bodies(a, b));
+  return found == contact_decisions_.end() ? std::nullopt : std::optional(found->second);
 }
 
 MaterialId System::material(std::string_view name) {
@@ -240,7 +264,17 @@ std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
 std::uint64_t System::fingerprint() const {
   Fingerprint print;
   print.add(static_cast<std::uint64_t>(dimension_));
-  const auto add_kinds = [&print](const auto& registry) {
+  // Data that came later, here filters and decisions, count where they are not the default only: fingerprints
+  // of models without them stay.
+  const auto add_filters = [&print](const auto& entry) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      const ContactFilter filter = entry.kind->filter(slot);
+      if (filter == ContactFilter{}) continue;
+      print.add("filter");
+      for (const Index number : {slot, filter.groups, filter.touches}) print.add(std::uint64_t{number});
+    }
+  };
+  const auto add_kinds = [&print](const auto& registry, const auto& add_more) {
     for (const auto& entry : registry.entries()) {
       if (entry.serials.empty()) continue;  // all its parts were removed
       print.add(entry.kind->label());
@@ -249,14 +283,20 @@ std::uint64_t System::fingerprint() const {
         print.add(std::uint64_t{entry.serials[slot]});
       }
       entry.kind->fingerprint(print);
+      add_more(entry);
     }
   };
-  add_kinds(bodies_);
-  add_kinds(forces_);
-  add_kinds(joints_);
-  add_kinds(shapes_);
-  add_kinds(ground_shapes_);
+  const auto nothing_more = [](const auto&) {};
+  add_kinds(bodies_, add_filters);
+  add_kinds(forces_, nothing_more);
+  add_kinds(joints_, nothing_more);
+  add_kinds(shapes_, add_filters);
+  add_kinds(ground_shapes_, add_filters);
   surfaces_.fingerprint(print);
+  if (!contact_decisions_.empty()) print.add("contacts of two bodies");
+  for (const auto& [pair, allowed] : contact_decisions_) {
+    for (const Index number : {pair.first, pair.second, Index{allowed}}) print.add(std::uint64_t{number});
+  }
   return print.value();
 }
 

@@ -72,6 +72,17 @@ public:
   /// True if it is excluded. Throws ModelError likewise.
   [[nodiscard]] bool keeps_place(BodyId body) const;
 
+  /// Decides whether shapes of two bodies may touch, where their filters let them. Undecided, they may unless
+  /// a joint binds both bodies. Throws ModelError for a body that is not of this system, and for the same
+  /// twice. \param allowed empty: undecided again
+  void allow_contact(BodyId a, BodyId b, std::optional<bool> allowed = true);
+  /// As decided; empty if it is not. Throws ModelError likewise.
+  [[nodiscard]] std::optional<bool> is_contact_allowed(BodyId a, BodyId b) const;
+  /// All decisions, by serial numbers of bodies, the lesser first.
+  [[nodiscard]] const std::map<std::pair<Index, Index>, bool>& contact_decisions() const {
+    return contact_decisions_;
+  }
+
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);
   /// Sets the contact law between two materials. Throws ModelError for invalid coefficients.
@@ -181,6 +192,7 @@ private:
   [[nodiscard]] static std::string describe(std::string_view label, const std::string& name, Index serial);
   void added(Role role, int dimension, Index serial, std::string name);
   [[nodiscard]] Index by_name(Role role, std::string_view name, std::string_view what) const;
+  [[nodiscard]] std::pair<Index, Index> two_bodies(BodyId a, BodyId b) const;
   [[nodiscard]] std::optional<Surface> find_law(const ContactSide& a, const ContactSide& b) const;
   template <class Identity, class K>
   [[nodiscard]] std::string name_in(Role role, const Registry<K>& registry, Identity id) const;
@@ -197,7 +209,8 @@ private:
   std::map<Role, Names> names_;
   std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name_;
   SurfaceTable surfaces_;
-  std::set<Index> kept_;                     // bodies that stay where they are
+  std::set<Index> kept_;  // bodies that stay where they are
+  std::map<std::pair<Index, Index>, bool> contact_decisions_;
   std::map<Index, BodyId> former_carriers_;  // bodies of removed shapes
 };
 

@@ -11,8 +11,8 @@ namespace carom {
 
 std::string_view to_string(FindingKind kind) {
   constexpr std::array<std::string_view, finding_kind_count> names{
-      "law without effect", "contact without a law", "touches nothing",
-      "untouched obstacle", "body without a shape",  "kept without a joint"};
+      "law without effect",   "contact without a law", "touches nothing",   "untouched obstacle",
+      "body without a shape", "kept without a joint",  "hidden by a filter"};
   return enum_name(names, kind);
 }
 
@@ -29,9 +29,10 @@ std::string listed(const PartNames& parts) {
   return text;
 }
 
-/// A material, the first part that has it, and bodies of it.
+/// A material and a filter, the first part that has both, and bodies of it.
 struct Toucher {
   MaterialId material;
+  ContactFilter filter;
   std::string name;
   std::vector<Index> extended, points;  // at most two bodies each: more do not change what can meet
 
@@ -43,20 +44,22 @@ struct Toucher {
 
 /// Everything of bodies that can touch.
 struct Touching {
-  std::vector<Toucher> by_material;
-  PartNames intended;  // shapes, and particles with a material: made to touch something
+  std::vector<Toucher> kinds;  // by material and filter
+  PartNames intended;          // shapes, and particles with a material: made to touch something
   bool any = false;
 };
 
 Touching touching_parts(const System& system) {
   Touching all;
-  const auto add = [&](MaterialId material, bool intended, Index body, bool is_point, auto id) {
+  const auto add = [&](MaterialId material, const ContactFilter& filter, bool intended, Index body,
+                       bool is_point, auto id) {
     all.any = true;
     if (intended) all.intended.push_back(system.name(id));
-    auto known = std::find_if(all.by_material.begin(), all.by_material.end(),
-                              [&](const Toucher& toucher) { return toucher.material == material; });
-    if (known == all.by_material.end()) {
-      known = all.by_material.insert(known, {material, system.name(id), {}, {}});
+    auto known = std::find_if(all.kinds.begin(), all.kinds.end(), [&](const Toucher& toucher) {
+      return toucher.material == material && toucher.filter == filter;
+    });
+    if (known == all.kinds.end()) {
+      known = all.kinds.insert(known, {material, filter, system.name(id), {}, {}});
     }
     known->take(body, is_point);
   };
@@ -67,7 +70,8 @@ Touching touching_parts(const System& system) {
       if (!entry.kind->has_contact_point(slot)) continue;
       const MaterialId material = entry.kind->material(slot);
       const Index serial = entry.serials[slot];
-      add(material, lists && material.valid(), serial, true, BodyId{serial, system.token()});
+      add(material, entry.kind->filter(slot), lists && material.valid(), serial, true,
+          BodyId{serial, system.token()});
     }
   }
   std::vector<RoundedPoint> points;
@@ -76,27 +80,28 @@ Touching touching_parts(const System& system) {
       points.clear();
       entry.kind->rounded_points(slot, points);
       const bool is_point = points.size() == 1 && points.front().radius == 0.0;
-      add(entry.kind->material(slot), lists, entry.kind->body(slot).serial, is_point,
-          ShapeId{entry.serials[slot], system.token()});
+      add(entry.kind->material(slot), entry.kind->filter(slot), lists, entry.kind->body(slot).serial,
+          is_point, ShapeId{entry.serials[slot], system.token()});
     }
   }
   return all;
 }
 
-/// True if bodies of two materials can touch each other: two bodies, of which points do not touch points.
+/// True if bodies of two kinds can touch each other: two bodies, of which points do not touch points.
 bool can_touch(const Toucher& a, const Toucher& b) {
   const auto differ = [](const std::vector<Index>& some, const std::vector<Index>& others) {
     return std::any_of(some.begin(), some.end(), [&](Index body) {
       return std::any_of(others.begin(), others.end(), [&](Index other) { return other != body; });
     });
   };
+  if (!may_touch(a.filter, b.filter)) return false;
   return differ(a.extended, b.extended) || differ(a.extended, b.points) || differ(a.points, b.extended);
 }
 
 /// True if bodies touch each other by some law.
 bool any_touch(const System& system, const Touching& touching) {
-  for (const Toucher& a : touching.by_material) {
-    for (const Toucher& b : touching.by_material) {
+  for (const Toucher& a : touching.kinds) {
+    for (const Toucher& b : touching.kinds) {
       if (can_touch(a, b) && system.law(a.material, b.material)) return true;
     }
   }
@@ -105,8 +110,8 @@ bool any_touch(const System& system, const Touching& touching) {
 
 /// True if bodies of two materials do.
 bool touch(const Touching& touching, MaterialId a, MaterialId b) {
-  for (const Toucher& one : touching.by_material) {
-    for (const Toucher& other : touching.by_material) {
+  for (const Toucher& one : touching.kinds) {
+    for (const Toucher& other : touching.kinds) {
       if (one.material == a && other.material == b && can_touch(one, other)) return true;
     }
   }
@@ -114,7 +119,7 @@ bool touch(const Touching& touching, MaterialId a, MaterialId b) {
 }
 
 bool has(const Touching& touching, MaterialId material) {
-  return std::any_of(touching.by_material.begin(), touching.by_material.end(),
+  return std::any_of(touching.kinds.begin(), touching.kinds.end(),
                      [&](const Toucher& toucher) { return toucher.material == material; });
 }
 
@@ -167,10 +172,78 @@ void find_bodies_without_shape(const System& system, std::vector<ModelFinding>& 
   out.push_back({FindingKind::body_without_shape, std::move(bare), std::move(text)});
 }
 
+ContactFilter filter_of(const System& system, ObstacleId obstacle) {
+  const auto place = system.ground_shape_kinds().place(obstacle.serial);
+  return system.ground_shape_kinds().entries()[place.entry].kind->filter(place.slot);
+}
+
+/// Finds parts whose filters leave them nothing to touch: shapes, particles made to touch something (with a
+/// material or a filter), obstacles.
+void find_hidden(const System& system, const Touching& touching, std::vector<ModelFinding>& out) {
+  std::vector<ContactFilter> solid;
+  for (const ObstacleId obstacle : system.obstacles()) solid.push_back(filter_of(system, obstacle));
+  const auto is_hidden = [&](const Toucher& toucher) {
+    const auto meets_solid = [&](const ContactFilter& other) { return may_touch(toucher.filter, other); };
+    const auto meets_body = [&](const Toucher& other) {
+      return can_touch(toucher, other) && system.law(toucher.material, other.material);
+    };
+    return std::none_of(solid.begin(), solid.end(), meets_solid) &&
+           std::none_of(touching.kinds.begin(), touching.kinds.end(), meets_body);
+  };
+  // Most models have few kinds: parts are looked at where one of these is hidden only.
+  std::vector<const Toucher*> all_hidden;
+  for (const Toucher& toucher : touching.kinds) {
+    if (is_hidden(toucher)) all_hidden.push_back(&toucher);
+  }
+  const auto hidden = [&](MaterialId material, const ContactFilter& filter) {
+    return std::any_of(all_hidden.begin(), all_hidden.end(), [&](const Toucher* toucher) {
+      return toucher->material == material && toucher->filter == filter;
+    });
+  };
+  PartNames parts;
+  if (!all_hidden.empty()) {
+    for (const auto& entry : system.body_kinds().entries()) {
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+        const ContactFilter filter = entry.kind->filter(slot);
+        const bool intended = entry.kind->material(slot).valid() || filter != ContactFilter{};
+        if (!entry.kind->has_contact_point(slot) || !intended) continue;
+        if (!hidden(entry.kind->material(slot), filter)) continue;
+        parts.push_back(system.name(BodyId{entry.serials[slot], system.token()}));
+      }
+    }
+    for (const auto& entry : system.shape_kinds().entries()) {
+      for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+        if (!hidden(entry.kind->material(slot), entry.kind->filter(slot))) continue;
+        parts.push_back(system.name(ShapeId{entry.serials[slot], system.token()}));
+      }
+    }
+  }
+  if (!parts.empty()) {
+    std::string text = listed(parts) +
+                       ": filters let it touch no obstacle; allowed: groups and touches that meet "
+                       "those of an obstacle";
+    out.push_back({FindingKind::hidden_by_filter, std::move(parts), std::move(text)});
+  }
+  PartNames obstacles;
+  for (const ObstacleId obstacle : system.obstacles()) {
+    const ContactFilter filter = filter_of(system, obstacle);
+    const bool is_touched =
+        std::any_of(touching.kinds.begin(), touching.kinds.end(),
+                    [&](const Toucher& toucher) { return may_touch(toucher.filter, filter); });
+    if (!is_touched) obstacles.push_back(system.name(obstacle));
+  }
+  if (obstacles.empty() || !touching.any) return;
+  std::string text = listed(obstacles) +
+                     ": filters let nothing touch it; allowed: groups and touches that meet those "
+                     "of a shape or a particle";
+  out.push_back({FindingKind::hidden_by_filter, std::move(obstacles), std::move(text)});
+}
+
 void find_contacts_without_law(const System& system, const Touching& touching,
                                std::vector<ModelFinding>& out) {
   for (const ObstacleId obstacle : system.obstacles()) {
-    for (const Toucher& toucher : touching.by_material) {
+    for (const Toucher& toucher : touching.kinds) {
+      if (!may_touch(toucher.filter, filter_of(system, obstacle))) continue;
       if (system.law(toucher.material, obstacle)) continue;
       const std::string name = system.name(obstacle);
       out.push_back({FindingKind::contact_without_law,
@@ -216,6 +289,7 @@ std::vector<ModelFinding> System::check() const {
     }
   } else {
     find_contacts_without_law(*this, touching, found);
+    find_hidden(*this, touching, found);
     if (!touching.any) {
       PartNames untouched;
       for (const ObstacleId obstacle : obstacles()) untouched.push_back(name(obstacle));

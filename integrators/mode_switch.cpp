@@ -4,6 +4,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
+#include <carom/integrators/event_driven/event_motions.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
 
@@ -46,9 +47,11 @@ namespace {
 
 /// Record of a contact that took part in the answer of its island.
 EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std::size_t c, double time,
-                     const double* velocity_after) {
+                     const EventMotions& before, const double* velocity_after) {
   const Constraint& contact = island.constraints()[c];
   EventRecord event;
+  event.motions = before;
+  set_after(contact, velocity_after, assembly, event.motions);
   event.time = time;
   event.kind = EventKind::mode_switch;
   event.contact = contact.key;
@@ -68,6 +71,19 @@ EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std:
   event.residual = island.report().residual;
   event.solver = island.report().solver;
   return event;
+}
+
+/// Applies the answer of an island, and appends the records of its contacts.
+void apply_and_record(const Assembly& assembly, const IslandProblem& island, State& trial,
+                      std::vector<EventRecord>& recorded) {
+  std::vector<EventMotions> before;
+  for (const Constraint& contact : island.constraints()) {
+    before.push_back(motions_of(contact, trial.view(), assembly));
+  }
+  island.map().add_velocities(trial.v.data());
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    recorded.push_back(event_of(assembly, island, c, trial.time, before[c], trial.v.data()));
+  }
 }
 
 /// Appends contacts of a component that a displacement has opened: they are closed no more, though they were
@@ -137,10 +153,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
       problem.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
       problem.set_free_velocity(trial.v.data());
       if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
-      problem.map().add_velocities(trial.v.data());
-      for (std::size_t c = 0; c < of_body.size(); ++c) {
-        recorded.push_back(event_of(assembly, problem, c, state.time, trial.v.data()));
-      }
+      apply_and_record(assembly, problem, trial, recorded);
     }
     // All of them: out of one shape a body may come into another.
     const GapProjection::Result result = projection.project(assembly, component, detector, places,
@@ -159,6 +172,8 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   report = {};
   report.time = state.time;
   report.projected = shift;
+  const std::int64_t instant = events.empty() ? 0 : events.back().instant + 1;
+  for (EventRecord& event : recorded) event.instant = instant;
   events.insert(events.end(), recorded.begin(), recorded.end());
 }
 

@@ -2,7 +2,6 @@
 
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/pair_rows.h>
-#include <carom/core/joint_kind.h>
 
 #include <algorithm>
 #include <array>
@@ -84,7 +83,7 @@ BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   if (assembly.layout()->dimension() != 2 || !has_law_between_bodies(assembly.system())) return;
   outlines_ = BodyOutlines(assembly);
   find_laws(assembly.system());
-  exclude_jointed(assembly);
+  filter_ = PairFilter(assembly);
 }
 
 void BodyContacts::find_laws(const System& system) {
@@ -97,33 +96,14 @@ void BodyContacts::find_laws(const System& system) {
   }
 }
 
-/// Bodies that a joint binds do not touch: their shapes mostly overlap at the joint.
-void BodyContacts::exclude_jointed(const Assembly& assembly) {
-  std::vector<BodyId> ends;
-  for (const auto& entry : assembly.system().joint_kinds().entries()) {
-    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      ends.clear();
-      entry.kind->ends(slot, ends);
-      std::erase(ends, ground);
-      for (const BodyId a : ends) {
-        for (const BodyId b : ends) {
-          never_meet_.emplace_back(assembly.layout()->index(a), assembly.layout()->index(b));
-        }
-      }
-    }
-  }
-  std::sort(never_meet_.begin(), never_meet_.end());
-}
-
 const Surface* BodyContacts::law(const BodyOutline& a, const BodyOutline& b) const {
   const std::optional<Surface>& found = laws_[a.material * outlines_.materials().size() + b.material];
   return found ? &*found : nullptr;
 }
 
 bool BodyContacts::may_touch(const BodyOutline& a, const BodyOutline& b) const {
-  if (a.body == b.body || law(a, b) == nullptr || (is_point(a) && is_point(b))) return false;
-  return never_meet_.empty() ||
-         !std::binary_search(never_meet_.begin(), never_meet_.end(), std::pair(a.body, b.body));
+  return law(a, b) != nullptr && !(is_point(a) && is_point(b)) &&
+         filter_.may_touch(a.body, a.filter, b.body, b.filter);
 }
 
 /// Pairs of outlines, that of the lesser key first: those whose boxes overlap, and those that touched in the

@@ -2,14 +2,15 @@
 
 /// \file
 /// Contacts of bodies with each other: pairs of convex outlines whose gap is closed. Two outlines touch where
-/// their materials have a law of contact, unless they are of one body, of bodies that a joint binds, or both
-/// of them points.
+/// their materials have a law of contact, unless both are points or a filter parts them
+/// (contact/detection/pair_filter.h).
 
 #include <carom/contact/detection/body_outlines.h>
 #include <carom/contact/detection/broad_phase.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/pair_filter.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -58,7 +59,6 @@ private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
-  void exclude_jointed(const Assembly& assembly);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const LastingContacts& lasting, std::vector<std::pair<Index, Index>>& pairs) const;
   void add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
@@ -68,8 +68,8 @@ private:
 
   const Assembly* assembly_;
   BodyOutlines outlines_;
-  std::vector<std::optional<Surface>> laws_;         // row-major, by material
-  std::vector<std::pair<Index, Index>> never_meet_;  // bodies, the lesser first; ascending
+  PairFilter filter_;
+  std::vector<std::optional<Surface>> laws_;  // row-major, by material
   bool has_static_friction_ = false;
 };
 

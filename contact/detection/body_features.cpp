@@ -13,6 +13,7 @@ bool is_centred(const BodyFeature& point) {
 /// Appends a run of one body to another of the same kind, if it goes on with it.
 bool join(CentreRun& run, const CentreRun& next) {
   if (run.bodies.end != next.bodies.begin || run.material != next.material) return false;
+  if (run.filter != next.filter) return false;
   if ((run.points == none) != (next.points == none)) return false;
   if (run.points != none && run.points + run.bodies.size() != next.points) return false;
   run.radius = std::max(run.radius, next.radius);
@@ -45,14 +46,15 @@ BodyFeatures::BodyFeatures(const Assembly& assembly) {
   }
 }
 
-Index BodyFeatures::number_of(MaterialId material) {
+Index BodyFeatures::number_of(const FeatureMaterial& material) {
   const auto found = std::find(materials_.begin(), materials_.end(), material);
   const auto number = static_cast<Index>(found - materials_.begin());
   if (found == materials_.end()) materials_.push_back(material);
   return number;
 }
 
-/// Runs end where the kind, the material or the step between the features changes, and with the batch.
+/// Runs end where the kind, the material, the filter or the step between the features changes, and with the
+/// batch.
 void BodyFeatures::collect_centres(const Assembly& assembly) {
   const Layout& layout = *assembly.layout();
   const auto& registry = assembly.system().body_kinds();
@@ -66,12 +68,14 @@ void BodyFeatures::collect_centres(const Assembly& assembly) {
       while (point < points_.size() && points_[point].body == body) ++point;
       const auto place = registry.place(slot.serial);
       const BodyKind& kind = *registry.entries()[place.entry].kind;
-      CentreRun run{{body, body + 1}, none, none, 0.0};
+      CentreRun run{{body, body + 1}, none, none, 0.0, {}};
       if (kind.has_contact_point(place.slot)) {
-        run.material = number_of(kind.material(place.slot));
+        run.filter = kind.filter(place.slot);
+        run.material = number_of({kind.material(place.slot), run.filter});
       } else if (point == first + 1 && is_centred(points_[first])) {
         run.points = first;
         run.radius = points_[first].radius;
+        run.filter = materials_[points_[first].material].filter;
       } else {
         continue;
       }
@@ -91,9 +95,10 @@ void BodyFeatures::collect_points(const Assembly& assembly) {
     const Index body = layout.index(kind.body(place.slot));
     points.clear();
     kind.rounded_points(place.slot, points);
+    const FeatureMaterial material{kind.material(place.slot), kind.filter(place.slot)};
     for (Index i = 0; i < points.size(); ++i) {
       points_.push_back({body,
-                         number_of(kind.material(place.slot)),
+                         number_of(material),
                          {FeatureKey::Owner::shape, serial, i},
                          points[i].centre,
                          points[i].radius});

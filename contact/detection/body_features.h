@@ -6,6 +6,7 @@
 
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
+#include <carom/core/contact_filter.h>
 #include <carom/core/export.h>
 
 #include <array>
@@ -27,13 +28,22 @@ struct BodyFeature {
   }
 };
 
+/// Material and filter of features: what laws of contact depend on. In place of a material, numbers of
+/// features name both.
+struct FeatureMaterial {
+  MaterialId material{};   ///< may be no material
+  ContactFilter filter{};  ///< what features of it may touch
+  friend bool operator==(const FeatureMaterial&, const FeatureMaterial&) = default;
+};
+
 /// Neighbouring bodies of one kind that touch at their centres of mass, or with one rounded point each around
-/// them; of one component, or uncoupled.
+/// them; of one component, or uncoupled; all with the same filter.
 struct CentreRun {
   Range bodies;           ///< in the order of assembly
   Index material = none;  ///< number in BodyFeatures::materials(), of those without extent
   Index points = none;    ///< the first of their rounded points, which follow one another; `none`: no extent
   double radius = 0.0;    ///< the largest [m]
+  ContactFilter filter{};
 };
 
 /// All features that can touch, ordered by body.
@@ -59,21 +69,21 @@ public:
     const OfComponents &first = of_component_[components.begin], &last = of_component_[components.end - 1];
     return {{first.centres.begin, last.centres.end}, {first.points.begin, last.points.end}};
   }
-  /// Materials that features have; one of them may be no material.
-  [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
+  /// Materials that features have, each with every filter that they have with it.
+  [[nodiscard]] const std::vector<FeatureMaterial>& materials() const { return materials_; }
   /// The first feature of a material.
   [[nodiscard]] FeatureKey first_of(Index material, const Layout& layout) const;
   /// True if a point stands off the centre of mass.
   [[nodiscard]] bool any_off_centre() const;
 
 private:
-  [[nodiscard]] Index number_of(MaterialId material);
+  [[nodiscard]] Index number_of(const FeatureMaterial& material);
   void collect_points(const Assembly& assembly);
   void collect_centres(const Assembly& assembly);
 
   std::vector<CentreRun> centres_;
   std::vector<BodyFeature> points_;
-  std::vector<MaterialId> materials_;
+  std::vector<FeatureMaterial> materials_;
   std::vector<OfComponents> of_component_;  // empty where nothing was collected
 };
 

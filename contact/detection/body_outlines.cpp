@@ -14,6 +14,7 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
       const Vec<2> centre = Vec<2>::Zero();
       BodyOutline of_body;
       of_body.body = layout.index(BodyId{serial, system.token()});
+      of_body.filter = entry.kind->filter(slot);
       of_body.key = {FeatureKey::Owner::body, serial, 0};
       add(of_body, {&centre, 1}, entry.kind->material(slot));
     }
@@ -30,6 +31,7 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
       BodyOutline of_body;
       of_body.body = layout.index(kind.body(place.slot));
       of_body.key = {FeatureKey::Owner::shape, serial, feature};
+      of_body.filter = kind.filter(place.slot);
       of_body.radius = outline.radius;
       add(of_body, outline.vertices, kind.material(place.slot));
       feature += static_cast<Index>(outline.vertices.size()) + 1;

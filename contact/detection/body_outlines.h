@@ -6,6 +6,7 @@
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
+#include <carom/core/contact_filter.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
 #include <carom/core/space.h>
@@ -20,6 +21,7 @@ namespace carom {
 struct BodyOutline {
   Index body = none;      ///< in the order of assembly
   Index material = none;  ///< number in BodyOutlines::materials()
+  ContactFilter filter;   ///< what it may touch
   FeatureKey key;         ///< of its vertex 0; vertex i has the feature number i more
   Range vertices;         ///< places of its vertices among those of all
   double radius = 0.0;    ///< rounding radius [m]

@@ -24,22 +24,25 @@ struct BoxPair {
   friend constexpr auto operator<=>(const BoxPair&, const BoxPair&) = default;
 };
 
+/// 1 if a comparison holds, else 0: comparisons joined by & have no branches.
+[[nodiscard]] constexpr unsigned as_bit(bool holds) { return holds ? 1U : 0U; }
+
 /// True if no axis parts two boxes by more than a margin >= 0 [m].
 template <int D>
 [[nodiscard]] inline bool are_within(const Box<D>& a, const Box<D>& b, double margin) {
-  bool within = true;
+  unsigned within = 1;
   for (int k = 0; k < D; ++k) {
-    within = within & (a.min[k] - b.max[k] <= margin) & (b.min[k] - a.max[k] <= margin);
+    within &= as_bit(a.min[k] - b.max[k] <= margin) & as_bit(b.min[k] - a.max[k] <= margin);
   }
-  return within;
+  return within != 0;
 }
 
 /// True if two boxes have a point in common.
 template <int D>
 [[nodiscard]] inline bool overlap(const Box<D>& a, const Box<D>& b) {
-  bool common = true;
-  for (int k = 0; k < D; ++k) common = common & (a.min[k] <= b.max[k]) & (b.min[k] <= a.max[k]);
-  return common;
+  unsigned common = 1;
+  for (int k = 0; k < D; ++k) common &= as_bit(a.min[k] <= b.max[k]) & as_bit(b.min[k] <= a.max[k]);
+  return common != 0;
 }
 
 }  // namespace carom

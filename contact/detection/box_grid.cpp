@@ -39,11 +39,10 @@ int level_of(double ratio, int octaves) {
 // would hold.
 template <int D>
 BoxPair* pair_with(const OwnedBox<D>& box, const OwnedBox<D>* from, const OwnedBox<D>* to, BoxPair* out) {
-  const bool free = box.owner == none;
+  const unsigned free = as_bit(box.owner == none);
   for (; from < to; ++from) {
     *out = {box.number, from->number};
-    const bool found = overlap(box.box, from->box) & (free | (box.owner != from->owner));
-    out += found ? 1 : 0;
+    out += as_bit(overlap(box.box, from->box)) & (free | as_bit(box.owner != from->owner));
   }
   return out;
 }

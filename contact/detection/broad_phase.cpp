@@ -29,12 +29,12 @@ double upper(double coordinate, double half) { return coordinate + reach(coordin
 
 template <int D>
 bool holds(const Box<D>& wide, const Box<D>& box, double half) {
-  bool inside = true;
+  unsigned inside = 1;
   for (int k = 0; k < D; ++k) {
-    inside = inside & (wide.min[k] <= lower(box.min[k], half)) & (upper(box.max[k], half) <= wide.max[k]) &
-             (box.min[k] <= box.max[k]);
+    inside &= as_bit(wide.min[k] <= lower(box.min[k], half)) &
+              as_bit(upper(box.max[k], half) <= wide.max[k]) & as_bit(box.min[k] <= box.max[k]);
   }
-  return inside;
+  return inside != 0;
 }
 
 template <int D>

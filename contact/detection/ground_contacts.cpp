@@ -87,7 +87,9 @@ bool GroundContacts::any_touches(Range bodies, const CentreRun& centres, const C
   }
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
-  for (Index shape = 0; shape < shapes_.size(); ++shape) {
+  const Index material =
+      centres.points == none ? centres.material : features_.points()[centres.points].material;
+  for (const Index shape : laws_.touched_by(material)) {
     if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) return true;
   }
   return false;
@@ -160,7 +162,7 @@ template <int D>
 void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,
                          std::vector<Constraint>& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
-  for (Index shape = 0; shape < shapes_.size(); ++shape) {
+  for (const Index shape : laws_.touched_by(feature.material)) {
     const GroundMotion* const motion = shapes_.motion(shape, query.places);
     const Gap gap = shapes_.gap(shape, motion, at.centre.data());
     const double distance = gap.distance - feature.radius;
@@ -210,7 +212,7 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
 
 void GroundContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
   const auto append = [&](Index body, Index feature, Index material) {
-    for (Index shape = 0; shape < shapes_.size(); ++shape) {
+    for (const Index shape : laws_.touched_by(material)) {
       out.push_back({body, feature, material, shape, none});
     }
   };

@@ -8,18 +8,26 @@ namespace carom {
 GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes)
     : shapes_(shapes.size()) {
   const System& system = assembly.system();
+  begin_.push_back(0);
   for (Index material = 0; material < features.materials().size(); ++material) {
+    const FeatureMaterial& of = features.materials()[material];
     for (Index shape = 0; shape < shapes_; ++shape) {
-      const auto law = system.law(features.materials()[material], shapes.id(shape));
+      if (!may_touch(of.filter, shapes.filter(shape))) {
+        laws_.emplace_back();
+        continue;
+      }
+      const auto law = system.law(of.material, shapes.id(shape));
       if (!law) {
         const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};
         throw ModelError("contact of " + contact_name(system, key) +
                          ": law is not given; allowed: a Surface on the obstacle, between the two materials "
                          "or as default law");
       }
+      touched_.push_back(shape);
       laws_.push_back(*law);
       has_static_friction_ = has_static_friction_ || law->has_static_friction();
     }
+    begin_.push_back(static_cast<Index>(touched_.size()));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <carom/core/ids.h>
 #include <carom/core/surface.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -15,13 +16,18 @@ class Assembly;
 class BodyFeatures;
 class GroundShapes;
 
-/// A law for each material of the features and each shape on ground.
+/// A law for each material of the features and each shape on ground that it may touch.
 class CAROM_API GroundLaws {
 public:
-  /// Throws ModelError, naming a contact, where a pair has no law.
+  /// Throws ModelError, naming a contact, where a pair that may touch has no law.
   GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes);
 
-  /// Law of a pair. \param material number in BodyFeatures::materials()
+  /// Shapes on ground that features of a material may touch, ascending.
+  /// \param material number in BodyFeatures::materials()
+  [[nodiscard]] std::span<const Index> touched_by(Index material) const {
+    return {touched_.data() + begin_[material], touched_.data() + begin_[material + 1]};
+  }
+  /// Law of a pair that may touch. \param material likewise
   [[nodiscard]] const Surface& law(Index material, Index shape) const {
     return laws_[material * shapes_ + shape];
   }
@@ -31,6 +37,8 @@ public:
 private:
   Index shapes_;               // number of shapes
   std::vector<Surface> laws_;  // row-major: material, shape
+  std::vector<Index> begin_;   // of each material: its first in `touched_`
+  std::vector<Index> touched_;
   bool has_static_friction_ = false;
 };
 

@@ -43,6 +43,10 @@ public:
   [[nodiscard]] Index find(Index serial) const;
   /// Identity of a shape.
   [[nodiscard]] ObstacleId id(Index shape) const;
+  /// What a shape may touch.
+  [[nodiscard]] ContactFilter filter(Index shape) const {
+    return shapes_[shape].kind->filter(shapes_[shape].slot);
+  }
   /// A shape as feature of a contact.
   [[nodiscard]] FeatureKey key(Index shape) const {
     return {FeatureKey::Owner::obstacle, shapes_[shape].serial, 0};

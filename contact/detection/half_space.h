@@ -31,6 +31,7 @@ struct HalfSpace {
   Vec<D> normal =
       Vec<D>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
   MaterialId material{};                                           ///< for laws between materials
+  ContactFilter filter{};                                          ///< what it may touch
 };
 
 /// Everything behind a line is solid; the line may move.
@@ -44,6 +45,7 @@ struct HalfSpace<2> {
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
   MaterialId material{};                                           ///< for laws between materials
   planar::PrescribedMotion motion{};  ///< of `point`, and about it; empty: at rest
+  ContactFilter filter{};             ///< what it may touch
 };
 
 /// All half-spaces of a system.
@@ -62,6 +64,7 @@ public:
   [[nodiscard]] int dimension() const override { return D; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
+  [[nodiscard]] ContactFilter filter(Index slot) const override { return parts_[slot].filter; }
   [[nodiscard]] bool moves(Index slot) const override;
   [[nodiscard]] GroundMotion place(Index slot, double time) const override;
   void discontinuity_times(Index slot, std::vector<double>& out) const override;

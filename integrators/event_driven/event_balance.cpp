@@ -17,6 +17,13 @@ EnergyFlow line_of(EventKind kind, int row) {
   return row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential;
 }
 
+/// True of a contact that was closed in an impact without taking part in it.
+bool took_no_impulse(const EventRecord& event) {
+  const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
+                         event.kind == EventKind::impact_without_collision;
+  return impulsive && event.impulse == std::array<double, 3>{};
+}
+
 }  // namespace
 
 void EventBalance::clear() {
@@ -25,11 +32,13 @@ void EventBalance::clear() {
   counts = {};
   tally = {};
   settled_ = 0;
+  instant_ = 0;
   joint_impulses.clear();
   energy_gain = shift = 0.0;
 }
 
 void EventBalance::settle() {
+  const auto fresh = static_cast<std::ptrdiff_t>(settled_);
   for (; settled_ < events.size(); ++settled_) {
     const EventRecord& event = events[settled_];
     if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++tally.impacts;
@@ -37,6 +46,10 @@ void EventBalance::settle() {
     if (event.outcome == Outcome::forces_not_unique) ++tally.forces_not_unique;
     tally.worst_residual = std::max(tally.worst_residual, event.residual);
   }
+  if (!keeping.zero_impulses) {
+    events.erase(std::remove_if(events.begin() + fresh, events.end(), took_no_impulse), events.end());
+  }
+  ++instant_;
   if (!keeping.records) {
     events.clear();
     joint_impulses.clear();
@@ -58,6 +71,11 @@ void EventBalance::finish() {
   settle();
   order_events();
   keep_latest();
+  std::int64_t last = 0, number = -1;
+  for (EventRecord& event : events) {
+    if (number < 0 || event.instant != last) ++number;
+    last = event.instant, event.instant = number;
+  }
 }
 
 void EventBalance::order_events() {
@@ -80,6 +98,7 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
   EventRecord& event = events.emplace_back();
   event.time = time;
   event.kind = kind;
+  event.instant = instant_;
   if (contact.bodies == 0) return event;
   event.contact = contact.key;
   event.body = assembly.layout()->id(contact.body());
@@ -90,6 +109,15 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
     event.obstacle = {contact.key.b.serial, assembly.system().token()};
   }
   return event;
+}
+
+void EventBalance::note_before(const IslandProblem& problem, const StateView& state,
+                               const Assembly& assembly) {
+  motions_.clear();
+  if (!keeping.records) return;
+  for (const Constraint& contact : problem.constraints()) {
+    motions_.push_back(motions_of(contact, state, assembly));
+  }
 }
 
 double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) {
@@ -114,6 +142,10 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
       event.impulse[at] = impulse;
       flows[line_of(impact.kind, row)] -= work.add(impulse, before, after);
       flows[EnergyFlow::external] += impulse * contact.surface_velocity[at];
+    }
+    if (keeping.records) {
+      event.motions = motions_[c];
+      set_after(contact, impact.velocity, assembly, event.motions);
     }
     event.energy_before = impact.energy_before;
     event.energy_after = impact.energy_after;

@@ -7,6 +7,7 @@
 #include <carom/core/constraint.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/integrators/event_driven/event_motions.h>
 #include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/joint_reactions.h>
 #include <carom/integrators/event_driven/motion_sample.h>
@@ -34,8 +35,9 @@ struct SolvedImpact {
 
 /// Which records of events are kept.
 struct EventKeeping {
-  bool records = true;    ///< false: none
-  std::size_t limit = 0;  ///< at most so many, the latest; 0: all
+  bool records = true;        ///< false: none
+  std::size_t limit = 0;      ///< at most so many, the latest; 0: all
+  bool zero_impulses = true;  ///< false: none of contacts without impulse in an impact
 };
 
 /// Counts for the statistics, of the records of events.
@@ -62,16 +64,20 @@ struct CAROM_API EventBalance {
 
   /// Begins anew. Memory stays.
   void clear();
-  /// The records so far are complete: counts them, and lets go of those that are not to be kept.
+  /// The records so far are complete, and of one instant: counts them, and lets go of those that are not to
+  /// be kept.
   void settle();
   /// Groups advance one after the other: puts their events in the order of time, then as they were booked.
   void order_events();
-  /// Settles and orders what there is.
+  /// Settles and orders what there is, and numbers the instants.
   void finish();
   /// Records an event, which the caller completes. \param contact without bodies: of no contact
   EventRecord& record(EventKind kind, double time, const Constraint& contact, const Assembly& assembly);
+  /// Notes how bodies move before an impact, for its records.
+  void note_before(const IslandProblem& problem, const StateView& state, const Assembly& assembly);
   /// Books the works of an impact and records it, an event for each contact. Returns the energy that it
   /// added, beyond rounding [J].
+  /// note_before() was called with its problem.
   double book(const SolvedImpact& impact, const Assembly& assembly);
   /// Books what joints did in an impact. \param joints brought to `at`
   void book_joints(const SolvedImpact& impact, const GroupModel& model, JointReactions& joints,
@@ -83,7 +89,9 @@ struct CAROM_API EventBalance {
 private:
   void keep_latest();
 
-  std::size_t settled_ = 0;  // of the events
+  std::size_t settled_ = 0;            // of the events
+  std::int64_t instant_ = 0;           // being recorded
+  std::vector<EventMotions> motions_;  // of note_before(), by constraint
   std::vector<EventRecord> ordered_;
   std::vector<std::size_t> order_;
 };

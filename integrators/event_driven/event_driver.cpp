@@ -80,7 +80,9 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       group_of_(assembly.components().size()),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
-      balance_({options.record_events, static_cast<std::size_t>(options.record_limit)}) {
+      balance_({.records = options.record_events.choice() != EventRecords::none,
+                .limit = static_cast<std::size_t>(options.record_limit),
+                .zero_impulses = options.record_events.choice() == EventRecords::all}) {
   for (const GroupComponents& components : find_groups(assembly, detector_)) {
     const auto group = static_cast<Index>(groups_.size());
     for (const Index component : components.components) group_of_[component] = group;
@@ -144,6 +146,8 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
 /// Records go to those that there are, of which the latest are kept.
 void EventDriver::append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const {
   if (fresh.empty()) return;
+  const std::int64_t next = events.empty() ? 0 : events.back().instant + 1;
+  for (EventRecord& event : fresh) event.instant += next;
   if (events.empty()) {
     events.swap(fresh);
   } else {

@@ -109,6 +109,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   const GroupModel& model = at.motion.model();
   SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
   impact.energy_before = model.kinetic_energy_of(problem.constraints(), at.velocities());
+  at.balance.note_before(problem, at.now.view(), *model.assembly);
   problem.map().add_velocities(at.velocities());
   at.take_velocities();
   impact.energy_after = model.kinetic_energy_of(problem.constraints(), at.velocities());

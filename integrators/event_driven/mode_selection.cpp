@@ -178,6 +178,12 @@ void ModeSelection::close_candidates(ActiveSet& active) const {
   }
 }
 
+/// Writes the motions of the bodies of a contact into its record, where records are kept.
+void ModeSelection::note_motions(const Constraint& contact, const EventInstant& at, EventRecord& event) {
+  if (at.balance.keeping.records)
+    event.motions = motions_of(contact, at.now.view(), *at.motion.model().assembly);
+}
+
 /// Records the choice among several accelerations.
 void ModeSelection::record_choice(EventInstant& at) const {
   const ContactReport& report = memory_->decision.problem().report();
@@ -185,6 +191,7 @@ void ModeSelection::record_choice(EventInstant& at) const {
     if (!(candidate.stiffness <= 0.0)) continue;
     EventRecord& event = at.balance.record(EventKind::several_accelerations, at.time, candidate.at,
                                            *at.motion.model().assembly);
+    note_motions(candidate.at, at, event);
     event.stiffness = candidate.stiffness;
     event.free_acceleration = candidate.free_acceleration;
     event.mode = candidate.mode;
@@ -205,6 +212,7 @@ void ModeSelection::record_changes(EventInstant& at) const {
       event.velocity_before[static_cast<std::size_t>(row)] =
           event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
     }
+    note_motions(contact, at, event);
     event.energy_before = event.energy_after = model.kinetic_energy_of({&contact, 1}, velocity);
     event.mode = mode;
   };

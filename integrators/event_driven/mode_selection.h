@@ -63,6 +63,7 @@ private:
   [[nodiscard]] bool has_unbounded_force() const;
   [[nodiscard]] std::vector<std::string> names_of_candidates() const;
   void close_candidates(ActiveSet& active) const;
+  static void note_motions(const Constraint& contact, const EventInstant& at, EventRecord& event);
   void record_choice(EventInstant& at) const;
   void record_changes(EventInstant& at) const;
 

@@ -11,6 +11,26 @@
 
 namespace carom {
 
+/// Which events are recorded. Converts from bool: false is `none`, true `usual`.
+class EventRecords {
+public:
+  /// The choices.
+  enum Choice : std::uint8_t {
+    none,   ///< no event
+    usual,  ///< all but contacts without impulse in an impact
+    all     ///< these too
+  };
+  constexpr EventRecords(bool on) : choice_(on ? usual : none) {}  // NOLINT(google-explicit-constructor)
+  constexpr EventRecords(Choice choice) : choice_(choice) {}       // NOLINT(google-explicit-constructor)
+  /// The choice.
+  [[nodiscard]] constexpr Choice choice() const { return choice_; }
+  /// True unless it is `none`.
+  constexpr explicit operator bool() const { return choice_ != none; }
+
+private:
+  Choice choice_;
+};
+
 /// Smooth phases by an integrator of variable step; the times of contact events are located, and impacts and
 /// changes of contact modes are solved at these times. docs/events.md has a table of these options.
 struct EventDriven {
@@ -52,9 +72,10 @@ struct EventDriven {
   /// More evaluations of the motion of a component than this within one of its steps, its events or between
   /// two looks at it end a run with a SolverError, > 0.
   std::int64_t evaluation_limit = 10'000'000;
-  /// Keep a record of every event (Simulation::events()). Without it no record is made, and the report of a
-  /// step lists neither contacts nor impulses of joints; statistics count events all the same.
-  bool record_events = true;
+  /// Keep a record of every event (Simulation::events()). With false no record is made, and the report of a
+  /// step lists neither contacts nor impulses of joints; statistics count events all the same. With true
+  /// contacts that were closed in an impact and took no impulse have none; with EventRecords::all they do.
+  EventRecords record_events = true;
   /// Keep at most so many records, the latest; the report of a step lists the contacts of these. 0: all.
   std::int64_t record_limit = 0;
 

@@ -59,16 +59,30 @@ struct EventSolution {
   std::string_view solver{};              ///< solver whose answer was used
 };
 
+/// Motion of a body at an event. In the plane x, y and the angle; in space x, y, z.
+struct EventMotion {
+  BodyId body{};                            ///< not valid where there is none
+  std::array<double, 3> position{};         ///< at the event [m], [rad]
+  std::array<double, 3> velocity_before{};  ///< [m/s], [rad/s]
+  std::array<double, 3> velocity_after{};   ///< likewise after; that before but for impacts
+};
+
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
 /// driver or shape on ground. Simulation::name() names the part. Directions: normal first, then tangential.
 struct EventRecord : EventParts, EventSolution {
-  double time = 0.0;                        ///< [s]
+  double time = 0.0;  ///< [s]
+  /// Number of the instant: records of one group of bodies at one time, with what follows there from one
+  /// event, have the same. Ascends along the list by 0 or 1; the first is 0.
+  std::int64_t instant = 0;
   EventKind kind = EventKind::impact;       ///< what happened
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
   double energy_before = 0.0;               ///< kinetic energy of all bodies that answer [J]
   double energy_after = 0.0;                ///< likewise after
+  /// Motions of the bodies that the contact is of, first that which `body` names; none of events without a
+  /// contact.
+  std::array<EventMotion, 3> motions{};
   /// Of a Painleve state: W_nn - s mu W_nt, the normal acceleration per unit of normal force while slipping
   /// with sign s [1/kg], and the normal acceleration without contact [m/s^2].
   double stiffness = 0.0, free_acceleration = 0.0;

@@ -40,6 +40,19 @@ System curling() {
   return system;
 }
 
+System bar_on_steps() {
+  constexpr ContactFilter lower{.groups = 1, .touches = 1}, upper{.groups = 2, .touches = 2};
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law(Surface{.friction = 0.8, .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .filter = lower}, "lower step");
+  system.add(HalfPlane{.point = {0.0, 0.5}, .normal = {0.0, 1.0}, .filter = upper}, "upper step");
+  const BodyId bar = system.add(RigidBody{.mass = rod(1.0, 2.0), .position = {0.0, 1.0}}, "bar");
+  system.add(Point{.body = bar, .position = {-1.0, 0.0}, .filter = lower});
+  system.add(Point{.body = bar, .position = {1.0, 0.0}, .filter = upper});
+  return system;
+}
+
 BodyId add_hammer(System& system, const Vec<2>& place) {
   // Described with the middle of the handle at the origin.
   const MassProperties<2> parts = compose({rod(0.3, 0.4), shifted(box(0.8, 0.04, 0.12), {0.2, 0.0})});
@@ -138,10 +151,20 @@ TEST(ModellingPage, FindsTheLawOfRubber) {
       "law without effect: surface between 'ice' and 'rubber': an obstacle is of 'ice', but nothing that "
       "can touch it is of 'rubber'\n");
   const std::string page = text_of("docs/modelling.md");
-  for (const char* const name : {"law_without_effect", "contact_without_law", "touches_nothing",
-                                 "untouched_obstacle", "body_without_shape", "keep_without_joint"}) {
+  for (const char* const name :
+       {"law_without_effect", "contact_without_law", "touches_nothing", "untouched_obstacle",
+        "body_without_shape", "keep_without_joint", "hidden_by_filter"}) {
     EXPECT_NE(page.find("| `" + std::string(name) + "` |"), std::string::npos) << name;
   }
+}
+
+TEST(ModellingPage, TheBarRestsOnTwoSteps) {
+  const System system = bar_on_steps();
+  EXPECT_TRUE(system.check().empty());
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(2.0);
+  EXPECT_NEAR(simulation.state().position(system.body("bar"))[1], 0.25, 1e-8);
+  EXPECT_NEAR(simulation.state().angle(system.body("bar")), std::asin(0.25), 1e-8);
 }
 
 TEST(ModellingPage, TheHammerIsWhereItWasDescribed) {
@@ -164,9 +187,10 @@ TEST(ModellingPage, TheHammerIsWhereItWasDescribed) {
 
 TEST(ModellingPage, NamesEveryShapeAndObstacle) {
   const std::string page = text_of("docs/modelling.md");
-  for (const char* name : {"Particle", "RigidBody", "Point", "Disc", "Segment", "Polygon", "HalfPlane",
-                           "disc", "ring", "solid_sphere", "thin_shell", "rod", "box", "polygon", "compose",
-                           "shifted", "centred", "to_dot", "keep_place"}) {
+  for (const char* name :
+       {"Particle", "RigidBody", "Point",        "Disc",       "Segment",    "Polygon",      "HalfPlane",
+        "disc",     "ring",      "solid_sphere", "thin_shell", "rod",        "box",          "polygon",
+        "compose",  "shifted",   "centred",      "to_dot",     "keep_place", "ContactFilter"}) {
     EXPECT_NE(page.find("`" + std::string(name) + "`"), std::string::npos) << name;
   }
 }

@@ -91,9 +91,10 @@ TEST(EventsPage, NamesEveryOptionAndMethod) {
     }
     return count;
   };
-  EXPECT_EQ(expect_all("integrators/run/event_driven.h", "struct EventDriven {",
-                       std::regex(R"(\n  (?:double|bool|FlowMethod|std::int64_t|std::string) (\w+))")),
-            15);
+  EXPECT_EQ(
+      expect_all("integrators/run/event_driven.h", "struct EventDriven {",
+                 std::regex(R"(\n  (?:double|bool|EventRecords|FlowMethod|std::int64_t|std::string) (\w+))")),
+      15);
   EXPECT_EQ(expect_all("integrators/flow/flow_method.h", "enum class FlowMethod",
                        std::regex(R"(\n  (\w+),? +///<)")),
             4);

@@ -46,7 +46,7 @@ TEST(BodyFeatures, ComeByBodyThenShape) {
       const bool is_rim = point.body == layout.index(wheel);
       EXPECT_EQ(point.key.serial, (is_rim ? rim : edge).serial);
       EXPECT_EQ(point.radius, is_rim ? 1.0 : 0.0);
-      EXPECT_EQ(features.materials()[point.material], is_rim ? steel : MaterialId{});
+      EXPECT_EQ(features.materials()[point.material].material, is_rim ? steel : MaterialId{});
     }
   }
   EXPECT_EQ(points, 3U);
@@ -106,7 +106,8 @@ TEST(BodyFeatures, NeighboursThatTouchAtTheirCentresAreOneRun) {
   for (Index material = 0; material < 2; ++material) {
     const FeatureKey first = features.first_of(material, layout);
     EXPECT_EQ(first.owner, FeatureKey::Owner::body);
-    EXPECT_EQ(first.serial, features.materials()[material] == steel ? balls[4].serial : balls[0].serial);
+    EXPECT_EQ(first.serial,
+              features.materials()[material].material == steel ? balls[4].serial : balls[0].serial);
   }
 }
 

@@ -45,7 +45,7 @@ TEST(GroundLaws, AreLookedUpByPair) {
   EXPECT_FALSE(laws.has_static_friction());
   const MaterialId steel = system.material("steel");
   for (Index material = 0; material < 2; ++material) {
-    const bool is_steel = features.materials()[material] == steel;
+    const bool is_steel = features.materials()[material].material == steel;
     EXPECT_EQ(laws.law(material, 0).friction, is_steel ? 0.1 : 0.3);
     EXPECT_EQ(laws.law(material, 1).friction, 0.2);
   }

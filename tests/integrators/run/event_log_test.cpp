@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -46,6 +48,90 @@ TEST(EventLog, EveryImpactIsToldWithItsNumbers) {
   EXPECT_GT(simulation.statistics().flow_restarts, impacts);
   simulation.clear_events();
   EXPECT_TRUE(simulation.events().empty());
+}
+
+TEST(EventLog, AnImpactHasTheMotionOfItsBody) {
+  Simulation simulation(bouncing_disc(0.5), EventDriven{});
+  simulation.run_until(1.0);
+  const EventRecord& first = simulation.events().front();
+  const EventMotion& motion = first.motions[0];
+  EXPECT_EQ(motion.body, first.body);
+  EXPECT_FALSE(first.motions[1].body.valid());
+  const double time = std::sqrt(2.0 * 1.0 / 9.81);
+  EXPECT_NEAR(motion.position[0], time, 1e-9);  // at 1 m/s
+  EXPECT_NEAR(motion.position[1], 0.1, 1e-12);
+  EXPECT_EQ(motion.position[2], 0.0);
+  EXPECT_EQ(motion.velocity_before[0], 1.0);
+  EXPECT_EQ(motion.velocity_before[1], first.velocity_before[0]);
+  EXPECT_EQ(motion.velocity_before[2], 0.0);
+  EXPECT_EQ(motion.velocity_after[1], first.velocity_after[0]);
+  // The impulse changes momentum and spin: 1 kg, 0.005 kg m^2, the tangent to the right, 0.1 m above it.
+  EXPECT_NEAR(motion.velocity_after[0] - 1.0, first.impulse[1], 1e-14);
+  EXPECT_NEAR(0.005 * motion.velocity_after[2], 0.1 * first.impulse[1], 1e-14);
+}
+
+TEST(EventLog, RecordsOfAnInstantHaveItsNumber) {
+  // Two boxes that land flat, on two corners each, one after the other.
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.0, .normal_restitution = 0.5});
+  for (const double x : {0.0, 1.0}) {
+    const BodyId body = system.add(RigidBody{.mass = box(1.0, 0.2, 0.2), .position = {x, 0.6 - 0.1 * x}});
+    system.add(Segment{.body = body, .from = {-0.1, -0.1}, .to = {0.1, -0.1}});
+  }
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(0.4);
+  simulation.run_until(0.8);
+  const std::vector<EventRecord>& events = simulation.events();
+  ASSERT_GE(events.size(), 8U);
+  EXPECT_EQ(events.front().instant, 0);
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    const bool same = events[i].time == events[i - 1].time && events[i].body == events[i - 1].body;
+    EXPECT_EQ(events[i].instant - events[i - 1].instant, same ? 0 : 1) << i;
+  }
+  EXPECT_EQ(events[1].instant, 0);
+  EXPECT_EQ(events[2].instant, 1);
+  simulation.clear_events();
+  simulation.run_until(1.2);
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.front().instant, 0);
+}
+
+/// A particle that slides along a floor and hits a wall: the floor gives no impulse.
+System sliding_against_a_wall() {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.1, .normal_restitution = 0.5}, "floor");
+  system.add(HalfPlane{.point = {1.0, 0.0}, .normal = {-1.0, 0.0}},
+             Surface{.friction = 0.0, .normal_restitution = 0.5}, "wall");
+  system.add(Particle{.mass = 1.0, .velocity = {3.0, 0.0}});
+  return system;
+}
+
+TEST(EventLog, ContactsWithoutAnImpulseAreRecordedWhereAsked) {
+  Simulation usual(sliding_against_a_wall(), EventDriven{});
+  Simulation all(sliding_against_a_wall(), EventDriven{.record_events = EventRecords::all});
+  for (Simulation* simulation : {&usual, &all}) simulation->run_until(1.0);
+  const auto impacts_on = [](const Simulation& simulation, const char* name) {
+    const ObstacleId obstacle = simulation.system().obstacle(name);
+    std::vector<EventRecord> found;
+    for (const EventRecord& event : simulation.events()) {
+      if (event.kind == EventKind::impact && event.obstacle == obstacle) found.push_back(event);
+    }
+    return found;
+  };
+  EXPECT_EQ(impacts_on(usual, "wall").size(), 1U);
+  EXPECT_TRUE(impacts_on(usual, "floor").empty());
+  EXPECT_EQ(impacts_on(all, "wall").size(), 1U);
+  ASSERT_EQ(impacts_on(all, "floor").size(), 1U);
+  const EventRecord floor = impacts_on(all, "floor").front(), wall = impacts_on(all, "wall").front();
+  EXPECT_EQ(floor.impulse, (std::array<double, 3>{}));
+  EXPECT_EQ(floor.instant, wall.instant);
+  EXPECT_EQ(floor.time, wall.time);
+  // The motion is the same, and so is what is counted.
+  EXPECT_EQ(usual.state().q, all.state().q);
+  EXPECT_EQ(usual.statistics().events, all.statistics().events);
+  EXPECT_EQ(usual.statistics().impacts, 1);
 }
 
 TEST(EventLog, WritesALineForEveryEvent) {
