@@ -140,28 +140,40 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
   return nullptr;
 }
 
-/// Bodies answer for themselves: v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of those of the problem. False if
-/// there are no impulses.
+/// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
+/// known when this is compiled
+template <std::size_t N>
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+                             StepTrial& trial) const {
+  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(block.columns);
+  const double half = 0.5 * in.step;
+  double *const dv = trial.dv_impulses.data() + block.v, *const free = trial.free.data() + block.v;
+  const double *const load0 = loads.start + block.v, *const load1 = loads.end + block.v;
+  const double* const start = in.start.v.data() + block.v;
+  const float* const rounding = in.companion.rounding.data() + block.v;
+  for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
+  const BodySlot body = assembly_->layout()->bodies()[block.body];
+  assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
+  for (std::size_t k = 0; k < size; ++k) {
+    free[k] += static_cast<double>(rounding[k]) + start[k];
+    dv[k] = 0.0;
+  }
+}
+
+/// Bodies answer for themselves. False if there are no impulses.
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
-  const float* const rounding = in.companion.rounding.data();
-  const double* const start = in.start.v.data();
+  constexpr int of_planar_body = 3;
   Index last = none;
   for (const Constraint& constraint : problem.constraints()) {
     for (int b = 0; b < constraint.bodies; ++b) {
       const Constraint::Block& block = constraint.blocks[static_cast<std::size_t>(b)];
       if (block.body == last) continue;
       last = block.body;
-      const BodySlot body = assembly_->layout()->bodies()[last];
-      const Index end = block.v + static_cast<Index>(block.columns);
-      for (Index k = block.v; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
-      assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv + block.v,
-                                                             free + block.v);
-      for (Index k = block.v; k < end; ++k) {
-        free[k] += static_cast<double>(rounding[k]) + start[k];
-        dv[k] = 0.0;
+      if (block.columns == of_planar_body) {
+        free_body<of_planar_body>(in, loads, block, trial);
+      } else {
+        free_body<0>(in, loads, block, trial);
       }
     }
   }

@@ -67,6 +67,9 @@ private:
   void part_problems(const StepInput& in, const StepIsland& island);
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
+  template <std::size_t N>
+  void free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+                 StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 
