@@ -116,18 +116,30 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
 
 void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
                                double time, ImpulseWork& sum, bool& impact) {
-  ContactRecord& entry = record(problem, contact, after);
+  const Constraint& at = problem.constraints()[contact];
+  const auto first = static_cast<std::size_t>(problem.first_row(contact));
+  const double *const before = problem.before().data() + first, *const impulses =
+                                                                    problem.impulses().data() + first;
+  ContactRecord& entry = record(problem, contact);
   entry.time = time;
-  result_.flows[EnergyFlow::external] += problem.map().surface_work(contact);
+  entry.impact = before[0] < -capture_speed_;
   impact = impact || entry.impact;
-  for (int direction = 0; direction < entry.directions; ++direction) {
-    const auto at = static_cast<std::size_t>(direction);
-    const double work = sum.add(entry.impulse[at], entry.velocity_before[at], entry.velocity_after[at]);
+  double on_surface = 0.0;
+  for (int row = 0; row < at.rows; ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    const double impulse = impulses[i], with = at.velocity_after(row, after);
+    const double work = sum.add(impulse, before[i], with);
+    entry.velocity_before[i] = before[i];
+    entry.velocity_after[i] = with;
+    entry.impulse[i] = impulse;
+    entry.work[i] = work;
     const EnergyFlow line = entry.impact
-                                ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
-                                : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+                                ? (row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                                : (row == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
     result_.flows[line] -= work;
+    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
   }
+  result_.flows[EnergyFlow::external] += on_surface;
 }
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
@@ -174,9 +186,10 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
-ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact, const double* after) {
+/// Names a contact, and how its problem was solved.
+ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact) {
   const Constraint& at = problem.constraints()[contact];
-  const ImpulseMap map = problem.map();
+  const ContactReport& report = problem.report();
   ContactRecord& entry = result_.report.contacts.emplace_back();
   entry.key = at.key;
   entry.body = assembly_->layout()->id(at.body());
@@ -185,20 +198,10 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   }
   entry.directions = at.rows;
   entry.gap = at.gap;
-  for (int row = 0; row < at.rows; ++row) {
-    const auto direction = static_cast<std::size_t>(row);
-    const double before = map.before(contact, row), with = at.velocity_after(row, after);
-    const double impulse = map.impulse(contact, row);
-    entry.velocity_before[direction] = before;
-    entry.velocity_after[direction] = with;
-    entry.impulse[direction] = impulse;
-    entry.work[direction] = impulse_work(impulse, before, with);
-  }
   entry.mode = problem.modes()[contact];
-  entry.impact = entry.velocity_before[0] < -capture_speed_;
-  entry.outcome = problem.report().outcome;
-  entry.residual = problem.report().residual;
-  entry.solver = problem.report().solver;
+  entry.outcome = report.outcome;
+  entry.residual = report.residual;
+  entry.solver = report.solver;
   return entry;
 }
 

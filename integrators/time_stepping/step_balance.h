@@ -71,7 +71,7 @@ private:
                            const StepTrial& trial, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
-  ContactRecord& record(const IslandProblem& problem, std::size_t contact, const double* after);
+  ContactRecord& record(const IslandProblem& problem, std::size_t contact);
 
   const Assembly* assembly_;
   double capture_speed_;
