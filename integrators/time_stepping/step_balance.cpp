@@ -13,20 +13,11 @@ void StepBalance::begin(const StepInput& in) {
   result_.stored = {};
   result_.joint_friction_modes.clear();
   StepReport& report = result_.report;
+  static_cast<StepNumbers&>(report) = {};
   report.contacts.clear();
   report.joint_impulses.clear();
   report.time = in.end_time;
   report.step = in.step;
-  report.iteration = Iteration::fixed_point;
-  report.fallbacks = 0;
-  report.sweeps = 0;
-  report.local_sweeps = 0;
-  report.contraction = 0.0;
-  report.worst_coupling = {};
-  report.worst_coupling_rate = 0.0;
-  report.energy_gain = report.lasting_gain = 0.0;
-  report.projected = 0.0;
-  report.control = {};
   coupling_work_ = {};
   energy_position_projection_ = energy_velocity_projection_ = 0.0;
 }
@@ -259,12 +250,18 @@ void add_to(Statistics& statistics, const StepReport& report) {
   }
 }
 
+/// Takes the report over, and gives the room of the last one back. Findings stay: they are of the model.
+void hand_over(StepReport& made, StepReport& report) {
+  static_cast<StepNumbers&>(report) = made;
+  report.contacts.swap(made.contacts);
+  report.joint_impulses.swap(made.joint_impulses);
+}
+
 }  // namespace
 
 void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
-  result.report.findings.swap(report.findings);
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
   std::swap(state.z, trial.end.z);
@@ -294,7 +291,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
     companion.modes.emplace_back(contact.key, contact.mode);
   }
   add_to(companion.statistics, result.report);
-  std::swap(report, result.report);
+  hand_over(result.report, report);
 }
 
 }  // namespace carom
