@@ -76,9 +76,9 @@ struct StepNumbers : IterationReport {
   /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
-  double lasting_gain = 0.0;            ///< part of it in lasting contact (docs/energy.md) [J]
-  double projected = 0.0;               ///< largest displacement by which a body was moved out of shapes [m]
-  ControlReport control;                ///< of step control
+  double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
+  double projected = 0.0;     ///< largest displacement by which a body was moved out of shapes [m]
+  ControlReport control;      ///< of step control
 };
 
 /// The last accepted step.

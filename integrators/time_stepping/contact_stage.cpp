@@ -17,9 +17,11 @@ ContactStage::ContactStage(const Assembly& assembly) : assembly_(&assembly), mas
   chains_.resize(most_runs);
 }
 
-void ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
+IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
   if (in_use_ == problems_.size()) problems_.emplace_back();
-  problems_[in_use_++].build(constraints, in.start.v.data());
+  IslandProblem& problem = problems_[in_use_++];
+  problem.build(constraints, in.start.v.data());
+  return problem;
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
@@ -31,7 +33,7 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   if (together) {
     add_problem(in, island.constraints);
   } else {
-    part_problems(in, island);
+    static_cast<void>(part_problems(in, island, [](IslandProblem&) { return true; }));
   }
   if (by_block_) return share_out(island, trial);
   for (const Index component : island.components) {
@@ -40,28 +42,29 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   }
 }
 
-/// Problems of constraints that share bodies.
-void ContactStage::part_problems(const StepInput& in, const StepIsland& island) {
+/// Problems of constraints that share bodies, whose bodies answer for themselves. Calls solved(problem) for
+/// each while its numbers are at hand, up to the first where that is false, which it returns.
+template <class F>
+const IslandProblem* ContactStage::part_problems(const StepInput& in, const StepIsland& island, F&& solved) {
   const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
-  const auto alone = [](Index body) { return body; };
-  if (island.constraints.size() == 1) {
-    add_problem(in, island.constraints);
-    return problems_[in_use_ - 1].respond(masses_);
+  const auto take = [&](std::span<Constraint> constraints) -> const IslandProblem* {
+    IslandProblem& problem = add_problem(in, constraints);
+    problem.respond(masses_);
+    return solved(problem) ? nullptr : &problem;
+  };
+  if (island.constraints.size() == 1) return take(island.constraints);
+  for (const Range problem :
+       partition_.arrange(island.constraints, bodies, [](Index body) { return body; })) {
+    const IslandProblem* const failed = take(island.constraints.subspan(problem.begin, problem.size()));
+    if (failed != nullptr) return failed;
   }
-  for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
-    add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
-    problems_[in_use_ - 1].respond(masses_);
-  }
+  return nullptr;
 }
 
-const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
-                                                  StepTrial& trial) {
-  in_use_ = 0;
+/// Bodies that have constraints, ascending.
+void ContactStage::list_struck(std::span<const Constraint> constraints) {
   struck_.clear();
-  if (island.constraints.empty()) return nullptr;
-  trial.expect_impulses();
-  part_problems(in, island);
-  for (const Constraint& constraint : island.constraints) {
+  for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
       const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
       if (struck_.empty() || struck_.back() != body) struck_.push_back(body);
@@ -69,11 +72,18 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
   }
   if (!std::is_sorted(struck_.begin(), struck_.end())) std::sort(struck_.begin(), struck_.end());
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
+}
+
+const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
+                                                  StepTrial& trial) {
+  in_use_ = 0;
+  list_struck(island.constraints);
+  if (island.constraints.empty()) return nullptr;
+  trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
-  for (IslandProblem& problem : problems()) {
-    if (!solve(in, {loads, loads}, problem, chains_.front(), trial)) return &problem;
-  }
-  return nullptr;
+  return part_problems(in, island, [&](IslandProblem& problem) {
+    return solve(in, {loads, loads}, problem, chains_.front(), trial);
+  });
 }
 
 std::span<const Index> ContactStage::struck(Range bodies) const {

@@ -63,8 +63,10 @@ private:
     const double* start;
     const double* end;
   };
-  void add_problem(const StepInput& in, std::span<Constraint> constraints);
-  void part_problems(const StepInput& in, const StepIsland& island);
+  IslandProblem& add_problem(const StepInput& in, std::span<Constraint> constraints);
+  template <class F>
+  [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
+  void list_struck(std::span<const Constraint> constraints);
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
   template <std::size_t N>
