@@ -32,6 +32,11 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   if (constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_)) {
     return take_one_planar(constraints[0], velocity_before);
   }
+  build_any(velocity_before);
+}
+
+void IslandProblem::build_any(const double* velocity_before) {
+  const std::span<const Constraint> constraints = constraints_;
   directions_.clear();
   first_row_.clear();
   int rows = 0;

@@ -64,13 +64,17 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
 /// Bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
   struck_.clear();
+  bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
       const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-      if (struck_.empty() || struck_.back() != body) struck_.push_back(body);
+      if (!struck_.empty() && struck_.back() == body) continue;
+      in_order = in_order && (struck_.empty() || struck_.back() < body);
+      struck_.push_back(body);
     }
   }
-  if (!std::is_sorted(struck_.begin(), struck_.end())) std::sort(struck_.begin(), struck_.end());
+  if (in_order) return;
+  std::sort(struck_.begin(), struck_.end());
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
 }
 
