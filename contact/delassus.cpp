@@ -3,6 +3,7 @@
 #include <carom/contact/delassus.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -10,41 +11,67 @@ namespace carom {
 
 namespace {
 
+/// Numbers of a row of a constraint of one body of S velocities.
+template <std::size_t S>
+const double* row_of_one(const Constraint& at, int row) {
+  return at.jacobian.data() + S * static_cast<std::size_t>(row);
+}
+
 /// Responses of one body of S velocities.
-template <int S>
+template <std::size_t S>
 void answer_alone(std::span<const ImpulseDirection> directions, const double* mass, const double* inertia,
                   double* x) {
-  const double m = *mass, i = *inertia;
+  std::array<double, S> masses;
+  for (std::size_t c = 0; c < S; ++c) masses[c] = c < 2 ? *mass : *inertia;
   for (const ImpulseDirection& direction : directions) {
     const Constraint& at = *direction.constraint;
-    std::copy_n(at.row(direction.row), S, x);
+    const double* const row = row_of_one<S>(at, direction.row);
+    // In registers until they are divided.
+    std::array<double, S> column;
+    for (std::size_t c = 0; c < S; ++c) column[c] = row[c];
     if (direction.ratio != 0.0) {
-      const double* const tangent = at.row(at.tangent_row());
-      for (int c = 0; c < S; ++c) x[c] += direction.ratio * tangent[c];
+      const double* const tangent = row_of_one<S>(at, at.tangent_row());
+      for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratio * tangent[c];
     }
-    for (int c = 0; c < S; ++c) x[c] /= c < 2 ? m : i;
+    for (std::size_t c = 0; c < S; ++c) x[c] = column[c] / masses[c];
     x += S;
   }
 }
 
+/// Product of a row and a response of one body of S velocities.
+template <std::size_t S>
+double product(const double* row, const double* response) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < S; ++c) sum += row[c] * response[c];
+  return sum;
+}
+
 /// Products of rows and columns of one body of S velocities. \param lower of the lower triangle, mirrored
-/// \tparam N number of them, if known when this is compiled
-template <int S, std::size_t N = 0>
+template <std::size_t S>
 void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
               double* matrix) {
-  if (N == 0 && directions.size() == 2) return multiply<S, 2>(directions, responses, lower, matrix);
-  if (N == 0 && directions.size() == 1) return multiply<S, 1>(directions, responses, lower, matrix);
-  const std::size_t n = N != 0 ? N : directions.size();
+  const std::size_t n = directions.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const double* const row = directions[i].constraint->row(directions[i].row);
+    const double* const row = row_of_one<S>(*directions[i].constraint, directions[i].row);
     const double* response = responses;
     for (std::size_t j = 0; j < (lower ? i + 1 : n); ++j, response += S) {
-      double sum = 0.0;
-      for (int c = 0; c < S; ++c) sum += row[c] * response[c];
-      matrix[i * n + j] = sum;
-      if (lower) matrix[j * n + i] = sum;
+      matrix[i * n + j] = product<S>(row, response);
+      if (lower) matrix[j * n + i] = matrix[i * n + j];
     }
   }
+}
+
+/// Likewise of the lower triangle, of one planar contact without loops.
+template <std::size_t S>
+void multiply_symmetric(std::span<const ImpulseDirection> directions, const double* responses,
+                        double* matrix) {
+  if (directions.size() != 2) return multiply<S>(directions, responses, true, matrix);
+  const double* const first = row_of_one<S>(*directions[0].constraint, directions[0].row);
+  const double* const second = row_of_one<S>(*directions[1].constraint, directions[1].row);
+  const double mixed = product<S>(second, responses);
+  matrix[0] = product<S>(first, responses);
+  matrix[1] = matrix[2] = mixed;
+  matrix[3] = product<S>(second, responses + S);
 }
 
 /// Adds responses of one body of S velocities.
@@ -255,8 +282,8 @@ double Delassus::sparse_entry(std::size_t i, std::size_t j) const {
 }
 
 void Delassus::write_symmetric(double* matrix) const {
-  if (velocities_of_one_ == 3) return multiply<3>(directions_, responses_.data(), true, matrix);
-  if (velocities_of_one_ == 2) return multiply<2>(directions_, responses_.data(), true, matrix);
+  if (velocities_of_one_ == 3) return multiply_symmetric<3>(directions_, responses_.data(), matrix);
+  if (velocities_of_one_ == 2) return multiply_symmetric<2>(directions_, responses_.data(), matrix);
   const std::size_t n = size();
   for (std::size_t row = 0; row < n; ++row) {
     for (std::size_t column = 0; column <= row; ++column) {

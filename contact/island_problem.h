@@ -82,6 +82,7 @@ public:
 
 private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
+  void build_any(const double* velocity_before);
   void set_row(std::size_t constraint, int row);
   [[nodiscard]] bool may_be_factored() const;
 

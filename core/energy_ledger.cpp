@@ -41,13 +41,17 @@ void EnergyLedger::open(const StoredEnergies& stored) {
 }
 
 void EnergyLedger::book(const EnergyFlows& flows, const StoredEnergies& stored) {
+  double largest = scale_;
   for (std::size_t i = 0; i < energy_flow_count; ++i) {
     if (flows.values[i] == 0.0) continue;
-    flows_[i].add(flows.values[i]);
-    scale_ = std::max(scale_, std::abs(flows_[i].value()));
+    CompensatedSum sum = flows_[i];
+    sum.add(flows.values[i]);
+    largest = std::max(largest, std::abs(sum.value()));
+    flows_[i] = sum;
   }
+  for (const double value : stored.values) largest = std::max(largest, std::abs(value));
   stored_ = stored;
-  for (const double value : stored.values) scale_ = std::max(scale_, std::abs(value));
+  scale_ = largest;
 }
 
 double EnergyLedger::lost() const {

@@ -7,7 +7,9 @@
 
 namespace carom {
 
-void CallGuard::demand(std::string_view call, Need need) const {
+namespace {
+
+[[noreturn]] void refuse(std::string_view call, std::size_t caller, std::size_t need) {
   constexpr std::array<std::string_view, 6> callers{"",
                                                     "a law, an element or a stop function within it",
                                                     "the sink of its log",
@@ -16,6 +18,13 @@ void CallGuard::demand(std::string_view call, Need need) const {
                                                     "the function given to its edit"};
   constexpr std::array<std::string_view, 3> allowed{"from outside", "from outside or by an action of every()",
                                                     "from outside, by an observer or by an action"};
+  throw ModelError("simulation: " + std::string(call) + " was called by " + std::string(callers[caller]) +
+                   "; allowed: " + std::string(allowed[need]));
+}
+
+}  // namespace
+
+void CallGuard::demand(std::string_view call, Need need) const {
   const bool fits = [&] {
     switch (need) {
       case Need::outside:
@@ -27,10 +36,7 @@ void CallGuard::demand(std::string_view call, Need need) const {
     }
     return caller_ != Caller::law && caller_ != Caller::log_sink;
   }();
-  if (fits) return;
-  throw ModelError("simulation: " + std::string(call) + " was called by " +
-                   std::string(callers[static_cast<std::size_t>(caller_)]) +
-                   "; allowed: " + std::string(allowed[static_cast<std::size_t>(need)]));
+  if (!fits) refuse(call, static_cast<std::size_t>(caller_), static_cast<std::size_t>(need));
 }
 
 }  // namespace carom

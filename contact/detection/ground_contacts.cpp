@@ -27,6 +27,9 @@ private:
   Range range_;  // still to come
 };
 
+/// A look at so many points together is not worth while.
+constexpr Index hardly_any = 2;
+
 template <class F>
 void for_parts(Range all, Index size, F&& f) {
   for (Index first = all.begin; first < all.end; first += size) {
@@ -108,10 +111,9 @@ void GroundContacts::for_runs(Range components, F&& f) const {
   }
 }
 
-/// True if no body touches at its bare centre.
-bool GroundContacts::only_points(Range components) const {
-  const Range own = features_.of(components).centres;
-  for (Index i = own.begin; i < own.end; ++i) {
+/// True if no body of some runs touches at its bare centre.
+bool GroundContacts::only_points(Range runs) const {
+  for (Index i = runs.begin; i < runs.end; ++i) {
     if (features_.centres()[i].points == none) return false;
   }
   return true;
@@ -120,16 +122,25 @@ bool GroundContacts::only_points(Range components) const {
 template <int D>
 void GroundContacts::find_in(Range components, const ContactQuery& query,
                              std::vector<Constraint>& out) const {
-  // Centres are looked at so many at a time; fewer, and one by one, only where any of them touches. A look at
-  // this many is not worth while.
-  constexpr Index many = 64, few = 8, hardly_any = 2;
+  const BodyFeatures::OfComponents own = features_.of(components);
+  if (own.points.size() > hardly_any || !only_points(own.centres)) {
+    return find_among<D>(components, query, out);
+  }
+  for (Index i = own.points.begin; i < own.points.end; ++i) {
+    const BodyFeature& point = features_.points()[i];
+    add<D>(assembly_->layout()->bodies()[point.body], point, query, out);
+  }
+}
+
+/// Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
+template <int D>
+void GroundContacts::find_among(Range components, const ContactQuery& query,
+                                std::vector<Constraint>& out) const {
+  constexpr Index many = 64, few = 8;
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
   const auto add_point = [&](Index i) { add<D>(bodies[points[i].body], points[i], query, out); };
-  if (features_.of(components).points.size() <= hardly_any && only_points(components)) {
-    return rest.before(none, add_point);
-  }
   for_runs(components, [&](const CentreRun& centres) {
     const bool rounded = centres.points != none;
     if (rounded) {

@@ -45,6 +45,8 @@ private:
   template <int D>
   void find_in(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
   template <int D>
+  void find_among(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  template <int D>
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   // Appends the contacts of one feature.
   template <int D>
@@ -56,7 +58,7 @@ private:
             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
   template <class F>
   void for_runs(Range components, F&& f) const;
-  [[nodiscard]] bool only_points(Range components) const;
+  [[nodiscard]] bool only_points(Range runs) const;
   // Whether any of some neighbours in a run may have a contact.
   [[nodiscard]] bool any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const;
 

@@ -114,6 +114,10 @@ bool SolverChain::Workspace::begin(const ContactProblem& problem, std::span<doub
 // The hot path: one planar contact, regular and unique. False where the long way has to be gone.
 bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::span<double> impulse,
                                            ContactReport& report) {
+  if (impulse.size() != 2 || problem.groups().size() != 1 || problem.sets().size() != 2 ||
+      problem.sets()[0].kind != SetKind::half_line || problem.sets()[1].kind != SetKind::bounded_interval) {
+    return false;
+  }
   const CertifiedImpulse answer = solve_regular_contact(problem);
   if (!answer.usable || !(answer.residual <= accepted_residual)) return false;
   impulse[0] = answer.impulse.normal;
@@ -131,6 +135,7 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   report.iterations = 1;
   report.tried = 1u << id;
   report.solver = solver_names[id];
+  report.reason = {};
   ++statistics.problems;
   ++statistics.tried[id];
   ++statistics.accepted[id];
@@ -256,17 +261,14 @@ ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double
 
 /// The report is built where the caller reads it: copying it would cost as much as solving a contact.
 void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report) {
-  demand_grouped(problem, impulse);
   Workspace& work = *work_;
+  if (work.solve_regular(problem, impulse, report)) return;
+  demand_grouped(problem, impulse);
   report = {};
   if (problem.is_factored()) {
     std::fill(impulse.begin(), impulse.end(), 0.0);
     work.sweep(problem, impulse, report);
     return count(report, SolverId::nonlinear_cg, 1, work.statistics);
-  }
-  if (impulse.size() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
-      problem.sets()[1].kind == SetKind::bounded_interval && work.solve_regular(problem, impulse, report)) {
-    return;
   }
   if (!work.begin(problem, impulse, report)) return;
   Workspace::Attempt attempt{.report = report};
@@ -288,6 +290,10 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   const bool warm = std::exchange(solution.known, true) && report.usable();
   const bool several = problem.groups().size() > 1;
   solution.changed_modes = false;
+  if (!warm && solution.modes.size() == 1 && work.solve_regular(problem, solution.impulse, report)) {
+    solution.modes[0] = work.modes[0];
+    return;
+  }
   if (problem.is_factored()) {
     demand_grouped(problem, solution.impulse);
     report = {};

@@ -8,12 +8,13 @@
 namespace carom {
 
 void FullPivoting::reset(std::size_t n) {
+  rank_ = n;
+  if (n == 1 && size() == 1) return;  // one equation stays in its order
   matrix_.resize(n * n);
   row_order_.resize(n);
   column_order_.resize(n);
   std::iota(row_order_.begin(), row_order_.end(), std::size_t{0});
   std::iota(column_order_.begin(), column_order_.end(), std::size_t{0});
-  rank_ = n;
 }
 
 /// The largest number that is left.

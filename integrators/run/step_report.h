@@ -73,16 +73,20 @@ struct IterationReport {
   double worst_coupling_rate = 0.0;  ///< its estimate (h^2/4)|M^-1 K| + (h/2)|M^-1 C|
 };
 
-/// The last accepted step.
-struct StepReport : IterationReport {
+/// Numbers of a step.
+struct StepNumbers : IterationReport {
   double time = 0.0;  ///< at its end [s]
   double step = 0.0;  ///< its length [s]
   /// Energy that the impulses of contacts, limits and friction in joints added, summed over the contact
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
-  double lasting_gain = 0.0;            ///< part of it in lasting contact (docs/energy.md) [J]
-  double projected = 0.0;               ///< largest displacement by which a body was moved out of shapes [m]
-  ControlReport control;                ///< of step control
+  double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
+  double projected = 0.0;     ///< largest displacement by which a body was moved out of shapes [m]
+  ControlReport control;      ///< of step control
+};
+
+/// The last accepted step.
+struct StepReport : StepNumbers {
   std::vector<ContactRecord> contacts;  ///< contacts that took part, in the order of their bodies
   /// Impulses of all joints, including their reactions to contact; by component, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.

@@ -3,8 +3,9 @@
 /// \file
 /// Times are doubles: far from zero short steps are lost in their rounding.
 
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 namespace carom {
 
@@ -13,7 +14,9 @@ namespace carom {
 [[nodiscard]] inline double shortest_step_at(double time) {
   constexpr double steps_apart = 4.0;
   const double size = std::abs(time);
-  return steps_apart * (std::nextafter(size, std::numeric_limits<double>::infinity()) - size);
+  // Doubles >= 0 are in the order of their bits.
+  const auto next = std::bit_cast<double>(std::bit_cast<std::uint64_t>(size) + 1);
+  return steps_apart * (next - size);
 }
 
 }  // namespace carom

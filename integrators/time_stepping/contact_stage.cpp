@@ -19,9 +19,11 @@ ContactStage::ContactStage(const Assembly& assembly, const SweepBudget& budget)
   for (SolverChain& chain : chains_) chain.set_budget(budget);
 }
 
-void ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
-  if (in_use_ == problems_.size()) problems_.emplace_back();
-  problems_[in_use_++].build(constraints, in.start.v.data());
+IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
+  if (in_use_ == problems_.size()) problems_.emplace_back().allow_factors();
+  IslandProblem& problem = problems_[in_use_++];
+  problem.build(constraints, in.start.v.data());
+  return problem;
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
@@ -33,7 +35,7 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   if (together) {
     add_problem(in, island.constraints);
   } else {
-    part_problems(in, island);
+    static_cast<void>(part_problems(in, island, [](IslandProblem&) { return true; }));
   }
   if (by_block_) return share_out(island, trial);
   for (const Index component : island.components) {
@@ -42,19 +44,41 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   }
 }
 
-/// Problems of constraints that share bodies.
-void ContactStage::part_problems(const StepInput& in, const StepIsland& island) {
+/// Problems of constraints that share bodies, whose bodies answer for themselves. Calls solved(problem) for
+/// each while its numbers are at hand, up to the first where that is false, which it returns.
+template <class F>
+const IslandProblem* ContactStage::part_problems(const StepInput& in, const StepIsland& island, F&& solved) {
   const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
-  const auto alone = [](Index body) { return body; };
-  if (island.constraints.size() == 1) {
-    add_problem(in, island.constraints);
-    return problems_[in_use_ - 1].respond(masses_);
+  const auto take = [&](std::span<Constraint> constraints) -> const IslandProblem* {
+    IslandProblem& problem = add_problem(in, constraints);
+    problem.respond(masses_);
+    if (problem.problem().is_factored()) start_sweeps(in, problem);
+    return solved(problem) ? nullptr : &problem;
+  };
+  if (island.constraints.size() == 1) return take(island.constraints);
+  for (const Range problem :
+       partition_.arrange(island.constraints, bodies, [](Index body) { return body; })) {
+    const IslandProblem* const failed = take(island.constraints.subspan(problem.begin, problem.size()));
+    if (failed != nullptr) return failed;
   }
-  for (const Range problem : partition_.arrange(island.constraints, bodies, alone)) {
-    add_problem(in, island.constraints.subspan(problem.begin, problem.size()));
-    problems_[in_use_ - 1].respond(masses_);
-    if (problems_[in_use_ - 1].problem().is_factored()) start_sweeps(in, problems_[in_use_ - 1]);
+  return nullptr;
+}
+
+/// Bodies that have constraints, ascending.
+void ContactStage::list_struck(std::span<const Constraint> constraints) {
+  struck_.clear();
+  bool in_order = true;
+  for (const Constraint& constraint : constraints) {
+    for (int b = 0; b < constraint.bodies; ++b) {
+      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
+      if (!struck_.empty() && struck_.back() == body) continue;
+      in_order = in_order && (struck_.empty() || struck_.back() < body);
+      struck_.push_back(body);
+    }
   }
+  if (in_order) return;
+  put_struck_in_order();
+  struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
 }
 
 /// The impulses of the step before, by key, are where sweeps start.
@@ -75,23 +99,13 @@ void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
                                                   StepTrial& trial) {
   in_use_ = 0;
-  struck_.clear();
+  list_struck(island.constraints);
   if (island.constraints.empty()) return nullptr;
   trial.expect_impulses();
-  part_problems(in, island);
-  for (const Constraint& constraint : island.constraints) {
-    for (int b = 0; b < constraint.bodies; ++b) {
-      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-      if (struck_.empty() || struck_.back() != body) struck_.push_back(body);
-    }
-  }
-  if (!std::is_sorted(struck_.begin(), struck_.end())) put_struck_in_order();
-  struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
   const double* const loads = in.companion.loads.total.data();
-  for (IslandProblem& problem : problems()) {
-    if (!solve(in, {loads, loads}, problem, chains_.front(), trial)) return &problem;
-  }
-  return nullptr;
+  return part_problems(in, island, [&](IslandProblem& problem) {
+    return solve(in, {loads, loads}, problem, chains_.front(), trial);
+  });
 }
 
 /// Many bodies are ticked off faster than they are sorted.
@@ -174,28 +188,40 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
   return nullptr;
 }
 
-/// Bodies answer for themselves: v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of those of the problem. False if
-/// there are no impulses.
+/// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
+/// known when this is compiled
+template <std::size_t N>
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+                             StepTrial& trial) const {
+  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(block.columns);
+  const double half = 0.5 * in.step;
+  double *const dv = trial.dv_impulses.data() + block.v, *const free = trial.free.data() + block.v;
+  const double *const load0 = loads.start + block.v, *const load1 = loads.end + block.v;
+  const double* const start = in.start.v.data() + block.v;
+  const float* const rounding = in.companion.rounding.data() + block.v;
+  for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
+  const BodySlot body = assembly_->layout()->bodies()[block.body];
+  assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
+  for (std::size_t k = 0; k < size; ++k) {
+    free[k] += static_cast<double>(rounding[k]) + start[k];
+    dv[k] = 0.0;
+  }
+}
+
+/// Bodies answer for themselves. False if there are no impulses.
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
-  const float* const rounding = in.companion.rounding.data();
-  const double* const start = in.start.v.data();
+  constexpr int of_planar_body = 3;
   Index last = none;
   for (const Constraint& constraint : problem.constraints()) {
     for (int b = 0; b < constraint.bodies; ++b) {
       const Constraint::Block& block = constraint.blocks[static_cast<std::size_t>(b)];
       if (block.body == last) continue;
       last = block.body;
-      const BodySlot body = assembly_->layout()->bodies()[last];
-      const Index end = block.v + static_cast<Index>(block.columns);
-      for (Index k = block.v; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
-      assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv + block.v,
-                                                             free + block.v);
-      for (Index k = block.v; k < end; ++k) {
-        free[k] += static_cast<double>(rounding[k]) + start[k];
-        dv[k] = 0.0;
+      if (block.columns == of_planar_body) {
+        free_body<of_planar_body>(in, loads, block, trial);
+      } else {
+        free_body<0>(in, loads, block, trial);
       }
     }
   }

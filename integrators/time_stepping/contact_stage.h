@@ -63,12 +63,17 @@ private:
     const double* start;
     const double* end;
   };
-  void add_problem(const StepInput& in, std::span<Constraint> constraints);
+  IslandProblem& add_problem(const StepInput& in, std::span<Constraint> constraints);
   void start_sweeps(const StepInput& in, IslandProblem& problem);
-  void part_problems(const StepInput& in, const StepIsland& island);
+  template <class F>
+  [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
+  void list_struck(std::span<const Constraint> constraints);
   void put_struck_in_order();
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
+  template <std::size_t N>
+  void free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+                 StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 

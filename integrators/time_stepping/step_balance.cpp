@@ -14,20 +14,11 @@ void StepBalance::begin(const StepInput& in) {
   result_.joint_friction_modes.clear();
   result_.contacts.start(in.step);
   StepReport& report = result_.report;
+  static_cast<StepNumbers&>(report) = {};
   report.contacts.clear();
   report.joint_impulses.clear();
   report.time = in.end_time;
   report.step = in.step;
-  report.iteration = Iteration::fixed_point;
-  report.fallbacks = 0;
-  report.sweeps = 0;
-  report.local_sweeps = 0;
-  report.contraction = 0.0;
-  report.worst_coupling = {};
-  report.worst_coupling_rate = 0.0;
-  report.energy_gain = report.lasting_gain = 0.0;
-  report.projected = 0.0;
-  report.control = {};
   coupling_work_ = {};
   energy_position_projection_ = energy_velocity_projection_ = 0.0;
 }
@@ -109,28 +100,40 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     if (problem.constraints()[contact].has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work);
     } else {
-      ContactRecord& entry = record(problem, contact, after);
-      entry.time = time;
-      place(problem.constraints()[contact], in, entry);
-      impact = impact || entry.impact;
-      book_contact(problem, contact, work, entry);
+      book_contact(problem, contact, after, time, in, work, impact);
     }
   }
   if (problem.problem().is_factored()) keep_impulses(problem);
   return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
 }
 
-void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, ImpulseWork& sum,
-                               const ContactRecord& entry) {
-  result_.flows[EnergyFlow::external] += problem.map().surface_work(contact);
-  for (int direction = 0; direction < entry.directions; ++direction) {
-    const auto at = static_cast<std::size_t>(direction);
-    const double work = sum.add(entry.impulse[at], entry.velocity_before[at], entry.velocity_after[at]);
+void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
+                               double time, const StepInput& in, ImpulseWork& sum, bool& impact) {
+  const Constraint& at = problem.constraints()[contact];
+  const auto first = static_cast<std::size_t>(problem.first_row(contact));
+  const double *const before = problem.before().data() + first, *const impulses =
+                                                                    problem.impulses().data() + first;
+  ContactRecord& entry = record(problem, contact);
+  entry.time = time;
+  place(at, in, entry);
+  entry.impact = before[0] < -capture_speed_;
+  impact = impact || entry.impact;
+  double on_surface = 0.0;
+  for (int row = 0; row < at.rows; ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    const double impulse = impulses[i], with = at.velocity_after(row, after);
+    const double work = sum.add(impulse, before[i], with);
+    entry.velocity_before[i] = before[i];
+    entry.velocity_after[i] = with;
+    entry.impulse[i] = impulse;
+    entry.work[i] = work;
     const EnergyFlow line = entry.impact
-                                ? (direction == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
-                                : (direction == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
+                                ? (row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
+                                : (row == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
     result_.flows[line] -= work;
+    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
   }
+  result_.flows[EnergyFlow::external] += on_surface;
 }
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
@@ -177,9 +180,10 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
-ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact, const double* after) {
+/// Names a contact, and how its problem was solved.
+ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact) {
   const Constraint& at = problem.constraints()[contact];
-  const ImpulseMap map = problem.map();
+  const ContactReport& report = problem.report();
   ContactRecord& entry = result_.report.contacts.emplace_back();
   entry.key = at.key;
   const Layout& layout = *assembly_->layout();
@@ -190,20 +194,10 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   }
   entry.directions = at.rows;
   entry.gap = at.gap;
-  for (int row = 0; row < at.rows; ++row) {
-    const auto direction = static_cast<std::size_t>(row);
-    const double before = map.before(contact, row), with = at.velocity_after(row, after);
-    const double impulse = map.impulse(contact, row);
-    entry.velocity_before[direction] = before;
-    entry.velocity_after[direction] = with;
-    entry.impulse[direction] = impulse;
-    entry.work[direction] = impulse_work(impulse, before, with);
-  }
   entry.mode = problem.modes()[contact];
-  entry.impact = entry.velocity_before[0] < -capture_speed_;
-  entry.outcome = problem.report().outcome;
-  entry.residual = problem.report().residual;
-  entry.solver = problem.report().solver;
+  entry.outcome = report.outcome;
+  entry.residual = report.residual;
+  entry.solver = report.solver;
   return entry;
 }
 
@@ -284,12 +278,18 @@ void add_to(Statistics& statistics, const StepReport& report) {
   }
 }
 
+/// Takes the report over, and gives the room of the last one back. Findings stay: they are of the model.
+void hand_over(StepReport& made, StepReport& report) {
+  static_cast<StepNumbers&>(report) = made;
+  report.contacts.swap(made.contacts);
+  report.joint_impulses.swap(made.joint_impulses);
+}
+
 }  // namespace
 
 void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
-  result.report.findings.swap(report.findings);
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
   std::swap(state.z, trial.end.z);
@@ -320,7 +320,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
     companion.modes.emplace_back(contact.key, contact.mode);
   }
   add_to(companion.statistics, result.report);
-  std::swap(report, result.report);
+  hand_over(result.report, report);
 }
 
 }  // namespace carom

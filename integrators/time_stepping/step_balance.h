@@ -67,13 +67,13 @@ public:
   [[nodiscard]] StepResult& finish(const StepInput& in);
 
 private:
-  void book_contact(const IslandProblem& problem, std::size_t contact, ImpulseWork& sum,
-                    const ContactRecord& entry);
+  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, double time,
+                    const StepInput& in, ImpulseWork& sum, bool& impact);
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
-  ContactRecord& record(const IslandProblem& problem, std::size_t contact, const double* after);
+  ContactRecord& record(const IslandProblem& problem, std::size_t contact);
   void keep_impulses(const IslandProblem& problem);
   void place(const Constraint& at, const StepInput& in, ContactRecord& entry) const;
 

@@ -226,9 +226,10 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
   const double* const after = joints != nullptr && !parts_.contacts.problems().empty()
                                   ? joints->velocities_of_contact(parts_.trial)
                                   : parts_.trial.end.v.data();
+  const bool all = parts_.located.empty();
   for (const IslandProblem& problem : parts_.contacts.problems()) {
     const Index body = problem.constraints().front().body();
-    if (parts_.located.contains_any({body, body + 1})) continue;
+    if (!all && parts_.located.contains_any({body, body + 1})) continue;
     book_contact_problem(problem, after, in.end_time, in);
   }
   for (const LocatedMotion& motion : parts_.located.motions()) {

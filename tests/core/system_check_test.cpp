@@ -70,6 +70,7 @@ TEST(SystemCheck, LawsOfMaterialsThatNeverMeet) {
       << found[0].text;
   system.between(steal, steel, rough);
   EXPECT_EQ(system.check().size(), 2U);
+  disc_of(system, steel, {1.0, 1.0});
   system.between(steel, steel, rough);  // of two bodies
   EXPECT_EQ(system.check().size(), 2U);
 }
