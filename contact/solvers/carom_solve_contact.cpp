@@ -32,7 +32,8 @@ constexpr std::string_view usage = R"(usage: carom-solve-contact FILE [--solver 
 Solves the contact problem in FILE and prints the answer with its certificate.
 
   --solver NAME  chain (default), all (every solver beside the chain), single-contact,
-                 principal-pivoting (on the paper's form), lemke, projection, enumeration
+                 principal-pivoting (on the paper's form), lemke, projection, enumeration,
+                 nonlinear-cg (of problems in factors)
   --json         prints JSON instead of tables
   --help         prints this
 

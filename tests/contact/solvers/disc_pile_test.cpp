@@ -47,9 +47,9 @@ void expect_rest(const PileOptions& options, int falling, int resting) {
   EXPECT_GT(chain.statistics().accepted_at_cap, 0);
 }
 
-TEST(DiscPile, OfAHundredComesToRest) { expect_rest({.discs = 100, .width = 0.4}, 1000, 300); }
+TEST(DiscPile, OfAHundredComesToRest) { expect_rest({.discs = 100, .width = 0.4}, 1500, 300); }
 
-TEST(DiscPile, OfFiveHundredComesToRest) { expect_rest({.discs = 500, .width = 0.9}, 1800, 200); }
+TEST(DiscPile, OfFiveHundredComesToRest) { expect_rest({.discs = 500, .width = 0.9}, 1300, 200); }
 
 TEST(DiscPileLong, OfTwoThousandComesToRest) { expect_rest({.discs = 2000}, 2000, 500); }
 
