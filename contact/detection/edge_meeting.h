@@ -98,6 +98,12 @@ private:
     return beyond > 0.0 && !(overlap_ && beyond <= -height);
   }
 
+  // An overlap of this length is none, but for rounding.
+  [[nodiscard]] double slack() const {
+    constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+    return rounding * (face_.length + facing_.length);
+  }
+
   void add(const FeaturePair& pair) { pairs_[static_cast<std::size_t>(size_++)] = pair; }
   void add_on_face(Index vertex) { add({true, false, face_.tail, vertex}); }
   void add_on_facing(Index vertex) { add({false, true, vertex, facing_.tail}); }
@@ -121,7 +127,7 @@ private:
       return;
     }
     const double along = facing_.coordinate(face_.origin), height = facing_.height(face_.origin);
-    if (along <= 0.0) return;  // beyond the other end of the facing edge
+    if (along <= slack()) return;  // beyond the other end of the facing edge
     if (is_off(along - facing_.length, height)) {
       add_vertices(face_.tail, facing_.head);
     } else {
@@ -136,7 +142,7 @@ private:
       return;
     }
     const double along = facing_.coordinate(face_head_), height = facing_.height(face_head_);
-    if (along >= facing_.length) return;
+    if (along >= facing_.length - slack()) return;
     if (is_off(-along, height)) {
       add_vertices(face_.head, facing_.tail);
     } else {

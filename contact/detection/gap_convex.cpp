@@ -93,11 +93,12 @@ bool comes_first(const Face& face, const Face& other) {
   return order(face) >= order(other);
 }
 
-/// True if two vertices are in one place but for rounding, so that the line between them has no direction.
-bool coincide(const Vec<2>& one, const Vec<2>& other) {
+/// True if two vertices are in one place but for the rounding of places, and of distances as large as `size`,
+/// so that the line between them has no direction.
+bool coincide(const Vec<2>& one, const Vec<2>& other, double size) {
   constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
   const double apart = std::max(std::abs(one[0] - other[0]), std::abs(one[1] - other[1]));
-  return apart <= rounding * std::max(std::abs(one[0]), std::abs(one[1]));
+  return apart <= rounding * std::max({std::abs(one[0]), std::abs(one[1]), size});
 }
 
 }  // namespace
@@ -123,17 +124,23 @@ int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double ma
   int found = 0;
   for (int i = 0; i < meeting.size(); ++i) {
     FeaturePair pair = meeting[i];
-    const bool is_of_vertices = !pair.face_side_is_edge && !pair.other_side_is_edge;
-    if (is_of_vertices && coincide(of_face.vertices[pair.face_side], other.vertices[pair.other_side])) {
-      pair.face_side_is_edge = true;  // they touch; the face has a normal
-      pair.face_side = face.tail;
+    for (const Index end : {facing.tail, facing.head}) {
+      if (pair.face_side_is_edge) break;
+      const Vec<2>&vertex = of_face.vertices[pair.face_side], &corner = other.vertices[end];
+      // Corners that touch: the face has a normal along which the outlines are separated.
+      if (coincide(vertex, corner, face.length + facing.length)) pair = {true, false, face.tail, end};
     }
     const GapPoint at = gap_of_pair(pair, a, b, is_of_a);
     if (!(at.gap <= margin)) continue;
     out[static_cast<std::size_t>(found++)] = at;
   }
-  if (found == 2 && out[1].gap < out[0].gap) std::swap(out[0], out[1]);
-  return found;
+  if (found < 2) return found;
+  if (out[1].gap < out[0].gap) std::swap(out[0], out[1]);
+  // At a larger angle an end of the face is before the facing edge only next to the corner that touches.
+  constexpr double cosine_of_parallel = 0.9;
+  const GapKind on_facing = is_of_a ? GapKind::edge_of_b : GapKind::edge_of_a;
+  const bool is_nearly_parallel = -face.along.dot(facing.along) > cosine_of_parallel;
+  return out[1].kind == on_facing && !is_nearly_parallel ? 1 : 2;
 }
 
 GapPoint tracked_gap(const ConvexOutline& a, Index feature_a, const ConvexOutline& b, Index feature_b) {
