@@ -174,7 +174,7 @@ bool ActiveSet::add_reactions(const Assembly& assembly, double* acceleration) {
   pivots_.clear();
   for_groups([&](std::size_t first, std::size_t last) {
     state_equations(assembly, first, last, true);
-    if (joints_ != nullptr) add_dry_friction(first, last, acceleration);
+    if (response_ != nullptr) add_dry_friction(first, last, acceleration);
     solved = react(first, last, acceleration) && solved;
   });
   return solved;

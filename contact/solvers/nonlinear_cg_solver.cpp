@@ -16,6 +16,9 @@ constexpr int look_every = 8;
 // body with hundreds of contacts beta stays below one although the steps along d lead away.
 constexpr int plain_looks = 8;
 
+// An answer that could not be accepted gets up to this many times the sweeps of the budget.
+constexpr int most_times = 10;
+
 // What the sweeps aim at is a little less than what is asked for: whoever judges adds in another order.
 constexpr double aim = 0.9;
 
@@ -34,11 +37,15 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
   if (best <= target) return {Outcome::solved, false, 0, {}};
   double before = 0.0;  // |g|^2 of the sweep before
   int sweep = 0, plain = 0;
-  while (sweep < budget_.sweeps && best <= std::numeric_limits<double>::max()) {
+  // What must not be used is worth more sweeps than what is not exact.
+  const auto goes_on = [&] {
+    return sweep < budget_.sweeps || (best > budget_.accepted && sweep < most_times * budget_.sweeps);
+  };
+  while (goes_on() && best <= std::numeric_limits<double>::max()) {
     const SweepChange change = sweeps_.sweep();
     ++sweep;
     const bool regular_look = sweep % look_every == 0;
-    if (change.largest <= target * sweeps_.scale() || regular_look || sweep == budget_.sweeps) {
+    if (change.largest <= target * sweeps_.scale() || regular_look || sweep % budget_.sweeps == 0) {
       const double found = sweeps_.judge();
       if (found <= best) {
         best = found;

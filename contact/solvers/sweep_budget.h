@@ -11,6 +11,7 @@ struct SweepBudget {
   double residual = 1e-8;
   /// Most sweeps. A settled pile needs a few in a step; a collapsing one uses all of them up, which for 2,000
   /// discs are about 3 ms.
+  /// Where the residual is above `accepted` then, up to ten times as many follow until it is not.
   int sweeps = 80;
   /// Largest residual with which an answer is taken when the sweeps are used up, as `accepted_at_cap`; above
   /// it the problem is `not_solved`. 0: never.

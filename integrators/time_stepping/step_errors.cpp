@@ -23,8 +23,10 @@ std::string place(const StepInput& in) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12;  // of a pile all the same says nothing
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
   return text;
 }
 

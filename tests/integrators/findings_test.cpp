@@ -12,11 +12,11 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 
-/// Two discs that would pass through each other: a law between them has no effect.
+/// Two discs that pass through each other: there is a law with ice only, of which nothing is.
 System two_discs() {
   System system;
   const MaterialId steel = system.material("steel");
-  system.between(steel, steel, {.friction = 0.1, .normal_restitution = 1.0});
+  system.between(steel, system.material("ice"), {.friction = 0.1, .normal_restitution = 1.0});
   for (const double x : {0.0, 1.0}) {
     const BodyId body = system.add(
         RigidBody{.mass = disc(1.0, 0.1), .position = {x, 0.0}, .velocity = {x > 0.5 ? -1.0 : 1.0, 0.0}});
