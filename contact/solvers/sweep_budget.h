@@ -8,7 +8,7 @@ namespace carom {
 /// Options of the sweeps over a problem in factors (nonlinear_cg_solver.h).
 struct SweepBudget {
   /// Residual (residual.h) at which the sweeps end; the answer is `solved` then.
-  double residual = 1e-8;
+  double residual = 1e-10;
   /// Most sweeps. A settled pile needs a few in a step; a collapsing one uses all of them up, which for 2,000
   /// discs are about 3 ms.
   /// Where the residual is above `accepted` then, up to ten times as many follow until it is not.
