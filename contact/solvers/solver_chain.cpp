@@ -32,16 +32,14 @@ constexpr std::string_view not_applicable = "not applicable";
 // A proof about numbers that are none is no proof.
 bool finite(const ContactProblem& problem) {
   const auto good = [](double value) { return std::isfinite(value); };
-  return std::all_of(problem.matrix().begin(), problem.matrix().end(), good) &&
-         std::all_of(problem.vector().begin(), problem.vector().end(), good);
+  return std::ranges::all_of(problem.matrix(), good) && std::ranges::all_of(problem.vector(), good);
 }
 
 void demand_grouped(const ContactProblem& problem, std::span<const double> impulse) {
   const auto rows = static_cast<std::size_t>(problem.rows());
   if (impulse.size() != rows) throw std::invalid_argument("contact solver: one impulse for each row");
-  if (rows > 0 && problem.groups().empty()) {
-    throw std::invalid_argument("contact solver: the problem is not grouped");
-  }
+  if (rows == 0 || !problem.groups().empty()) return;
+  throw std::invalid_argument("contact solver: the problem is not grouped");
 }
 
 }  // namespace
@@ -56,10 +54,8 @@ struct SolverChain::Workspace {
   WarmStart warm_start;
   LargeProblemSolver large;
   ChainStatistics statistics;
-  std::vector<double> trial, trial_xi, xi;
-  std::vector<ContactMode> modes;
-  std::vector<double> start;  // impulses of a start
-  std::vector<ContactMode> start_modes;
+  std::vector<double> trial, trial_xi, xi, start;  // the last: impulses of a start
+  std::vector<ContactMode> modes, start_modes;
 
   // Result of the solvers tried so far.
   struct Attempt {
@@ -330,16 +326,15 @@ ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& pro
   demand_grouped(problem, impulse);
   ContactReport report;
   if (!work_->begin(problem, impulse, report)) return report;
-  if (problem.is_factored() && solver == SolverId::nonlinear_cg) {
+  Workspace::Attempt attempt{.report = report, .last = solver};
+  if (!problem.is_factored()) {
+    work_->attempt(problem, solver, impulse, attempt);
+  } else if (solver != SolverId::nonlinear_cg) {
+    report.reason = not_applicable;
+  } else {
     std::fill(impulse.begin(), impulse.end(), 0.0);
     work_->sweep(problem, impulse, report);
     return report;
-  }
-  Workspace::Attempt attempt{.report = report, .last = solver};
-  if (problem.is_factored()) {
-    report.reason = not_applicable;
-  } else {
-    work_->attempt(problem, solver, impulse, attempt);
   }
   work_->conclude(problem, impulse, attempt);
   return report;
