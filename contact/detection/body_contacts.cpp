@@ -1,6 +1,7 @@
 // Problem: which bodies touch each other, where, and by which law.
 
 #include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/core/joint_kind.h>
 
@@ -189,8 +190,8 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, const BodyCo
   }
 }
 
-/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two vertices
-/// it is the one of the outline with fewer.
+/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two
+/// vertices it is the one of the outline with fewer.
 ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap) {
   const bool of_a = gap.kind == GapKind::edge_of_b ||
                     (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
@@ -212,7 +213,8 @@ void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const Bo
 void BodyContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                            Constraint& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
-  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)], &b = outlines_.list()[pair.outline];
+  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
+                    &b = outlines_.list()[pair.outline];
   // In the frame of the second body its vertices are at hand as described.
   const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
   const BodyFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
@@ -220,6 +222,11 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
+  if (gap.kind == GapKind::vertices && a.radius + b.radius == 0.0 &&
+      gap.gap <= FeatureRegions::corner_follows) {
+    const Index edge = FeatureRegions(*assembly_, outlines_, pair, state, evaluation).nearest();
+    gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), edge);
+  }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;
   gap.normal = frame_b.turned(gap.normal);

@@ -49,7 +49,8 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   guards_.update(ends_.start.sample.guards, scales_.guard_noise);
 }
 
-/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes next.
+/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes
+/// next.
 void EventDetector::take_features(double time, const double* y) {
   bool sampled = false;
   for (ActiveContact& closed : motion_->active().list()) {
@@ -61,7 +62,7 @@ void EventDetector::take_features(double time, const double* y) {
     if (!regions.has_several()) continue;
     closed.feature = regions.nearest();
     const FeatureMargin margin = regions.margin(closed.feature);
-    const bool at_border = margin.value <= 2.0 * scales_.beyond_feature();
+    const bool at_border = !regions.is_sharp() && margin.value <= 2.0 * regions.border();
     if (at_border && margin.rate < -scales_.speed_noise) closed.feature = margin.beyond;
   }
 }

@@ -43,8 +43,8 @@ void check_options(const EventDriven& options) {
 
 namespace {
 
-/// Components whose bodies may ever touch each other are one group, wherever they are now: groups are not parted
-/// or joined in a run, so that no horizon is needed.
+/// Components whose bodies may ever touch each other are one group, wherever they are now: groups are not
+/// parted or joined in a run, so that no horizon is needed.
 std::vector<GroupComponents> find_groups(const Assembly& assembly, const Detector& detector) {
   const auto count = static_cast<Index>(assembly.components().size());
   const std::vector<ContactPair> pairs = detector.body_pairs();

@@ -26,9 +26,9 @@ struct StepEnd {
   std::vector<char> gap_known;
   std::vector<double> gap_speeds;         ///< by such pair: bound of the rate of the gap [m/s],
   std::vector<double> gap_accelerations;  ///< and of what accelerations add to it [m/s^2]
-  GuardSample sample;          ///< all other guards
-  PathEnd path;                ///< where elements have guards
-  std::vector<double> noises;  ///< rounding of the margins of forces [N]
+  GuardSample sample;                     ///< all other guards
+  PathEnd path;                           ///< where elements have guards
+  std::vector<double> noises;             ///< rounding of the margins of forces [N]
 };
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
@@ -40,8 +40,8 @@ struct CAROM_API StepEnds {
   [[nodiscard]] double gap_level(std::size_t pair) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
   [[nodiscard]] double slip_level(std::size_t contact) const;
-  /// Level of the margin of a feature [m]: a little beyond the border, where the next feature is the nearest one.
-  [[nodiscard]] double feature_level(std::size_t contact, double beyond) const;
+  /// Level of the margin of a feature [m].
+  [[nodiscard]] double feature_level(std::size_t contact) const;
   /// Level of the margin of a force [N].
   [[nodiscard]] double force_level(std::size_t island) const;
   /// Rounding of the margin of a force at either end [N].

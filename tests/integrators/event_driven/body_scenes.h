@@ -64,8 +64,8 @@ inline std::array<double, 3> momentum(const Simulation& simulation, const std::v
   return sum;
 }
 
-/// Distance of two convex polygons, negative where they overlap: by separating axes (a lower bound of a positive
-/// distance) [m].
+/// Distance of two convex polygons, negative where they overlap: by separating axes (a lower bound of a
+/// positive distance) [m].
 inline double separation(const std::vector<Vec<2>>& a, const std::vector<Vec<2>>& b) {
   const auto along_edges = [](const std::vector<Vec<2>>& of, const std::vector<Vec<2>>& other) {
     double widest = -std::numeric_limits<double>::infinity();

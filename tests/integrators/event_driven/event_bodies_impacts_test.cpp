@@ -55,10 +55,17 @@ TEST(EventBodies, TwoDiscsFollowTheLawOfWalton) {
   Random random(11);
   int sticks = 0, slips = 0;
   for (int i = 0; i < 200; ++i) {
-    TwoDiscs discs{random.uniform(0.1, 3.0), random.uniform(0.1, 3.0), random.uniform(0.1, 0.6),
-                   random.uniform(0.1, 0.6), random.vec<2>(0.2),       random.vec<2>(0.2),
-                   random.vec<2>(0.5),       random.vec<2>(0.5),       random.uniform(-3.0, 3.0),
-                   random.uniform(-3.0, 3.0), {}};
+    TwoDiscs discs{random.uniform(0.1, 3.0),
+                   random.uniform(0.1, 3.0),
+                   random.uniform(0.1, 0.6),
+                   random.uniform(0.1, 0.6),
+                   random.vec<2>(0.2),
+                   random.vec<2>(0.2),
+                   random.vec<2>(0.5),
+                   random.vec<2>(0.5),
+                   random.uniform(-3.0, 3.0),
+                   random.uniform(-3.0, 3.0),
+                   {}};
     discs.x_a[0] += 1.6;
     discs.v_a[0] -= 2.0;
     discs.law = {.friction = random.uniform(0.0, 1.0),
@@ -103,8 +110,9 @@ TEST(EventBodies, FastDiscsDoNotPassThroughEachOther) {
   for (const double share : {0.0, 0.5, 0.99, 0.999999, 1.000001, 1.01, 1.5}) {
     System system;
     system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
-    TwoDiscs discs{1.0, 2.0, radius, radius, {-distance, share * 2.0 * radius}, {0.0, 0.0}, {speed, 0.0}, {0.0, 0.0},
-                   0.0, 0.0, {.friction = 0.0, .normal_restitution = 1.0}};
+    TwoDiscs discs{
+        1.0,          2.0,        radius, radius, {-distance, share * 2.0 * radius},           {0.0, 0.0},
+        {speed, 0.0}, {0.0, 0.0}, 0.0,    0.0,    {.friction = 0.0, .normal_restitution = 1.0}};
     add_disc(system, 1.0, radius, discs.x_a, discs.v_a);
     add_disc(system, 2.0, radius, discs.x_b, discs.v_b);
     Simulation simulation(system, EventDriven{});
@@ -192,8 +200,8 @@ void run_in_a_box(int count, double end) {
     const bool small = i % 5 == 0;
     radii.push_back(small ? 0.01 : random.uniform(0.03, 0.15));
     const Vec<2> place(-1.75 + 0.385 * (i % 10), -1.75 + 0.385 * (i / 10));
-    discs.push_back(
-        add_disc(system, 100.0 * radii.back() * radii.back(), radii.back(), place, random.vec<2>(small ? 20.0 : 2.0)));
+    discs.push_back(add_disc(system, 100.0 * radii.back() * radii.back(), radii.back(), place,
+                             random.vec<2>(small ? 20.0 : 2.0)));
   }
   Simulation simulation(system, EventDriven{.interval = 0.01});
   const double energy = simulation.energy().total();
@@ -249,7 +257,7 @@ TEST(EventBodies, TurningBoxesInABoxKeepTheirEnergyAndNeverOverlap) {
 
 TEST(EventBodies, AStartWithBodiesInEachOtherNamesBoth) {
   System system;
-  system.set_default_law({.friction = 0.1});
+  system.set_default_law({.friction = 0.1, .normal_restitution = 0.0});
   const BodyId a = system.add(RigidBody{.mass = disc(1.0, 0.5)}, "left");
   system.add(Disc{.body = a, .radius = 0.5}, "rim");
   const BodyId b = system.add(RigidBody{.mass = disc(1.0, 0.5), .position = {0.9, 0.0}}, "right");
