@@ -6,6 +6,7 @@
 #include <carom/core/joint_kind.h>
 
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <limits>
 #include <span>
@@ -222,10 +223,9 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
-  if (gap.kind == GapKind::vertices && a.radius + b.radius == 0.0 &&
-      gap.gap <= FeatureRegions::corner_follows) {
-    const Index edge = FeatureRegions(*assembly_, outlines_, pair, state, evaluation).nearest();
-    gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), edge);
+  if (a.radius + b.radius == 0.0 && std::abs(gap.gap) <= FeatureRegions::corner_follows) {
+    const Index nearest = FeatureRegions(*assembly_, outlines_, pair, state, evaluation).nearest();
+    gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
   }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;

@@ -93,8 +93,8 @@ void BodyOutlines::place(const BodyOutline& outline, const BodySlot& body, const
   for (Index i = outline.vertices.begin; i < outline.vertices.end; ++i, ++out) {
     const Vec<2>& local = vertices_[i];
     const bool turns = body.rotation != none && (local[0] != 0.0 || local[1] != 0.0);
-    *out =
-        turns ? Vec<2>(centre + Space<2>::rotate(evaluation.rotation.data() + body.rotation, local)) : centre;
+    *out = turns ? Vec<2>(centre + Space<2>::rotate(evaluation.rotation.data() + body.rotation, local))
+                 : centre;
   }
 }
 

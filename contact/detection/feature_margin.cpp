@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace carom {
@@ -55,10 +56,16 @@ FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& out
 
 Index FeatureRegions::nearest() const {
   std::array<GapPoint, 2> found;
-  static_cast<void>(find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
+  static_cast<void>(
+      find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
   const GapPoint& at = found[0];
-  const bool at_corner = sharp_ && has_several() && at.kind == GapKind::vertices && at.gap <= corner_follows;
-  return at_corner ? edge_at(at.feature_b) : at.feature_b;
+  if (!sharp_ || !has_several() || std::abs(at.gap) > corner_follows) return at.feature_b;
+  // In the place of a corner rounding decides which feature is nearest.
+  for (Index corner = 0; corner < outline_.size(); ++corner) {
+    const Vec<2> off = place_ - outline_.vertices[corner];
+    if (std::max(std::abs(off[0]), std::abs(off[1])) <= corner_follows) return edge_at(corner);
+  }
+  return at.feature_b;
 }
 
 /// Of the two edges at a corner the one along which the outlines are separated, or overlap least.

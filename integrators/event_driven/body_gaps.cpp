@@ -110,8 +110,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
     const std::size_t pair = model.body_pairs + place;
     if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
     const double fastest = fastest_in(step, place);
-    if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise)
-      continue;
+    if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise) continue;
     const double until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
     const double time = first_closing(step, pair, fastest, until);
     if (time < until) found = {time, Guard::gap, pair};

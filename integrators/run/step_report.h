@@ -22,16 +22,16 @@ namespace carom {
 /// One contact that took part in a step. Directions: normal first, then tangential (one in the plane: the
 /// normal turned clockwise). The impulse acts on `body`, its opposite on what that touches.
 struct ContactRecord {
-  ConstraintKey key;               ///< identity
-  BodyId body;                     ///< the body, of two the one of `a` of the key
-  ObstacleId obstacle;             ///< the shape on ground that it touches, or
-  BodyId other;                    ///< the body that it touches
-  int directions = 2;              ///< 2 in the plane, 3 in space
-  double time = 0.0;               ///< end of the step; of an impact within it when that was [s]
+  ConstraintKey key;    ///< identity
+  BodyId body;          ///< the body, of two the one of `a` of the key
+  ObstacleId obstacle;  ///< the shape on ground that it touches, or
+  BodyId other;         ///< the body that it touches
+  int directions = 2;   ///< 2 in the plane, 3 in space
+  double time = 0.0;    ///< end of the step; of an impact within it when that was [s]
   std::array<double, 3> point{};   ///< where it touches, when it was detected [m]; 0 of a limit
   std::array<double, 3> normal{};  ///< unit vector towards `body`, then; 0 of a limit
-  double gap = 0.0;                ///< when the contact was detected; > 0 of a lasting one that turning
-                                   ///< has opened [m]
+  double gap = 0.0;     ///< when the contact was detected; > 0 of a lasting one that turning
+                        ///< has opened [m]
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]

@@ -213,8 +213,7 @@ void StepBalance::place(const Constraint& at, const StepInput& in, ContactRecord
   std::copy_n(at.row(0), dimension, entry.normal.begin());
   std::copy_n(centre, dimension, entry.point.begin());
   if (dimension != 2 || at.blocks[0].columns != 3) return;
-  for (std::size_t i = 0; i < 2; ++i)
-    entry.point[i] += at.row(0)[2] * at.row(1)[i] - at.row(1)[2] * at.row(0)[i];
+  for (std::size_t i = 0; i < 2; ++i) entry.point[i] += at.row(0)[2] * at.row(1)[i] - at.row(1)[2] * at.row(0)[i];
 }
 
 void StepBalance::book_turning(double work) {

@@ -20,8 +20,7 @@ void demand_options_for_bodies(const Detector& detector, const TimeStepping& opt
   if (options.impacts == ImpactTimes::located) {
     throw ModelError("time stepping: impacts is located" + where + "; allowed: at_step_start");
   }
-  if (options.project_gaps)
-    throw ModelError("time stepping: project_gaps is true" + where + "; allowed: false");
+  if (options.project_gaps) throw ModelError("time stepping: project_gaps is true" + where + "; allowed: false");
 }
 
 }  // namespace

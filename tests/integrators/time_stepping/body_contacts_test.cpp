@@ -17,8 +17,8 @@ using namespace planar;
 constexpr double gravity = 9.81;  // [m/s^2]
 
 /// A disc of uniform density with its outline.
-BodyId add_disc(System& system, double mass, double radius, const Vec<2>& place,
-                const Vec<2>& velocity = {0, 0}, double spin = 0.0, MaterialId material = {}) {
+BodyId add_disc(System& system, double mass, double radius, const Vec<2>& place, const Vec<2>& velocity = {0, 0},
+                double spin = 0.0, MaterialId material = {}) {
   const BodyId body = system.add(
       RigidBody{.mass = disc(mass, radius), .position = place, .velocity = velocity, .spin = spin});
   system.add(Disc{.body = body, .radius = radius, .material = material});
@@ -51,8 +51,7 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
     const double w_a = any(), w_b = any();
     // No overlap to speak of: then both levers reach the same point.
     const Vec<2> apart = (r_a + r_b) * (1.0 - 1e-15) * n;
-    const BodyId a = add_disc(system, m_a, r_a, apart, v_a, w_a),
-                 b = add_disc(system, m_b, r_b, {0, 0}, v_b, w_b);
+    const BodyId a = add_disc(system, m_a, r_a, apart, v_a, w_a), b = add_disc(system, m_b, r_b, {0, 0}, v_b, w_b);
     const double step = 1e-6;
     Simulation simulation(system, TimeStepping{.step = step});
     simulation.step();
@@ -81,8 +80,7 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
 TEST(BodyContacts, TheReportNamesBothBodies) {
   System system;
   system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
-  const BodyId a = add_disc(system, 1.0, 1.0, {0.0, 0.0}),
-               b = add_disc(system, 1.0, 1.0, {1.9, 0.0}, {-1.0, 0.0});
+  const BodyId a = add_disc(system, 1.0, 1.0, {0.0, 0.0}), b = add_disc(system, 1.0, 1.0, {1.9, 0.0}, {-1.0, 0.0});
   Simulation simulation(system, TimeStepping{.step = 1e-3});
   simulation.step();
   const auto& contacts = simulation.report().contacts;
@@ -183,9 +181,7 @@ TEST(BodyContacts, APyramidOfThreeDiscsLeansOnTheWalls) {
   for (const ContactRecord& contact : simulation.report().contacts) {
     const double force = contact.impulse[0] / step;
     const bool pair = contact.body == top || contact.other == top;
-    const char* const name = pair                           ? "top_pair_each"
-                             : contact.obstacle.serial == 0 ? "floor_each"
-                                                            : "wall_each";
+    const char* const name = pair ? "top_pair_each" : contact.obstacle.serial == 0 ? "floor_each" : "wall_each";
     // Places are those described to rounding; 1e3 epsilon of the weight, magnified by the flat angle.
     EXPECT_NEAR(force, data.at(name).get<double>(), 1e-10) << name;
   }
@@ -198,30 +194,25 @@ System crowd(std::uint32_t seed, bool springs) {
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto any = [&] { return 2.0 * unit(random) - 1.0; };
   System system;
-  system.set_default_law(
-      {.friction = unit(random), .normal_restitution = 0.7, .tangential_restitution = 0.7});
+  system.set_default_law({.friction = unit(random), .normal_restitution = 0.7, .tangential_restitution = 0.7});
   std::vector<BodyId> bodies;
   for (int i = 0; i < 12; ++i) {
     const Vec<2> place(0.5 * (i % 4), 0.5 * (i / 4));
-    const BodyId body =
-        system.add(RigidBody{.mass = {.mass = 0.5 + unit(random), .inertia = 0.01 + 0.01 * unit(random)},
-                             .position = place,
-                             .angle = any(),
-                             .velocity = {any(), any()},
-                             .spin = any()});
+    const BodyId body = system.add(RigidBody{.mass = {.mass = 0.5 + unit(random), .inertia = 0.01 + 0.01 * unit(random)},
+                                             .position = place,
+                                             .angle = any(),
+                                             .velocity = {any(), any()},
+                                             .spin = any()});
     bodies.push_back(body);
     if (i % 3 == 0) {
       system.add(Disc{.body = body, .radius = 0.2});
     } else if (i % 3 == 1) {
       system.add(Polygon{.body = body, .vertices = {{-0.2, -0.1}, {0.2, -0.1}, {0.1, 0.2}}});
     } else {
-      system.add(
-          Polygon{.body = body, .vertices = {{-0.15, -0.15}, {0.15, -0.15}, {0.15, 0.15}, {-0.15, 0.15}}});
+      system.add(Polygon{.body = body, .vertices = {{-0.15, -0.15}, {0.15, -0.15}, {0.15, 0.15}, {-0.15, 0.15}}});
     }
     if (springs && i > 0) {
-      system.add(SpringDamper{.from = bodies[static_cast<std::size_t>(i) - 1],
-                              .to = body,
-                              .stiffness = 20.0,
+      system.add(SpringDamper{.from = bodies[static_cast<std::size_t>(i) - 1], .to = body, .stiffness = 20.0,
                               .free_length = 0.5});
     }
   }
