@@ -1,6 +1,7 @@
 // Problem: forces and corrections of contacts that are constraints.
 
 #include <carom/contact/active_set.h>
+#include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,12 @@ void ActiveSet::bind(const Assembly& assembly, ComponentsResponse& response) {
 void ActiveSet::update(const Detector& detector, const StateView& state, const Evaluation& evaluation,
                        const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
-    detector.contact(contact.pair, state, evaluation, places, contact.at);
+    if (contact.feature != none) {
+      follow_feature(*assembly_, detector.bodies().outlines(), contact.pair, contact.feature, state,
+                     evaluation, contact.at);
+    } else {
+      detector.contact(contact.pair, state, evaluation, places, contact.at);
+    }
     contact.friction = contact.friction_at(contact.at, state.v);
   }
 }

@@ -1,10 +1,12 @@
 // Problem: which bodies touch each other, where, and by which law.
 
 #include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/pair_rows.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -210,6 +212,10 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
+  if (a.radius + b.radius == 0.0 && std::abs(gap.gap) <= FeatureRegions::corner_follows) {
+    const Index nearest = FeatureRegions(*assembly_, outlines_, pair, state, evaluation).nearest();
+    gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
+  }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;
   gap.normal = frame_b.turned(gap.normal);

@@ -6,6 +6,10 @@
 ///
 /// The normal of such a contact is continuous there, the rate at which it turns is not: the forces of a
 /// contact that lasts have a kink or a jump, over which no step of an integrator may pass.
+///
+/// Two sharp corners do not touch each other: whatever overlaps does so at an edge of either. A corner that
+/// stands at the end of an edge to rounding, or has left it by a little, stands before that edge; else its
+/// normal would be that between two places that are the same.
 
 #include <carom/contact/detection/body_outlines.h>
 #include <carom/contact/detection/contact_pair.h>
@@ -27,22 +31,39 @@ struct FeatureMargin {
 /// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.
 class CAROM_API FeatureRegions {
 public:
+  /// How far beyond the end of an edge a sharp corner may stand and still touch it, is taken to leave it when
+  /// it slides, and still has its normal [m].
+  static constexpr double corner_touches = 1e-9, corner_leaves = 2e-9, corner_follows = 4e-9;
+  /// How far beyond the border the next feature is the nearest one for certain, of rounded ones [m].
+  static constexpr double past_border = 1e-11;
+
   /// All must outlive it. \param pair of two bodies \param evaluation position group up to date
   FeatureRegions(const Assembly& assembly, const BodyOutlines& outlines, const ContactPair& pair,
                  const StateView& state, const Evaluation& evaluation);
 
   /// True if there is more than one feature.
   [[nodiscard]] bool has_several() const { return outline_.size() > 1; }
-  /// True if a feature is an edge.
-  [[nodiscard]] bool is_edge(Index feature) const { return outline_.is_edge(feature); }
-  /// The nearest feature.
+  /// True if neither vertex nor outline are rounded.
+  [[nodiscard]] bool is_sharp() const { return sharp_; }
+  /// The nearest feature; of sharp corners at most `corner_follows` beyond an edge that edge.
   [[nodiscard]] Index nearest() const;
+  /// False of sharp corners that stand beyond the edges by more than `corner_touches`.
+  [[nodiscard]] bool may_touch() const;
+  /// Distance beyond the border of a feature at which it is taken to be left [m].
+  [[nodiscard]] double border() const { return sharp_ ? corner_leaves : past_border; }
   /// Margin of a feature.
   [[nodiscard]] FeatureMargin margin(Index feature) const;
 
 private:
-  ConvexOutline outline_;  // in the frame of its body,
-  Vec<2> place_, rate_;    // as the vertex and its velocity
+  [[nodiscard]] Index edge_at(Index corner) const;
+  [[nodiscard]] double separation_along(const OutlineEdge& edge) const;
+
+  ConvexOutline outline_;             // in the frame of its body,
+  Vec<2> place_, rate_;               // as the vertex and its velocity,
+  ConvexOutline of_vertex_;           // in the frame of the other body, which
+  Vec<2> shift_;                      // stands here in the frame of the first,
+  double cosine_ = 1.0, sine_ = 0.0;  // turned by this
+  bool sharp_ = false;
 };
 
 }  // namespace carom

@@ -62,7 +62,7 @@ void EventDetector::take_features(double time, const double* y) {
     if (!regions.has_several()) continue;
     closed.feature = regions.nearest();
     const FeatureMargin margin = regions.margin(closed.feature);
-    const bool at_border = margin.value <= 2.0 * scales_.beyond_feature();
+    const bool at_border = !regions.is_sharp() && margin.value <= 2.0 * regions.border();
     if (at_border && margin.rate < -scales_.speed_noise) closed.feature = margin.beyond;
   }
 }

@@ -29,9 +29,7 @@ void EventInstant::update() {
   for (std::size_t i = model.body_pairs; i < contacts.size(); ++i) {
     motion.contact_if_near(i, now, near, contacts[i]);
     if (contacts[i].gap > near || model.bounds[i - model.body_pairs].rounding > 0.0) continue;
-    const FeatureRegions regions = motion.regions(model.pairs[i], now);
-    if (!regions.is_edge(regions.nearest())) {
-      contacts[i] = {};
+    if (!motion.regions(model.pairs[i], now).may_touch()) {
       contacts[i].gap = std::numeric_limits<double>::infinity();
     }
   }

@@ -68,9 +68,10 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
   }
   if (predicted.guard == Guard::feature) {
     const ActiveContact& closed = motion.active().list()[predicted.which];
-    const FeatureMargin margin = motion.regions(closed.pair, at).margin(closed.feature);
-    return {margin.value - step.ends.feature_level(predicted.which, step.scales.beyond_feature()),
-            margin.rate, step.scales.gap_noise / 16.0, true};
+    const FeatureRegions regions = motion.regions(closed.pair, at);
+    const FeatureMargin margin = regions.margin(closed.feature);
+    return {margin.value + regions.border() - step.ends.feature_level(predicted.which), margin.rate,
+            step.scales.gap_noise / 16.0, true};
   }
   if (predicted.guard == Guard::switching_point) {
     motion.read_guards(at, memory.guards);

@@ -84,7 +84,7 @@ void predict_features(SearchedStep& step, GuardSampler& sampler, Event& found) {
     FallRule rule;
     rule.derivatives = 1;
     rule.fine = fine;
-    rule.raise = step.scales.gap_noise - step.ends.feature_level(i, step.scales.beyond_feature());
+    rule.raise = step.scales.gap_noise - step.ends.feature_level(i);
     rule.deepest = deepest;
     const auto read = [i](const GuardSample& at) -> QuantityLook { return {at.time, at.features[i], 0.0}; };
     search(step, sampler, rule, read, {never, Guard::feature, i}, found);

@@ -18,12 +18,6 @@ struct EventScales {
   double gap_noise = 0.0;    ///< rounding of gaps [m]
   double speed_noise = 0.0;  ///< velocities that count as zero [m/s]
   double guard_noise = 0.0;  ///< guards nearer to zero than this have not passed it
-
-  /// Distance beyond the border of a feature at which another one is the nearest, for certain [m].
-  [[nodiscard]] double beyond_feature() const {
-    constexpr double roundings = 4.0;
-    return roundings * gap_noise;
-  }
 };
 
 /// Scales at a state. \param contacts of all pairs there

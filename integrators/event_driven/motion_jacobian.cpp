@@ -5,6 +5,7 @@
 // with the multipliers l of joints and p of contacts are differentiated as they stand: nothing is eliminated,
 // so that the result is as sparse as the model.
 
+#include <carom/contact/detection/tracked_contact.h>
 #include <carom/core/difference_derivatives.h>
 #include <carom/integrators/event_driven/motion_jacobian.h>
 
@@ -174,7 +175,13 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
   change.count = columns_of(contact.at, change.columns);
   Constraint moved;
   const auto sample_at = [&](OfContact& load, std::array<double, 2>& rows) {
-    model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
+    if (contact.feature != none) {
+      moved = contact.at;
+      follow_feature(*model_->assembly, model_->detector->bodies().outlines(), contact.pair, contact.feature,
+                     sample.view(), sample.evaluation, moved);
+    } else {
+      model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
+    }
     const double slip = -contact.slip_sign() * contact.friction_at(moved, sample.state.v.data());
     const double tangential = contact.sticks() ? contact.tangential : slip * contact.normal;
     for (std::size_t i = 0; i < change.count; ++i) {

@@ -13,8 +13,8 @@ SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, c
       model_(assembly, detector, group, options, joints_.rows()),
       guards_(assembly, group.components),
       jacobian_(model_, joints_, active_, memory) {
-  if (joints_.rows().empty()) return;
   active_.bind(assembly, joints_.rows().response());
+  if (joints_.rows().empty()) return;
   if (!joints_.friction_bounds().empty()) active_.ask_least();  // bounds of friction follow from forces
 }
 

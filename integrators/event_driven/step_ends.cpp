@@ -48,8 +48,8 @@ double StepEnds::slip_level(std::size_t contact) const {
   return std::min(0.0, start.sample.slips[contact].value);
 }
 
-double StepEnds::feature_level(std::size_t contact, double beyond) const {
-  return std::min(0.0, start.sample.features[contact].value) - beyond;
+double StepEnds::feature_level(std::size_t contact) const {
+  return std::min(0.0, start.sample.features[contact].value);
 }
 
 double StepEnds::force_level(std::size_t island) const {
@@ -70,8 +70,9 @@ void read_features(const SmoothMotion& motion, const MotionSample& at, GuardSamp
   for (std::size_t i = 0; i < closed.size(); ++i) {
     out.features[i] = far;
     if (closed[i].feature == none) continue;
-    const FeatureMargin margin = motion.regions(closed[i].pair, at).margin(closed[i].feature);
-    out.features[i] = {margin.value, margin.rate, 0.0};
+    const FeatureRegions regions = motion.regions(closed[i].pair, at);
+    const FeatureMargin margin = regions.margin(closed[i].feature);
+    out.features[i] = {margin.value + regions.border(), margin.rate, 0.0};
   }
 }
 

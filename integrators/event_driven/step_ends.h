@@ -40,9 +40,8 @@ struct CAROM_API StepEnds {
   [[nodiscard]] double gap_level(std::size_t pair) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
   [[nodiscard]] double slip_level(std::size_t contact) const;
-  /// Level of the margin of a feature [m]: a little beyond the border, where the next feature is the nearest
-  /// one.
-  [[nodiscard]] double feature_level(std::size_t contact, double beyond) const;
+  /// Level of the margin of a feature [m].
+  [[nodiscard]] double feature_level(std::size_t contact) const;
   /// Level of the margin of a force [N].
   [[nodiscard]] double force_level(std::size_t island) const;
   /// Rounding of the margin of a force at either end [N].

@@ -257,7 +257,7 @@ TEST(EventBodies, TurningBoxesInABoxKeepTheirEnergyAndNeverOverlap) {
 
 TEST(EventBodies, AStartWithBodiesInEachOtherNamesBoth) {
   System system;
-  system.set_default_law({.friction = 0.1});
+  system.set_default_law({.friction = 0.1, .normal_restitution = 0.0});
   const BodyId a = system.add(RigidBody{.mass = disc(1.0, 0.5)}, "left");
   system.add(Disc{.body = a, .radius = 0.5}, "rim");
   const BodyId b = system.add(RigidBody{.mass = disc(1.0, 0.5), .position = {0.9, 0.0}}, "right");
