@@ -13,7 +13,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 6\n";
+constexpr std::string_view mark = "carom checkpoint 7\n";
 
 /// The numbers of Statistics, in the order in which they are saved.
 template <class S, class F>
@@ -109,6 +109,16 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   }
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
+  const JointHistory& joints = companion.joints;
+  out.add(joints.step);
+  out.add(std::uint64_t{joints.known.size()});
+  for (const int known : joints.known) out.add(known);
+  if (!joints.known.empty()) {
+    for (const StepCourse* const course : {&joints.impulses, &joints.velocities, &joints.displacements}) {
+      out.add(course->last);
+      for (const std::vector<float>& changes : course->changes) out.add(changes);
+    }
+  }
   out.add(std::uint64_t{companion.iterations.entries().size()});
   for (const IterationMemory::Entry& entry : companion.iterations.entries()) {
     out.add(std::uint64_t{entry.component});
@@ -159,6 +169,26 @@ void read_history(CheckpointReader& in, std::size_t velocities, LoadHistory& his
   }
   history.sweeps.resize(in.count());
   for (int& sweeps : history.sweeps) in.get(sweeps);
+}
+
+void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHistory& history) {
+  in.get(history.step);
+  history.known.resize(in.count());
+  for (int& known : history.known) {
+    in.get(known);
+    if (known < 0 || known > StepCourse::most + 1) in.damaged("its history of joints is of unknown length");
+  }
+  if (history.known.empty()) return;
+  for (StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
+    in.get(course->last);
+    const std::size_t size = course == &history.impulses ? course->last.size() : velocities;
+    bool fits = course->last.size() == size;
+    for (std::vector<float>& changes : course->changes) {
+      in.get(changes);
+      fits = fits && changes.size() == size;
+    }
+    if (!fits) in.damaged("its sizes do not fit the model");
+  }
 }
 
 void read_iterations(CheckpointReader& in, IterationMemory& iterations) {
@@ -265,6 +295,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   read_history(in, state.v.size(), other.history);
+  read_joint_history(in, state.v.size(), other.joints);
   read_iterations(in, other.iterations);
   read_mean_loads(in, state.v.size(), other.loads);
   in.get(other.next_step);

@@ -144,17 +144,25 @@ inline Vec<2> ConstraintPartTable::Place::velocity(const JointView& at, const Ve
   return rotation == none ? velocity : Vec<2>(velocity + spin(at) * turned(lever));
 }
 
+/// Without the motion, which drifts alone need, the last three are void.
+template <bool WithMotion>
 inline ConstraintPartTable::Geometry ConstraintPartTable::geometry(const JointView& at, Index joint) const {
   const auto& [from, to] = places_[joint];
   const Vec<2>& from_point = from_point_[joint];
   const Vec<2>& to_point = to_point_[joint];
   const Vec<2> from_lever = from.lever(at, from_point), to_lever = to.lever(at, to_point);
+  const Vec<2> between = to.position(at, to_point, to_lever) - from.position(at, from_point, from_lever);
+  const Vec<2> none_known = Vec<2>::Zero();
+  if constexpr (!WithMotion) {
+    return {
+        places_[joint], carrier_place_[joint], from_lever, to_lever, between, none_known, none_known, 0.0};
+  }
   const double from_spin = from.spin(at), to_spin = to.spin(at);
   return {places_[joint],
           carrier_place_[joint],
           from_lever,
           to_lever,
-          to.position(at, to_point, to_lever) - from.position(at, from_point, from_lever),
+          between,
           to.velocity(at, to_lever) - from.velocity(at, from_lever),
           from_spin * from_spin * from_lever - to_spin * to_spin * to_lever,
           from_spin};
@@ -178,6 +186,7 @@ inline Vec<2> ConstraintPartTable::direction(const JointView& at, const Geometry
 }
 
 /// Writes a row, its numbers of G only if there is a place for them; returns the end of these.
+template <bool WithDrift>
 inline double* ConstraintPartTable::write(const JointView& at, const Geometry& geometry,
                                           const Condition& condition, Index joint, double& gap, double& drift,
                                           double* jacobian) const {
@@ -188,17 +197,20 @@ inline double* ConstraintPartTable::write(const JointView& at, const Geometry& g
   const ConstraintPart::Form form = condition.form[joint];
   // Part of turning `from` where the axis turns with it.
   double swing = 0.0;
-  drift = a.dot(geometry.drift);
+  drift = WithDrift ? a.dot(geometry.drift) : 0.0;
   gap = a.dot(between);
   if (form == ConstraintPart::Form::axis_of_from && from.rotation != none) {
     const Vec<2> across = turned(a);
     const double spin = geometry.from_spin;
     swing = across.dot(between);
-    drift += 2.0 * spin * across.dot(geometry.apart) - spin * spin * gap;
+    if constexpr (WithDrift) drift += 2.0 * spin * across.dot(geometry.apart) - spin * spin * gap;
   } else if (form == ConstraintPart::Form::distance) {
-    const double length = between.norm(), sideways = cross(a, geometry.apart);
-    drift += sideways * sideways / length;
+    const double length = between.norm();
     gap = length;
+    if constexpr (WithDrift) {
+      const double sideways = cross(a, geometry.apart);
+      drift += sideways * sideways / length;
+    }
   }
   const Turns& turns = condition.turns[joint];
   if (turns.from != 0.0) gap += turns.from * from.angle(at);
@@ -265,7 +277,7 @@ void ConstraintPartTable::evaluate(const JointView& at, Index joint, Index which
   pattern(joint, row);
   std::array<double, std::size_t{JointRow::max_bodies * JointRow::max_columns}> numbers{};
   row.rate = 0.0;
-  write(at, geometry(at, joint), conditions_[which], joint, row.gap, row.drift, numbers.data());
+  write<true>(at, geometry(at, joint), conditions_[which], joint, row.gap, row.drift, numbers.data());
   const double* number = numbers.data();
   for (JointRow::Block& block : std::span(row.blocks).first(static_cast<std::size_t>(row.bodies))) {
     std::copy_n(number, block.columns, block.jacobian.begin());
@@ -274,13 +286,23 @@ void ConstraintPartTable::evaluate(const JointView& at, Index joint, Index which
 }
 
 void ConstraintPartTable::evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const {
-  double unwanted = 0.0;
   if (out.rate != nullptr) std::fill_n(out.rate, joints.size() * rows, 0.0);
+  if (out.drift != nullptr) {
+    evaluate_rows<true>(at, joints, rows, out);
+  } else {
+    evaluate_rows<false>(at, joints, rows, out);
+  }
+}
+
+template <bool WithDrift>
+void ConstraintPartTable::evaluate_rows(const JointView& at, Range joints, Index rows,
+                                        JointNumbers out) const {
+  double unwanted = 0.0;
   for (Index joint = joints.begin; joint < joints.end; ++joint) {
-    const Geometry ends = geometry(at, joint);
+    const Geometry ends = geometry<WithDrift>(at, joint);
     for (Index row = 0; row < rows; ++row) {
-      double& drift = out.drift == nullptr ? unwanted : *out.drift++;
-      out.jacobian = write(at, ends, conditions_[row], joint, *out.gap++, drift, out.jacobian);
+      double& drift = WithDrift ? *out.drift++ : unwanted;
+      out.jacobian = write<WithDrift>(at, ends, conditions_[row], joint, *out.gap++, drift, out.jacobian);
     }
   }
 }

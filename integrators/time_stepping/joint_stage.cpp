@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace carom {
 
@@ -22,13 +23,23 @@ JointStages::JointStages(const Assembly& assembly) {
     if (!assembly.has_joints(component)) continue;
     if (!arrays_) arrays_ = std::make_unique<JointArrays>(assembly);
     stages_.resize(components);
-    stages_[component] = std::make_unique<JointStage>(assembly, component, *arrays_);
+    stages_[component] = std::make_unique<JointStage>(assembly, component, rows_, *arrays_);
+    rows_ += static_cast<Index>(stages_[component]->rows().at_end().size());
   }
 }
 
-JointStage::JointStage(const Assembly& assembly, Index component, JointArrays& arrays)
+void JointStages::record(double step, JointHistory& history) const {
+  if (stages_.empty()) return;
+  history.go_on(step, stages_.size(), rows_, arrays_->displacement.size());
+  for (const auto& stage : stages_) {
+    if (stage != nullptr) stage->record(history);
+  }
+}
+
+JointStage::JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays)
     : assembly_(&assembly),
       component_(component),
+      first_row_(first_row),
       arrays_(&arrays),
       rows_(assembly, component),
       impulse_(rows_.at_end().size()),
@@ -41,30 +52,103 @@ void JointStage::clear(std::vector<double>& numbers) const {
   std::fill(numbers.begin() + v.begin, numbers.begin() + v.end, 0.0);
 }
 
-void JointStage::start(const StepInput& in, JointContacts& contacts, StepTrial& trial) {
+/// Reactions and the displacement as after the steps before. False if none are remembered.
+bool JointStage::guess(const StepInput& in) {
+  const JointHistory& history = in.companion.joints;
+  const int known = history.usable(component_, in.step);
+  if (known == 0) return false;
+  const Range v = assembly_->components()[component_].v;
+  const auto rows = static_cast<Index>(impulse_.size());
+  history.impulses.guess({first_row_, first_row_ + rows}, known, impulse_.data() - first_row_);
+  history.velocities.guess(v, known, arrays_->dv_joints.data());
+  history.displacements.guess(v, known, arrays_->displacement.data());
+  return true;
+}
+
+/// What contact did is of its own step: a guess follows it only where it did nothing.
+void JointStage::record(JointHistory& history) const {
+  int& known = history.known[component_];
+  known = struck_ ? 1 : std::min(known + 1, StepCourse::most + 1);
+  const Range v = assembly_->components()[component_].v;
+  const auto rows = static_cast<Index>(impulse_.size());
+  history.impulses.record({first_row_, first_row_ + rows}, impulse_.data() - first_row_);
+  history.velocities.record(v, arrays_->dv_joints.data());
+  history.displacements.record(v, arrays_->displacement.data());
+}
+
+void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
+                       StepTrial& trial) {
+  sweeps_ = 0;
+  for (Constraint& constraint : contacts.constraints) constraint.friction_bound *= in.step;
+  trial.expect_impulses();
+  clear(arrays_->dv_contact);
+  struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
+                        [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
+  if (struck_ || rows_.at_start().depends_on_time()) rows_.place_start(in, trial);
+  if (struck_) {
+    rows_.at_start().factor();
+    { rows_.at_start().residuals(JointLevel::change, in.start.v.data(), left_.data());
+      double m=0; for(double l:left_) m=std::max(m,std::abs(l)); std::fprintf(stderr,"t %g G0v0 %.2e last violation %.2e sing %d near %d\n",in.end_time,m,violation_,(int)rows_.is_singular(),(int)rows_.is_near_singular()); }
+    JointResponse response(rows_.at_start());
+    contacts.problem->respond(response);
+  }
+  guessed_ = guesses && contacts.problem == nullptr && guess(in);
+  if (guessed_) {
+    find_free_velocities(in, rule, trial);
+    move_bodies(in, rule, trial);
+    move(arrays_->displacement, trial.end);
+    rows_.begin(in, trial, left_);
+    // There rows turn too much for what was before to be of use.
+    guessed_ = !rows_.is_near_singular();
+  }
+  if (!guessed_) {
+    move_by_start(in, trial);
+    rows_.begin(in, trial, left_);
+  }
+  judge(trial);
+}
+
+/// The first iterate where nothing is guessed.
+void JointStage::move_by_start(const StepInput& in, StepTrial& trial) {
   JointArrays& arrays = *arrays_;
   const Range q = assembly_->components()[component_].q;
   const Range v = assembly_->components()[component_].v;
-  rows_.start();
   std::fill(impulse_.begin(), impulse_.end(), 0.0);
-  for (Constraint& constraint : contacts.constraints) constraint.friction_bound *= in.step;
-  trial.expect_impulses();
-  for (std::vector<double>* const numbers :
-       {&trial.dv_impulses, &arrays.dv_joints, &arrays.dv_contact, &arrays.displacement}) {
+  for (std::vector<double>* const numbers : {&trial.dv_impulses, &arrays.dv_joints, &arrays.displacement}) {
     clear(*numbers);
   }
   std::copy(in.start.q.begin() + q.begin, in.start.q.begin() + q.end, trial.end.q.begin() + q.begin);
   std::copy(in.start.v.begin() + v.begin, in.start.v.begin() + v.end, trial.end.v.begin() + v.begin);
   for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = in.step * in.start.v[i];
   move(arrays.scratch, trial.end);
-  struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
-                        [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
-  if (!struck_ && !rows_.at_start().depends_on_time()) return;
-  rows_.place_start(in, trial);
-  if (!struck_) return;
-  rows_.at_start().factor();
-  JointResponse response(rows_.at_start());
-  contacts.problem->respond(response);
+}
+
+void JointStage::find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const {
+  const Range v = assembly_->components()[component_].v;
+  const double half = 0.5 * in.step;
+  const double* const load0 = rule.start_of_sum(in, trial);
+  for (Index i = v.begin; i < v.end; ++i) trial.free[i] = half * (load0[i] + trial.loads_guess[i]);
+  rows_.at_end().apply_inverse_mass(trial.free.data());
+  for (Index i = v.begin; i < v.end; ++i) {
+    trial.free[i] += static_cast<double>(in.companion.rounding[i]) + in.start.v[i];
+  }
+}
+
+/// Without the displacement back onto the joints.
+void JointStage::move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const {
+  const Component& all = assembly_->components()[component_];
+  for (Index i = all.v.begin; i < all.v.end; ++i) {
+    trial.dv_impulses[i] = arrays_->dv_joints[i] + arrays_->dv_contact[i];
+  }
+  rule.move(in, all.bodies, true, trial);
+}
+
+/// Factors of the first iterate serve all, as they change by what rows turn between two iterates; of the
+/// second where the first was far away, and of each where that does not help.
+bool JointStage::needs_factors(const JointContacts& contacts) const {
+  constexpr int patience = 4;
+  return sweeps_ > 0 && (contacts.problem != nullptr || rows_.is_near_singular() ||
+                         (sweeps_ == 1 && !guessed_) || sweeps_ >= patience);
 }
 
 bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts, StepTrial& trial) {
@@ -74,29 +158,36 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
   std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, arrays.before_q.begin() + q.begin);
   std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, arrays.before_v.begin() + v.begin);
 
-  rows_.place(in, trial);
-  // Choosing factors the rows at the end.
-  if (!trial.account.swept) rows_.choose(in, trial, left_);
-  if (trial.account.swept || rows_.is_mixed()) rows_.factor();
+  if (needs_factors(contacts)) rows_.factor();
   if (contacts.problem != nullptr && !struck_) rows_.at_midpoint().factor();
-
-  const double half = 0.5 * in.step;
-  const double* const load0 = rule.start_of_sum(in, trial);
-  for (Index i = v.begin; i < v.end; ++i) trial.free[i] = half * (load0[i] + trial.loads_guess[i]);
-  rows_.at_end().apply_inverse_mass(trial.free.data());
-  for (Index i = v.begin; i < v.end; ++i) {
-    trial.free[i] += static_cast<double>(in.companion.rounding[i]) + in.start.v[i];
-  }
+  find_free_velocities(in, rule, trial);
+  if (guessed_ && sweeps_ == 0 && rows_.has_dependent()) drop_dependent();
   correct_impulses(trial);
+  // Once more with the same rows costs less than another sweep.
+  if (guessed_ && contacts.problem == nullptr) correct_impulses(trial);
   if (contacts.problem != nullptr) {
     if (!react_to_contact(in, contacts, trial)) return false;
     correct_impulses(trial);  // for what contact changed
   }
-  for (Index i = v.begin; i < v.end; ++i) trial.dv_impulses[i] = arrays.dv_joints[i] + arrays.dv_contact[i];
-  rule.move(in, all.bodies, true, trial);
+  move_bodies(in, rule, trial);
+  return_to_joints(in, contacts.problem != nullptr, trial);
+  rows_.place(in, trial);
+  judge(trial);
+  ++sweeps_;
   trial.account.swept = true;
-  return_to_joints(in, trial);
   return true;
+}
+
+/// Impulses that cancel each other, along rows that follow from others, would go on from guess to guess.
+void JointStage::drop_dependent() {
+  JointArrays& arrays = *arrays_;
+  clear(arrays.scratch);
+  rows_.at_end().add_response(impulse_.data(), arrays.scratch.data());
+  rows_.at_end().residuals(JointLevel::change, arrays.scratch.data(), left_.data());
+  rows_.solve(left_);
+  for (std::size_t row = 0; row < left_.size(); ++row) impulse_[row] = -left_[row];
+  clear(arrays.dv_joints);
+  rows_.at_midpoint().add_response(impulse_.data(), arrays.dv_joints.data());
 }
 
 /// One step of Newton's method for G1 v_{j+1} + rate = 0. With G1 on both sides, instead of Gm on one, the
@@ -115,22 +206,36 @@ void JointStage::correct_impulses(const StepTrial& trial) {
   rows_.at_end().apply_inverse_mass(arrays.dv_joints.data());
 }
 
-/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before, with
-/// the rows there; several with rows of their own near a singular position, where rows change much from one
-/// iterate to the next.
-void JointStage::return_to_joints(const StepInput& in, StepTrial& trial) {
-  constexpr int most_near_singular = 6;
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0, with the rows and gaps of the iterate before. The
+/// displacement is made anew, so that nothing across the joints goes on from guess to guess.
+void JointStage::return_to_joints(const StepInput& in, bool touches, StepTrial& trial) {
+  if (rows_.is_singular()) return return_near_singular(in, trial);
   JointArrays& arrays = *arrays_;
   const Range v = assembly_->components()[component_].v;
-  const bool near_singular = rows_.is_singular();
+  const double half = 0.5 * in.step;
+  // An impact moves bodies too far for a prediction.
+  if (touches) rows_.place_end(in, trial);
+  for (Index i = v.begin; i < v.end; ++i) {
+    const double moved = half * (trial.end.v[i] - arrays.before_v[i]) - arrays.displacement[i];
+    arrays.scratch[i] = touches ? 0.0 : moved;
+  }
+  rows_.at_end().residuals(JointLevel::displacement, arrays.scratch.data(), left_.data());
+  rows_.solve(left_);
+  clear(arrays.displacement);
+  rows_.pushing().add_response(left_.data(), arrays.displacement.data());
   move(arrays.displacement, trial.end);
-  for (int turn = 0; turn < (near_singular ? most_near_singular : 1); ++turn) {
-    if (near_singular) {
-      rows_.place_end(in, trial);
-      rows_.factor();
-    } else {
-      rows_.place_gaps(in, trial);
-    }
+}
+
+/// Several steps from the displacement of the sweep before, with rows of their own, which change much from
+/// one iterate to the next.
+void JointStage::return_near_singular(const StepInput& in, StepTrial& trial) {
+  constexpr int turns = 6;
+  JointArrays& arrays = *arrays_;
+  const Range v = assembly_->components()[component_].v;
+  move(arrays.displacement, trial.end);
+  for (int turn = 0; turn < turns; ++turn) {
+    rows_.place_end(in, trial);
+    rows_.factor();
     for (std::size_t row = 0; row < left_.size(); ++row) left_[row] = rows_.at_end().gap(row);
     rows_.solve(left_);
     clear(arrays.scratch);
@@ -228,28 +333,51 @@ const double* JointStage::multipliers(const IslandProblem* problem) {
   return total_.data();
 }
 
-SweepChange JointStage::change(const StepInput& in, const StepTrial& trial) const {
+SweepChange JointStage::change(const StepInput& in, const JointContacts& contacts, const StepTrial& trial) {
   SweepChange change;
-  const JointArrays& arrays = *arrays_;
+  JointArrays& arrays = *arrays_;
+  // An impact multiplies what a step before it has left by its impulse.
+  constexpr double accepted = 0.05;
+  const bool obeyed = contacts.problem == nullptr && violation_ <= accepted && !rows_.is_near_singular();
+  if (obeyed) {
+    clear(arrays.scratch);
+    rows_.at_midpoint().add_response(impulse_.data(), arrays.scratch.data());
+  }
   assembly_->for_bodies(component_, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += kind.v_size()) {
-      for (Index i = 0; i < kind.v_size(); ++i) {
+    const Index q_size = kind.q_size(), v_size = kind.v_size();
+    for (Index slot = slots.begin; slot < slots.end; ++slot, q += q_size, v += v_size) {
+      for (Index i = 0; i < v_size; ++i) {
         const double weight = in.step * arrays.lengths[v + i];
-        change.take(weight * (trial.end.v[v + i] - arrays.before_v[v + i]), weight * trial.end.v[v + i]);
+        const double difference = obeyed ? arrays.scratch[v + i] - arrays.dv_joints[v + i]
+                                         : trial.end.v[v + i] - arrays.before_v[v + i];
+        change.take(weight * difference, weight * trial.end.v[v + i]);
       }
-      for (Index i = 0; i < kind.q_size(); ++i) {
+      for (Index i = 0; i < q_size; ++i) {
         // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
-        const double weight = i < kind.v_size() ? arrays.lengths[v + i] : 1.0;
-        change.take(weight * (trial.end.q[q + i] - arrays.before_q[q + i]), trial.end.q[q + i]);
+        const double weight = i < v_size ? arrays.lengths[v + i] : 1.0;
+        const double difference = obeyed ? 0.0 : trial.end.q[q + i] - arrays.before_q[q + i];
+        change.take(weight * difference, trial.end.q[q + i]);
       }
     }
   });
   return change;
 }
 
+double JointStage::work_of_reactions(const StepTrial& trial) {
+  std::vector<double>& masses = arrays_->scratch;
+  const Range v = assembly_->components()[component_].v;
+  std::fill(masses.begin() + v.begin, masses.begin() + v.end, 1.0);
+  rows_.at_end().apply_inverse_mass(masses.data());
+  double sum = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) sum += trial.midpoint.v[i] * (arrays_->dv_joints[i] / masses[i]);
+  return sum;
+}
+
 void JointStage::settle_velocities(const StepInput& in, StepTrial& trial) {
   if (!rows_.correct_velocities(in, trial, left_)) return;
   for (std::size_t row = 0; row < left_.size(); ++row) impulse_[row] += left_[row];
+  rows_.at_midpoint().add_response(left_.data(), arrays_->dv_joints.data());
+  trial.place_midpoint(in, component_);
 }
 
 double JointStage::project_velocities(StepTrial& trial) {
@@ -268,29 +396,21 @@ double JointStage::project_velocities(StepTrial& trial) {
   return before - kinetic();
 }
 
-double JointStage::violation(const StepInput& in, StepTrial& trial) {
+/// Measures the violation, with the rows at the iterate.
+void JointStage::judge(const StepTrial& trial) {
   // Roundings of the numbers that a row is made of, some room for those of the factors included.
   constexpr double rounding = 1e-13;
-  rows_.place_end(in, trial);
   const JointConstraints& end = rows_.at_end();
   const Range q = assembly_->components()[component_].q;
-  double extent = 0.0, largest = 0.0;
+  double extent = 0.0;
   for (Index i = q.begin; i < q.end; ++i) extent = std::max(extent, std::abs(trial.end.q[i]));
-  for (std::size_t i = 0; i < end.size(); ++i) {
-    const JointRow row = end.row(i);
-    double speed = std::abs(row.rate);
-    for (int b = 0; b < row.bodies; ++b) {
-      const JointRow::Block& block = row.blocks[static_cast<std::size_t>(b)];
-      for (int c = 0; c < block.columns; ++c) {
-        speed += std::abs(block.jacobian[static_cast<std::size_t>(c)] *
-                          trial.end.v[block.v + static_cast<Index>(c)]);
-      }
-    }
-    const double left = std::abs(residual(JointLevel::velocity, row, trial.end.v.data()));
-    if (extent > 0.0) largest = std::max(largest, std::abs(row.gap) / (rounding * extent));
-    if (speed > 0.0) largest = std::max(largest, left / (rounding * speed));
+  end.residuals_and_sizes(trial.end.v.data(), left_.data(), total_.data());
+  violation_ = 0.0;
+  for (std::size_t row = 0; row < end.size(); ++row) {
+    if (extent > 0.0) violation_ = std::max(violation_, std::abs(end.gap(row)) / (rounding * extent));
+    const double speed = total_[row];
+    if (speed > 0.0) violation_ = std::max(violation_, std::abs(left_[row]) / (rounding * speed));
   }
-  return largest;
 }
 
 JointId JointStage::worst_joint(double& violation) const {

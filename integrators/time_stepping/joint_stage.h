@@ -8,7 +8,9 @@
 ///   q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
-/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0.
+/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0. The first iterate is guessed by the steps before.
+/// Rows are those of the iterate before; without contact the iterate is the answer when its own rows leave
+/// nothing but rounding of both conditions, and its Gm^T L is the impulse that led to it.
 ///
 /// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
 /// their rows G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees velocities
@@ -67,21 +69,24 @@ struct JointContacts {
 /// Joints of one component. Keeps memory.
 class CAROM_API JointStage {
 public:
-  /// \param arrays shared by all components; must outlive it
-  JointStage(const Assembly& assembly, Index component, JointArrays& arrays);
+  /// \param first_row of its rows among those of all components \param arrays shared by all components; must
+  /// outlive it
+  JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
 
-  /// The first guess: no reactions, and the positions that the present velocities lead to. Bounds of friction
-  /// in joints become those of impulses.
-  void start(const StepInput& in, JointContacts& contacts, StepTrial& trial);
+  /// The first iterate, under the loads of the guess: by the steps before where there were any and it is
+  /// wanted, else without reactions, where the present velocities lead to. Bounds of friction in joints
+  /// become those of impulses.
+  void start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
+             StepTrial& trial);
   /// One sweep. False if the contact problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,
                            StepTrial& trial);
-  /// Brings the rows to the iterate.
-  void place(const StepInput& in, StepTrial& trial) { rows_.place(in, trial); }
-  /// Change that the sweep has made.
-  [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial) const;
-  /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
-  [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
+  /// Change that another sweep would make where nothing touches or rubs and the joints are obeyed; else that
+  /// the sweep has made.
+  [[nodiscard]] SweepChange change(const StepInput& in, const JointContacts& contacts,
+                                   const StepTrial& trial);
+  /// Distance of the iterate from obeying the joints, in units of what rounding lets it.
+  [[nodiscard]] double violation() const { return violation_; }
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
   void settle_velocities(const StepInput& in, StepTrial& trial);
   /// Velocities that the joints allow where bodies have been moved to. Returns the kinetic energy lost [J].
@@ -97,6 +102,10 @@ public:
   [[nodiscard]] const std::vector<double>& reactions() const { return impulse_; }
   /// The last displacement back onto the joints, over all velocities.
   [[nodiscard]] const std::vector<double>& displacement() const { return arrays_->displacement; }
+  /// Work of the impulses L along the mean velocities [J].
+  [[nodiscard]] double work_of_reactions(const StepTrial& trial);
+  /// Takes the step down for the guess at the next one.
+  void record(JointHistory& history) const;
   /// True if anything but friction in joints takes part.
   [[nodiscard]] bool is_struck() const { return struck_; }
   [[nodiscard]] StepJointRows& rows() { return rows_; }
@@ -105,18 +114,28 @@ public:
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
+  [[nodiscard]] bool guess(const StepInput& in);
+  void find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
+  void move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
+  void judge(const StepTrial& trial);
+  void drop_dependent();
+  void move_by_start(const StepInput& in, StepTrial& trial);
+  void return_near_singular(const StepInput& in, StepTrial& trial);
+  [[nodiscard]] bool needs_factors(const JointContacts& contacts) const;
   void correct_impulses(const StepTrial& trial);
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
-  void return_to_joints(const StepInput& in, StepTrial& trial);
+  void return_to_joints(const StepInput& in, bool touches, StepTrial& trial);
   void move(const std::vector<double>& displacement, State& state) const;
   void clear(std::vector<double>& numbers) const;
 
   const Assembly* assembly_;
-  Index component_;
+  Index component_, first_row_;
   JointArrays* arrays_;
   StepJointRows rows_;
-  bool struck_ = false;
+  bool struck_ = false, guessed_ = false;
+  int sweeps_ = 0;               // of the step
+  double violation_ = 0.0;       // of the iterate
   std::vector<double> impulse_;  // L
   std::vector<double> total_;    // L, and what contact adds
   std::vector<double> left_;     // of the constraints
@@ -133,9 +152,12 @@ public:
   [[nodiscard]] JointStage* of(Index component) const {
     return stages_.empty() ? nullptr : stages_[component].get();
   }
+  /// Takes a step down for the guess at the next one. \param step its length [s]
+  void record(double step, JointHistory& history) const;
 
 private:
   std::unique_ptr<JointArrays> arrays_;              // null without joints
+  Index rows_ = 0;                                   // of all joints
   std::vector<std::unique_ptr<JointStage>> stages_;  // by component, or empty
 };
 

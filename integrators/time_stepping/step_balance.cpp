@@ -62,7 +62,6 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   const Range q = assembly.components()[component].q, v = assembly.components()[component].v;
   const JointConstraints &start = joints.rows().at_start(), &end = joints.rows().at_end();
   const double* const total = joints.multipliers(contact);
-  trial.place_midpoint(in, component);
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
   // along the rows at the start have none.
   rates_.resize(end.size());
@@ -71,8 +70,11 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
     double rate = 0.0;
     if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
-    coupling_work_.add((joints.is_struck() ? joints.reactions()[row] : total[row]) * (rates_[row] + rate));
+    const double reaction = joints.reactions()[row];
+    coupling_work_.add(reaction * rate);
+    if (!joints.is_struck()) coupling_work_.add((total[row] - reaction) * (rates_[row] + rate));
   }
+  coupling_work_.add(joints.work_of_reactions(trial));
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.
   double taken = 0.0;
@@ -86,7 +88,6 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   }
   energy_position_projection_ += taken;
 
-  evaluate_positions(assembly, component, trial.midpoint.view(), trial.at_midpoint);
   const JointView halfway{trial.midpoint.view(), trial.at_midpoint.rotation.data()};
   Index row = 0;
   for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
@@ -262,6 +263,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
   result.report.findings.swap(report.findings);
+  memory.joints->record(step, companion.joints);
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
   std::swap(state.z, trial.end.z);

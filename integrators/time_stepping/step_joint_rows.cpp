@@ -47,11 +47,6 @@ void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   update(end_, view_of(trial.end, trial.at_end), in);
 }
 
-void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
-  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
-  end_.update_gaps(view_of(trial.end, trial.at_end));
-}
-
 void StepJointRows::place(const StepInput& in, StepTrial& trial) {
   trial.place_midpoint(in, component_);
   evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
@@ -61,12 +56,19 @@ void StepJointRows::place(const StepInput& in, StepTrial& trial) {
          in);
 }
 
+void StepJointRows::begin(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
+  reactions_ = Reactions::halfway;
+  place(in, trial);
+  end_.factor();
+  choose(in, trial, work);
+  if (is_mixed()) factor();
+}
+
 /// Where rows depend on each other, those halfway may point across those at the end: with an angle a from
 /// there at the end, b halfway, sweeps contract by |1 - b/a|. Reactions along the rows at the end contract,
 /// and cost an error of second order once; where those halfway have some hold, the matrix of both does
 /// without. The angle at the start is 2 b - a.
 void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
-  end_.factor();
   roundoff_growth_ = 1.0;
   double nearest = 1.0;
   for (std::size_t row = 0; row < end_.size(); ++row) {
@@ -74,6 +76,7 @@ void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<do
     nearest = std::min(nearest, pivot);
     if (pivot >= dependent_pivot) roundoff_growth_ = std::max(roundoff_growth_, 1.0 / std::sqrt(pivot));
   }
+  dependent_ = nearest < dependent_pivot;
   near_singular_ = roundoff_growth_ > 1.0 / near_angle;
   if (nearest > near_angle * near_angle) return;
   midpoint_.factor();

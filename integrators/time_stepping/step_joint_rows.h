@@ -28,8 +28,9 @@ class CAROM_API StepJointRows {
 public:
   StepJointRows(const Assembly& assembly, Index component);
 
-  /// Begins a step: reactions along the rows halfway.
-  void start() { reactions_ = Reactions::halfway; }
+  /// Begins a step at its first iterate: brings the rows there, chooses those of the reactions, and factors
+  /// those at the end. \param work one number by row
+  void begin(const StepInput& in, StepTrial& trial, std::vector<double>& work);
   /// Brings the rows at the start to it; evaluates rotations there. Throws SolverError where a prescribed
   /// motion is not finite, as the others.
   void place_start(const StepInput& in, StepTrial& trial);
@@ -37,11 +38,6 @@ public:
   void place(const StepInput& in, StepTrial& trial);
   /// Brings the rows at the end alone there, rotations included.
   void place_end(const StepInput& in, StepTrial& trial);
-  /// Brings the gaps at the end alone there, rotations included.
-  void place_gaps(const StepInput& in, StepTrial& trial);
-  /// Chooses the rows of the reactions at the first iterate, where place() has brought them, and factors the
-  /// rows at the end. \param work one number by row
-  void choose(const StepInput& in, StepTrial& trial, std::vector<double>& work);
   /// Factors the matrix by which conditions at the end are met.
   void factor();
   /// r becomes multipliers of the reactions.
@@ -64,10 +60,13 @@ public:
   [[nodiscard]] bool is_singular() const { return reactions_ != Reactions::halfway; }
   /// True near a singular position.
   [[nodiscard]] bool is_near_singular() const { return near_singular_; }
+  /// True if a row at the end follows from others.
+  [[nodiscard]] bool has_dependent() const { return dependent_; }
   /// Growth of rounding there.
   [[nodiscard]] double roundoff_growth() const { return roundoff_growth_; }
 
 private:
+  void choose(const StepInput& in, StepTrial& trial, std::vector<double>& work);
   void look_ahead(std::size_t row, double halfway, double start);
 
   Index component_;
@@ -75,7 +74,7 @@ private:
   MixedConstraints mixed_;
   Reactions reactions_ = Reactions::halfway;
   double roundoff_growth_ = 1.0;
-  bool near_singular_ = false;
+  bool near_singular_ = false, dependent_ = false;
 };
 
 }  // namespace carom

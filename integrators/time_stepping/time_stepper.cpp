@@ -17,6 +17,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       iteration_(parts_, stop),
       balance_(assembly, options),
       couplings_(assembly) {
+  memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
 }
