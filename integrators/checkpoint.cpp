@@ -14,6 +14,8 @@ namespace carom {
 namespace {
 
 constexpr std::string_view mark = "carom checkpoint 7\n";
+/// Of checkpoints that do not say what joints did: a run goes on from one without a guess at it.
+constexpr std::string_view mark_without_joints = "carom checkpoint 6\n";
 
 /// The numbers of Statistics, in the order in which they are saved.
 template <class S, class F>
@@ -74,6 +76,16 @@ void get(CheckpointReader& in, FeatureKey& key) {
   key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
 }
 
+void add(CheckpointWriter& out, const JointHistory& history) {
+  out.add(history.step);
+  out.add(std::uint64_t{history.known.size()});
+  for (const int known : history.known) out.add(known);
+  if (history.known.empty()) return;
+  for (const StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
+    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) out.add(course->numbers(ago));
+  }
+}
+
 std::uint64_t checksum(std::string_view bytes) {
   Fingerprint print;
   print.add(bytes);
@@ -109,16 +121,6 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   }
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
-  const JointHistory& joints = companion.joints;
-  out.add(joints.step);
-  out.add(std::uint64_t{joints.known.size()});
-  for (const int known : joints.known) out.add(known);
-  if (!joints.known.empty()) {
-    for (const StepCourse* const course : {&joints.impulses, &joints.velocities, &joints.displacements}) {
-      out.add(course->last);
-      for (const std::vector<float>& changes : course->changes) out.add(changes);
-    }
-  }
   out.add(std::uint64_t{companion.iterations.entries().size()});
   for (const IterationMemory::Entry& entry : companion.iterations.entries()) {
     out.add(std::uint64_t{entry.component});
@@ -142,6 +144,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
     out.add(rhythm.interval);
     out.add(rhythm.fired);
   }
+  add(out, companion.joints);
   const std::string_view body(out.bytes().data(), out.bytes().size());
   CheckpointWriter end;
   end.add(checksum(body));
@@ -169,26 +172,6 @@ void read_history(CheckpointReader& in, std::size_t velocities, LoadHistory& his
   }
   history.sweeps.resize(in.count());
   for (int& sweeps : history.sweeps) in.get(sweeps);
-}
-
-void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHistory& history) {
-  in.get(history.step);
-  history.known.resize(in.count());
-  for (int& known : history.known) {
-    in.get(known);
-    if (known < 0 || known > StepCourse::most + 1) in.damaged("its history of joints is of unknown length");
-  }
-  if (history.known.empty()) return;
-  for (StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
-    in.get(course->last);
-    const std::size_t size = course == &history.impulses ? course->last.size() : velocities;
-    bool fits = course->last.size() == size;
-    for (std::vector<float>& changes : course->changes) {
-      in.get(changes);
-      fits = fits && changes.size() == size;
-    }
-    if (!fits) in.damaged("its sizes do not fit the model");
-  }
 }
 
 void read_iterations(CheckpointReader& in, IterationMemory& iterations) {
@@ -240,6 +223,23 @@ void read_rhythms(CheckpointReader& in, std::vector<Rhythm>& rhythms) {
   }
 }
 
+void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHistory& history) {
+  in.get(history.step);
+  history.known.resize(in.count());
+  for (int& known : history.known) {
+    in.get(known);
+    if (known < 0 || known > JointHistory::most) in.damaged("its history of joints is of unknown length");
+  }
+  if (history.known.empty()) return;
+  for (StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
+    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) {
+      in.get(course->numbers(ago));
+      const std::size_t size = course == &history.impulses ? course->numbers(0).size() : velocities;
+      if (course->numbers(ago).size() != size) in.damaged("its sizes do not fit the model");
+    }
+  }
+}
+
 /// Demands the periodic events of the simulation.
 void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
                     const std::vector<Rhythm>& present) {
@@ -257,9 +257,10 @@ void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
 
 /// Content of a checkpoint without its mark and its checksum, both of which are demanded.
 std::string_view checked_body(const std::string& path, std::string_view text) {
-  if (!text.starts_with(mark))
+  if (!text.starts_with(mark) && !text.starts_with(mark_without_joints))
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   text.remove_prefix(mark.size());
+  static_assert(mark.size() == mark_without_joints.size());
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
   const std::string_view body = text.substr(0, text.size() - checksum_size);
@@ -295,7 +296,6 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   read_history(in, state.v.size(), other.history);
-  read_joint_history(in, state.v.size(), other.joints);
   read_iterations(in, other.iterations);
   read_mean_loads(in, state.v.size(), other.loads);
   in.get(other.next_step);
@@ -303,6 +303,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.grid_steps);
   read_modes(in, other);
   read_rhythms(in, other.rhythms);
+  if (content.starts_with(mark)) read_joint_history(in, state.v.size(), other.joints);
   in.finish();
   demand_rhythms(path, other.rhythms, companion.rhythms);
   state = std::move(read);

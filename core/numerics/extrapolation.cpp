@@ -1,45 +1,40 @@
 #include <carom/core/numerics/extrapolation.h>
-#include <carom/core/numerics/pair.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 namespace carom {
 
-void record_change(Range range, const double* then, const double* now, float* change) {
-  // Differences of changes and their sum stay within floats; what does not is guessed as it is now.
-  constexpr double largest = std::numeric_limits<float>::max() / 8.0;
-  Index i = range.begin;
-  for (; i + 1 < range.end; i += 2) {
-    const Pair exact = load_pair(now + i) - load_pair(then + i);
-    store_pair(change + i, magnitude(exact) <= both(largest) ? exact : both(0.0));
+namespace {
+
+/// Binomial coefficients of alternating sign: the polynomial through `Steps` numbers, one step on.
+template <std::size_t Steps>
+constexpr std::array<double, Steps> weights() {
+  std::array<double, Steps> weight{};
+  double binomial = Steps;
+  for (std::size_t k = 0; k < Steps; ++k) {
+    weight[k] = k % 2 == 0 ? binomial : -binomial;
+    binomial = binomial * static_cast<double>(Steps - k - 1) / static_cast<double>(k + 2);
   }
-  for (; i < range.end; ++i) {
-    const double exact = now[i] - then[i];
-    change[i] = std::abs(exact) <= largest ? static_cast<float>(exact) : 0.0F;
+  return weight;
+}
+
+template <std::size_t Steps>
+void extrapolate_by(Range range, const LastNumbers& last, double* guess) {
+  constexpr std::array<double, Steps> weight = weights<Steps>();
+  for (Index i = range.begin; i < range.end; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < Steps; ++k) sum += weight[k] * last[k][i];
+    guess[i] = sum;
   }
 }
 
-void extrapolate(Range range, const double* now, const LastChanges& changes, int order, double ratio,
-                 double* guess) {
-  const auto& [first, second, third] = changes;
-  if (order == 3) {
-    for (Index i = range.begin; i < range.end; ++i) {
-      const float growth = first[i] - second[i];
-      guess[i] = now[i] + static_cast<double>(first[i] + (growth + (growth - (second[i] - third[i]))));
-    }
-  } else if (order == 2) {
-    for (Index i = range.begin; i < range.end; ++i) {
-      guess[i] = now[i] + static_cast<double>(first[i] + (first[i] - second[i]));
-    }
-  } else if (order == 1) {
-    for (Index i = range.begin; i < range.end; ++i) {
-      guess[i] = now[i] + ratio * static_cast<double>(first[i]);
-    }
-  } else {
-    std::copy(now + range.begin, now + range.end, guess + range.begin);
-  }
+}  // namespace
+
+void extrapolate(Range range, const LastNumbers& last, std::size_t steps, double* guess) {
+  const auto by = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {
+    ((steps == Fewer + 1 ? extrapolate_by<Fewer + 1>(range, last, guess) : void()), ...);
+  };
+  by(std::make_index_sequence<most_extrapolated>());
 }
 
 }  // namespace carom

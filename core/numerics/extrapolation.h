@@ -1,26 +1,25 @@
 #pragma once
 
 /// \file
-/// Numbers after a step, by how they changed over the last steps of the same length. Changes are kept as
-/// floats: a guess needs no more digits.
+/// Numbers after a step, by those of the last steps of the same length.
 
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
 #include <array>
+#include <cstddef>
 
 namespace carom {
 
-/// Changes over the last step, over the one before it, and over that before.
-using LastChanges = std::array<const float*, 3>;
+/// Most steps that a guess follows.
+inline constexpr std::size_t most_extrapolated = 6;
 
-/// Writes the change from `then` to `now`, zero where a float cannot hold it, over `range`.
-CAROM_API void record_change(Range range, const double* then, const double* now, float* change);
+/// Numbers of the last steps, the last first: arrays that `range` indexes.
+using LastNumbers = std::array<const double*, most_extrapolated>;
 
-/// Guesses numbers by the polynomial through the last ones, over `range`. \param now the present ones
-/// \param order changes that are known, 0 to 3 \param ratio next step to the last one, where order is 1;
-/// steps are of one length where it is larger \param guess out
-CAROM_API void extrapolate(Range range, const double* now, const LastChanges& changes, int order,
-                           double ratio, double* guess);
+/// Guesses the numbers of the next step over `range` by the polynomial through those of the last steps,
+/// 4 a - 6 b + 4 c - d of four. \param steps how many are known, 1 to most_extrapolated; the others are not
+/// read \param guess out
+CAROM_API void extrapolate(Range range, const LastNumbers& last, std::size_t steps, double* guess);
 
 }  // namespace carom

@@ -1,27 +1,33 @@
 // Problem: what the joints will do in a step, by what they did in the last ones.
 
-#include <carom/core/numerics/extrapolation.h>
 #include <carom/integrators/run/joint_history.h>
 
 #include <algorithm>
 
 namespace carom {
 
+const std::vector<double>& StepCourse::numbers(std::size_t ago) const {
+  return steps_[(newest_ + ago) % most_extrapolated];
+}
+
+std::vector<double>& StepCourse::numbers(std::size_t ago) {
+  return steps_[(newest_ + ago) % most_extrapolated];
+}
+
 void StepCourse::go_on(std::size_t size) {
-  std::rotate(changes.begin(), changes.end() - 1, changes.end());
-  if (last.size() == size) return;
-  last.assign(size, 0.0);
-  for (std::vector<float>& numbers : changes) numbers.assign(size, 0.0F);
+  newest_ = (newest_ + most_extrapolated - 1) % most_extrapolated;
+  if (steps_[newest_].size() == size) return;
+  for (std::vector<double>& numbers : steps_) numbers.assign(size, 0.0);
 }
 
 void StepCourse::record(Range range, const double* numbers) {
-  record_change(range, last.data(), numbers, changes[0].data());
-  std::copy(numbers + range.begin, numbers + range.end, last.begin() + range.begin);
+  std::copy(numbers + range.begin, numbers + range.end, steps_[newest_].begin() + range.begin);
 }
 
-void StepCourse::guess(Range range, int known, double* out) const {
-  extrapolate(range, last.data(), {changes[0].data(), changes[1].data(), changes[2].data()},
-              std::min(known - 1, most), 1.0, out);
+void StepCourse::guess(Range range, std::size_t steps, double* out) const {
+  LastNumbers last{};
+  for (std::size_t ago = 0; ago < most_extrapolated; ++ago) last[ago] = numbers(ago).data();
+  extrapolate(range, last, steps, out);
 }
 
 void JointHistory::go_on(double next_step, std::size_t components, std::size_t rows, std::size_t size) {

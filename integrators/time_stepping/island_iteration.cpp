@@ -112,7 +112,10 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   } else {
     for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
   }
-  if (joints != nullptr) joints->start(in, parts_->rule, !method_.is_newton(), contacts, parts_->trial);
+  if (joints != nullptr) {
+    const bool guesses = method_.current() == Iteration::fixed_point;
+    joints->start(in, parts_->rule, guesses, contacts, parts_->trial);
+  }
   if (!method_.is_newton()) return;
   demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
 }
@@ -193,7 +196,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
                             : parts_->schedule.change(parts_->stages(in, component)));
   }
   if (joints == nullptr) return made;
-  made.change.take(joints->change(in, contacts, parts_->trial));
+  made.change.take(joints->change(in, parts_->trial));
   made.change.size *= joints->rows().roundoff_growth();
   return made;
 }
@@ -232,11 +235,11 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   const Index component = island.components.front();
   JointStage& joints = *parts_->joints.of(component);
   JointContacts contacts = contacts_of(island);
-  double left = joints.violation();
+  double left = joints.violation(in, parts_->trial);
   if (!joints.rows().is_near_singular() && !(left > 1.0)) return false;
   for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
     sweep_joints(in, component, joints, contacts);
-    const double now = joints.violation();
+    const double now = joints.violation(in, parts_->trial);
     if (!(now < improved * left)) break;
     left = now;
   }

@@ -62,19 +62,23 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   const Range q = assembly.components()[component].q, v = assembly.components()[component].v;
   const JointConstraints &start = joints.rows().at_start(), &end = joints.rows().at_end();
   const double* const total = joints.multipliers(contact);
+  joints.finish(in, trial);
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
   // along the rows at the start have none.
-  rates_.resize(end.size());
-  joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
-  for (std::size_t row = 0; row < rates_.size(); ++row) {
+  coupling_work_.add(joints.work_of_reactions(trial));
+  const bool rubs = contact != nullptr && !joints.is_struck();
+  if (rubs) {
+    rates_.resize(end.size());
+    joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
+  }
+  for (std::size_t row = 0; row < end.size() && (rubs || start.depends_on_time()); ++row) {
+    const double reaction = joints.reactions()[row];
     double rate = 0.0;
     if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
-    const double reaction = joints.reactions()[row];
     coupling_work_.add(reaction * rate);
-    if (!joints.is_struck()) coupling_work_.add((total[row] - reaction) * (rates_[row] + rate));
+    if (rubs) coupling_work_.add((total[row] - reaction) * (rates_[row] + rate));
   }
-  coupling_work_.add(joints.work_of_reactions(trial));
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.
   double taken = 0.0;

@@ -47,6 +47,11 @@ void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   update(end_, view_of(trial.end, trial.at_end), in);
 }
 
+void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
+  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
+  end_.update_gaps(view_of(trial.end, trial.at_end));
+}
+
 void StepJointRows::place(const StepInput& in, StepTrial& trial) {
   trial.place_midpoint(in, component_);
   evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
@@ -56,12 +61,25 @@ void StepJointRows::place(const StepInput& in, StepTrial& trial) {
          in);
 }
 
-void StepJointRows::begin(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
-  reactions_ = Reactions::halfway;
+bool StepJointRows::begin_regular(const StepInput& in, StepTrial& trial) {
+  start();
   place(in, trial);
   end_.factor();
-  choose(in, trial, work);
-  if (is_mixed()) factor();
+  judge_pivots();
+  return regular_;
+}
+
+/// How near the rows at the end are to following from each other, by their factors.
+void StepJointRows::judge_pivots() {
+  double nearest = 1.0, nearest_kept = 1.0;
+  for (std::size_t row = 0; row < end_.size(); ++row) {
+    const double pivot = end_.factors().pivot(row);
+    nearest = std::min(nearest, pivot);
+    if (pivot >= dependent_pivot) nearest_kept = std::min(nearest_kept, pivot);
+  }
+  roundoff_growth_ = 1.0 / std::sqrt(nearest_kept);
+  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
+  regular_ = nearest > near_angle * near_angle;
 }
 
 /// Where rows depend on each other, those halfway may point across those at the end: with an angle a from
@@ -69,16 +87,9 @@ void StepJointRows::begin(const StepInput& in, StepTrial& trial, std::vector<dou
 /// and cost an error of second order once; where those halfway have some hold, the matrix of both does
 /// without. The angle at the start is 2 b - a.
 void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
-  roundoff_growth_ = 1.0;
-  double nearest = 1.0;
-  for (std::size_t row = 0; row < end_.size(); ++row) {
-    const double pivot = end_.factors().pivot(row);
-    nearest = std::min(nearest, pivot);
-    if (pivot >= dependent_pivot) roundoff_growth_ = std::max(roundoff_growth_, 1.0 / std::sqrt(pivot));
-  }
-  dependent_ = nearest < dependent_pivot;
-  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
-  if (nearest > near_angle * near_angle) return;
+  end_.factor();
+  judge_pivots();
+  if (regular_) return;
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
