@@ -75,7 +75,7 @@ void JointConstraints::residuals(JointLevel level, const double* x, double* out)
     std::fill_n(out, size(), 0.0);
   }
   pattern_->for_blocks(jacobian_.data(),
-                       [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                       [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
                          for (Index i = 0; i < rows; ++i) {
                            double sum = 0.0;
                            for (Index c = 0; c < columns; ++c) sum += number[i * stride + c] * x[v + c];
@@ -90,7 +90,7 @@ void JointConstraints::residuals_and_sizes(const double* x, double* out, double*
     sizes[row] = std::abs(out[row]);
   }
   pattern_->for_blocks(jacobian_.data(),
-                       [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                       [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
                          for (Index i = 0; i < rows; ++i) {
                            double sum = 0.0, size = 0.0;
                            for (Index c = 0; c < columns; ++c) {
@@ -110,7 +110,7 @@ namespace {
 template <class F>
 void for_transposed(const JointPattern& pattern, const double* jacobian, const double* multipliers, F&& add) {
   pattern.for_blocks(jacobian,
-                     [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                     [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
                        for (Index c = 0; c < columns; ++c) {
                          double sum = 0.0;
                          for (Index i = 0; i < rows; ++i)

@@ -45,8 +45,8 @@ struct CAROM_API JointIterate {
   void move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
   /// Moves bodies by a displacement over all velocities.
   void displace(const std::vector<double>& by, State& state) const;
-  /// Distance of positions and velocities from obeying the joints, with the rows at the end there, in units of
-  /// what rounding lets them.
+  /// Distance of positions and velocities from obeying the joints, with the rows at the end there, in units
+  /// of what rounding lets them.
   [[nodiscard]] double violation(const State& end);
   /// Work of the impulses along the mean velocities [J].
   [[nodiscard]] double work(const StepTrial& trial);

@@ -158,7 +158,8 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
 void JointStage::allow_at_start(double* velocity) {
   JointConstraints& start = joints_.rows.at_start();
   start.residuals(JointLevel::change, velocity, joints_.left.data());
-  for (std::size_t row = 0; row < joints_.left.size(); ++row) joints_.left[row] += joints_.rows.at_end().rate(row);
+  for (std::size_t row = 0; row < joints_.left.size(); ++row)
+    joints_.left[row] += joints_.rows.at_end().rate(row);
   start.solve(joints_.left.data());
   start.add_response(joints_.left.data(), velocity);
 }
@@ -208,19 +209,20 @@ SweepChange JointStage::change(const StepInput& in, const StepTrial& trial) {
   if (guessed_) return untouched_.change(in, trial);
   SweepChange change;
   const JointArrays& arrays = *joints_.arrays;
-  joints_.assembly->for_bodies(joints_.component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += kind.v_size()) {
-      for (Index i = 0; i < kind.v_size(); ++i) {
-        const double weight = in.step * arrays.lengths[v + i];
-        change.take(weight * (trial.end.v[v + i] - arrays.before_v[v + i]), weight * trial.end.v[v + i]);
-      }
-      for (Index i = 0; i < kind.q_size(); ++i) {
-        // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
-        const double weight = i < kind.v_size() ? arrays.lengths[v + i] : 1.0;
-        change.take(weight * (trial.end.q[q + i] - arrays.before_q[q + i]), trial.end.q[q + i]);
-      }
-    }
-  });
+  joints_.assembly->for_bodies(
+      joints_.component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+        for (Index slot = slots.begin; slot < slots.end; ++slot, q += kind.q_size(), v += kind.v_size()) {
+          for (Index i = 0; i < kind.v_size(); ++i) {
+            const double weight = in.step * arrays.lengths[v + i];
+            change.take(weight * (trial.end.v[v + i] - arrays.before_v[v + i]), weight * trial.end.v[v + i]);
+          }
+          for (Index i = 0; i < kind.q_size(); ++i) {
+            // Coordinates without a velocity of their own (unit quaternions) are judged as they are.
+            const double weight = i < kind.v_size() ? arrays.lengths[v + i] : 1.0;
+            change.take(weight * (trial.end.q[q + i] - arrays.before_q[q + i]), trial.end.q[q + i]);
+          }
+        }
+      });
   return change;
 }
 
@@ -239,9 +241,10 @@ void JointStage::finish(const StepInput& in, StepTrial& trial) const {
 double JointStage::project_velocities(StepTrial& trial) {
   const auto kinetic = [&] {
     double sum = 0.0;
-    joints_.assembly->for_bodies(joints_.component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
-    });
+    joints_.assembly->for_bodies(joints_.component,
+                                 [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+                                   sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
+                                 });
     return sum;
   };
   JointConstraints& joints = joints_.rows.at_end();

@@ -8,8 +8,8 @@
 ///   q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
-/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0. Where nothing touches or rubs the steps before say
-/// what to begin with (untouched_joints.h).
+/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0. Where nothing touches or rubs the steps before
+/// say what to begin with (untouched_joints.h).
 ///
 /// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
 /// their rows G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees velocities
@@ -62,8 +62,9 @@ public:
   JointStage(const JointStage&) = delete;
   JointStage& operator=(const JointStage&) = delete;
 
-  /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and the
-  /// positions that the present velocities lead to. Bounds of friction in joints become those of impulses.
+  /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
+  /// the positions that the present velocities lead to. Bounds of friction in joints become those of
+  /// impulses.
   void start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
              StepTrial& trial);
   /// One sweep. False if the contact problem is not solved.
@@ -110,11 +111,11 @@ private:
   void return_to_joints(const StepInput& in, StepTrial& trial);
 
   JointIterate joints_;
-  UntouchedJoints untouched_;    // iterates joints_
+  UntouchedJoints untouched_;  // iterates joints_
   bool struck_ = false;
-  bool guessed_ = false;         // untouched_ iterates the step
-  std::vector<double> total_;    // L, and what contact adds
-  FrictionBounds bounds_;        // of friction in the joints
+  bool guessed_ = false;       // untouched_ iterates the step
+  std::vector<double> total_;  // L, and what contact adds
+  FrictionBounds bounds_;      // of friction in the joints
   FrictionBoundSolver bound_solver_;
 };
 
