@@ -48,9 +48,11 @@ struct CAROM_API JointHistory {
   /// A step was made, which will be recorded component by component. \param next_step its length [s]
   /// \param components of the model \param rows of all its joints \param size of its velocities
   void go_on(double next_step, std::size_t components, std::size_t rows, std::size_t size);
-  /// Steps of a component from which the next may be guessed; 0: none. \param next_step its length [s]
-  [[nodiscard]] int usable(Index component, double next_step) const {
-    return component < known.size() && step == next_step ? known[component] : 0;
+  /// Steps of a component from which the next may be guessed; 0: none. \param rows of the joints up to and
+  /// with those of the component \param next_step its length [s]
+  [[nodiscard]] int usable(Index component, Index rows, double next_step) const {
+    const bool fits = component < known.size() && rows <= impulses.numbers(0).size();
+    return fits && step == next_step ? known[component] : 0;
   }
   /// Forgets all steps.
   void clear() { known.clear(); }

@@ -12,7 +12,7 @@ UntouchedJoints::UntouchedJoints(JointIterate& iterate, Index first_row)
 bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial& trial) {
   JointIterate& joints = *iterate_;
   const JointHistory& history = in.companion.joints;
-  const auto known = static_cast<std::size_t>(history.usable(joints.component, in.step));
+  const auto known = static_cast<std::size_t>(history.usable(joints.component, rows_.end, in.step));
   if (known == 0) return false;
   history.impulses.guess(rows_, known, joints.impulse.data() - rows_.begin);
   history.velocities.guess(joints.v(), known, joints.arrays->dv_joints.data());
