@@ -28,7 +28,7 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
       parts_->errors(in, front).fail_contact(*failed);
     }
     const SweepChange change = made.change;
-    const bool ahead = joints == nullptr && !method_.is_newton();
+    const bool ahead = joints == nullptr ? !method_.is_newton() : joints->looks_ahead();
     Verdict verdict =
         ahead ? judge.judge_ahead(change.change, change.size) : judge.judge(change.change, change.size);
     // Newton's first is that from t_j: small or not, it says nothing of the guess.

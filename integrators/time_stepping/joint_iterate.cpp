@@ -70,8 +70,6 @@ void JointIterate::displace(const std::vector<double>& by, State& state) const {
 }
 
 double JointIterate::violation(const State& end) {
-  // Roundings of the numbers that a row is made of, some room for those of the factors included.
-  constexpr double rounding = 1e-13;
   const JointConstraints& at_end = rows.at_end();
   const Range q = assembly->components()[component].q;
   double extent = 0.0, gap = 0.0, largest = 0.0;

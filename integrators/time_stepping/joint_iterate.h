@@ -45,8 +45,11 @@ struct CAROM_API JointIterate {
   void move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
   /// Moves bodies by a displacement over all velocities.
   void displace(const std::vector<double>& by, State& state) const;
-  /// Distance of positions and velocities from obeying the joints, with the rows at the end there, in units
-  /// of what rounding lets them.
+  /// Roundings of the numbers that a row is made of, some room for those of the factors included, relative to
+  /// them.
+  static constexpr double rounding = 1e-13;
+  /// Distance of velocities and positions from obeying the joints, with the rows at the end there, in units of
+  /// that.
   [[nodiscard]] double violation(const State& end);
   /// Work of the impulses along the mean velocities [J].
   [[nodiscard]] double work(const StepTrial& trial);

@@ -95,24 +95,34 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
   return true;
 }
 
-/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before, with
-/// the rows there; several with rows of their own near a singular position, where rows change much from one
-/// iterate to the next.
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before. All of
+/// the displacement is made anew along the rows of this sweep, so that it does not depend on how the
+/// iteration went.
 void JointStage::return_to_joints(const StepInput& in, StepTrial& trial) {
-  constexpr int most_near_singular = 6;
+  JointArrays& arrays = *joints_.arrays;
+  StepJointRows& rows = joints_.rows;
+  joints_.displace(arrays.displacement, trial.end);
+  if (rows.is_singular()) return return_near_singular(in, trial);
+  const Range v = joints_.v();
+  rows.place_gaps(in, trial);
+  for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = -arrays.displacement[i];
+  rows.at_end().residuals(JointLevel::displacement, arrays.scratch.data(), joints_.left.data());
+  rows.solve(joints_.left);
+  rows.pushing().add_response(joints_.left.data(), arrays.scratch.data());
+  for (Index i = v.begin; i < v.end; ++i) arrays.displacement[i] += arrays.scratch[i];
+  joints_.displace(arrays.scratch, trial.end);
+}
+
+/// Several steps with rows of their own, which change much from one iterate to the next there.
+void JointStage::return_near_singular(const StepInput& in, StepTrial& trial) {
+  constexpr int turns = 6;
   JointArrays& arrays = *joints_.arrays;
   StepJointRows& rows = joints_.rows;
   std::vector<double>& left = joints_.left;
   const Range v = joints_.v();
-  const bool near_singular = rows.is_singular();
-  joints_.displace(arrays.displacement, trial.end);
-  for (int turn = 0; turn < (near_singular ? most_near_singular : 1); ++turn) {
-    if (near_singular) {
-      rows.place_end(in, trial);
-      rows.factor();
-    } else {
-      rows.place_gaps(in, trial);
-    }
+  for (int turn = 0; turn < turns; ++turn) {
+    rows.place_end(in, trial);
+    rows.factor();
     for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gap(row);
     rows.solve(left);
     joints_.clear(arrays.scratch);

@@ -74,6 +74,8 @@ public:
   void place(const StepInput& in, StepTrial& trial) { joints_.rows.place(in, trial); }
   /// Change that the sweep has made, or that another would make.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
+  /// True if it is to be judged as the latter.
+  [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
@@ -109,6 +111,7 @@ private:
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
   void return_to_joints(const StepInput& in, StepTrial& trial);
+  void return_near_singular(const StepInput& in, StepTrial& trial);
 
   JointIterate joints_;
   UntouchedJoints untouched_;  // iterates joints_

@@ -66,18 +66,21 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
   // along the rows at the start have none.
   coupling_work_.add(joints.work_of_reactions(trial));
-  const bool rubs = contact != nullptr && !joints.is_struck();
-  if (rubs) {
-    rates_.resize(end.size());
+  if (contact != nullptr) rates_.resize(end.size());
+  if (joints.is_struck()) {
+    // Half of what rounding of the step before has left of the constraints, which the answers meet.
+    start.residuals(JointLevel::velocity, in.start.v.data(), rates_.data());
+  } else if (contact != nullptr) {
     joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
   }
-  for (std::size_t row = 0; row < end.size() && (rubs || start.depends_on_time()); ++row) {
+  for (std::size_t row = 0; row < end.size() && (contact != nullptr || start.depends_on_time()); ++row) {
     const double reaction = joints.reactions()[row];
     double rate = 0.0;
     if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
     coupling_work_.add(reaction * rate);
-    if (rubs) coupling_work_.add((total[row] - reaction) * (rates_[row] + rate));
+    if (contact == nullptr) continue;
+    coupling_work_.add((total[row] - reaction) * (joints.is_struck() ? 0.5 * rates_[row] : rates_[row] + rate));
   }
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.

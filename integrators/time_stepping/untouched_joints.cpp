@@ -3,6 +3,7 @@
 #include <carom/integrators/time_stepping/untouched_joints.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 
@@ -14,9 +15,11 @@ bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial
   const JointHistory& history = in.companion.joints;
   const auto known = static_cast<std::size_t>(history.usable(joints.component, rows_.end, in.step));
   if (known == 0) return false;
+  // Displacements have the rounding of positions, which more steps would magnify.
+  constexpr std::size_t few = 5;
   history.impulses.guess(rows_, known, joints.impulse.data() - rows_.begin);
   history.velocities.guess(joints.v(), known, joints.arrays->dv_joints.data());
-  history.displacements.guess(joints.v(), known, joints.arrays->displacement.data());
+  history.displacements.guess(joints.v(), std::min(known, few), joints.arrays->displacement.data());
   joints.find_free_velocities(in, rule, trial);
   joints.move_bodies(in, rule, trial);
   joints.displace(joints.arrays->displacement, trial.end);
@@ -29,19 +32,43 @@ void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial
   // that does not help.
   constexpr int patience = 4;
   JointIterate& joints = *iterate_;
-  const Range v = joints.v();
-  std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end,
-            joints.arrays->before_v.begin() + v.begin);
+  note_velocities(trial);
   if (sweeps_ >= patience) joints.rows.factor();
   if (sweeps_ > 0) joints.find_free_velocities(in, rule, trial);
   joints.correct_impulses(trial);
-  joints.correct_impulses(trial);  // once more with the same rows: costs less than another sweep
+  if (turns_rows(in, trial)) {
+    // A second look at the rows alone costs less than another sweep.
+    joints.move_bodies(in, rule, trial);
+    return_to_joints(in, trial);
+    joints.rows.place_end(in, trial);
+    note_velocities(trial);
+  }
+  joints.correct_impulses(trial);
   joints.move_bodies(in, rule, trial);
   return_to_joints(in, trial);
   joints.rows.place(in, trial);
   violation_ = joints.violation(trial.end);
   ++sweeps_;
   trial.account.swept = true;
+}
+
+/// Velocities with which the rows were brought to where they are.
+void UntouchedJoints::note_velocities(const StepTrial& trial) {
+  const Range v = iterate_->v();
+  std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end,
+            iterate_->arrays->before_v.begin() + v.begin);
+}
+
+/// True if the correction turns the rows by more than what is left of velocities may be [rad, or m in place of
+/// it: whether it is exact does not matter to the answer].
+bool UntouchedJoints::turns_rows(const StepInput& in, const StepTrial& trial) const {
+  const JointArrays& arrays = *iterate_->arrays;
+  const Range v = iterate_->v();
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) {
+    largest = std::max(largest, std::abs(trial.free[i] + arrays.dv_joints[i] - arrays.before_v[i]));
+  }
+  return 0.5 * in.step * largest > JointIterate::rounding;
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0, with the rows of the iterate before and the gaps
@@ -63,15 +90,14 @@ void UntouchedJoints::return_to_joints(const StepInput& in, StepTrial& trial) {
 }
 
 SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial) {
-  // An impact multiplies what a step before it has left by its impulse.
-  constexpr double accepted = 0.05;
   JointIterate& joints = *iterate_;
   const JointArrays& arrays = *joints.arrays;
   const Range v = joints.v();
+  const bool obeyed = violation_ <= 1.0;
   SweepChange change;
   const double* now = trial.end.v.data();
   const double* then = arrays.before_v.data();
-  if (violation_ <= accepted) {
+  if (obeyed) {
     joints.clear(joints.arrays->scratch);
     joints.rows.at_midpoint().add_response(joints.impulse.data(), joints.arrays->scratch.data());
     now = arrays.scratch.data();
@@ -82,6 +108,7 @@ SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial)
     const double weight = in.step * arrays.lengths[i];
     change.take(weight * (now[i] - then[i]), weight * trial.end.v[i]);
   }
+  if (obeyed && change.change <= JointIterate::rounding * change.size) change.change = 0.0;
   return change;
 }
 

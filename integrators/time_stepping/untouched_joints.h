@@ -32,6 +32,8 @@ public:
   void record(bool struck, JointHistory& history) const;
 
 private:
+  void note_velocities(const StepTrial& trial);
+  [[nodiscard]] bool turns_rows(const StepInput& in, const StepTrial& trial) const;
   void return_to_joints(const StepInput& in, StepTrial& trial);
 
   JointIterate* iterate_;
