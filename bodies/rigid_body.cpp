@@ -56,7 +56,8 @@ void RigidBodyKind<2>::initial(Index slot, double* q, double* v) const {
 
 void RigidBodyKind<2>::rotations(Range slots, const double* q, double* rotation) const {
   for (Index i = 0; i < slots.size(); ++i) {
-    const double angle = q[3 * i + 2];  // apart from what is written, sine and cosine cost little more than one
+    const double angle =
+        q[3 * i + 2];  // apart from what is written, sine and cosine cost little more than one
     Space<2>::rotation(&angle, rotation + 2 * i);
   }
 }

@@ -48,8 +48,8 @@ struct CAROM_API JointIterate {
   /// Roundings of the numbers that a row is made of, some room for those of the factors included, relative to
   /// them.
   static constexpr double rounding = 1e-13;
-  /// Distance of velocities and positions from obeying the joints, with the rows at the end there, in units of
-  /// that.
+  /// Distance of velocities and positions from obeying the joints, with the rows at the end there, in units
+  /// of that.
   [[nodiscard]] double violation(const State& end);
   /// Work of the impulses along the mean velocities [J].
   [[nodiscard]] double work(const StepTrial& trial);

@@ -80,7 +80,8 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
     result_.flows[EnergyFlow::external] -= total[row] * rate;
     coupling_work_.add(reaction * rate);
     if (contact == nullptr) continue;
-    coupling_work_.add((total[row] - reaction) * (joints.is_struck() ? 0.5 * rates_[row] : rates_[row] + rate));
+    coupling_work_.add((total[row] - reaction) *
+                       (joints.is_struck() ? 0.5 * rates_[row] : rates_[row] + rate));
   }
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.

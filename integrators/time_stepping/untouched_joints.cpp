@@ -59,8 +59,8 @@ void UntouchedJoints::note_velocities(const StepTrial& trial) {
             iterate_->arrays->before_v.begin() + v.begin);
 }
 
-/// True if the correction turns the rows by more than what is left of velocities may be [rad, or m in place of
-/// it: whether it is exact does not matter to the answer].
+/// True if the correction turns the rows by more than what is left of velocities may be [rad, or m in place
+/// of it: whether it is exact does not matter to the answer].
 bool UntouchedJoints::turns_rows(const StepInput& in, const StepTrial& trial) const {
   const JointArrays& arrays = *iterate_->arrays;
   const Range v = iterate_->v();
