@@ -55,7 +55,11 @@ void RigidBodyKind<2>::initial(Index slot, double* q, double* v) const {
 }
 
 void RigidBodyKind<2>::rotations(Range slots, const double* q, double* rotation) const {
-  for (Index i = 0; i < slots.size(); ++i) Space<2>::rotation(q + 3 * i + 2, rotation + 2 * i);
+  for (Index i = 0; i < slots.size(); ++i) {
+    const double angle =
+        q[3 * i + 2];  // apart from what is written, sine and cosine cost little more than one
+    Space<2>::rotation(&angle, rotation + 2 * i);
+  }
 }
 
 void RigidBodyKind<2>::advance(Range slots, const double* q0, const double* delta, double* q1) const {

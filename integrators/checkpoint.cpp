@@ -14,6 +14,9 @@ namespace carom {
 namespace {
 
 constexpr std::string_view mark = "carom checkpoint 7\n";
+/// Of checkpoints that know of joints and large contact problems nothing: a run goes on from one without
+/// guesses.
+constexpr std::string_view mark_before = "carom checkpoint 6\n";
 
 /// The numbers of Statistics, in the order in which they are saved.
 template <class S, class F>
@@ -42,12 +45,14 @@ void for_statistics(S& s, F&& f) {
   f(s.flow_restarts);
 }
 
-/// Likewise those of the contact solvers.
+/// Likewise those of the contact solvers. \param large whether there are those of large problems, whose
+/// solver is the last
 template <class S, class F>
-void for_contact_statistics(S& s, F&& f) {
+void for_contact_statistics(S& s, bool large, F&& f) {
+  const std::size_t solvers = large ? solver_count : solver_count - 1;
   f(s.problems);
-  for (auto& count : s.accepted) f(count);
-  for (auto& count : s.tried) f(count);
+  for (std::size_t i = 0; i < solvers; ++i) f(s.accepted[i]);
+  for (std::size_t i = 0; i < solvers; ++i) f(s.tried[i]);
   f(s.fall_backs);
   f(s.tolerated);
   f(s.several_solutions);
@@ -55,8 +60,10 @@ void for_contact_statistics(S& s, F&& f) {
   f(s.degenerate);
   f(s.no_solution);
   f(s.not_solved);
-  f(s.accepted_at_cap);
-  for (auto& count : s.certified) f(count);
+  if (large) {
+    f(s.accepted_at_cap);
+    for (auto& count : s.certified) f(count);
+  }
   f(s.worst_residual);
 }
 
@@ -74,6 +81,26 @@ void get(CheckpointReader& in, FeatureKey& key) {
   if (owner > static_cast<std::uint64_t>(FeatureKey::Owner::joint))
     in.damaged("a contact has an unknown owner");
   key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
+}
+
+void add(CheckpointWriter& out, const JointHistory& history) {
+  out.add(history.step);
+  out.add(std::uint64_t{history.known.size()});
+  for (const int known : history.known) out.add(known);
+  if (history.known.empty()) return;
+  for (const StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
+    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) out.add(course->numbers(ago));
+  }
+}
+
+void add(CheckpointWriter& out, const ContactHistory& history) {
+  out.add(history.step);
+  out.add(std::uint64_t{history.impulses.size()});
+  for (std::size_t i = 0; i < history.impulses.size(); ++i) {
+    add(out, history.contacts.keys()[i].a);
+    add(out, history.contacts.keys()[i].b);
+    for (const double impulse : history.impulses[i]) out.add(impulse);
+  }
 }
 
 std::uint64_t checksum(std::string_view bytes) {
@@ -94,7 +121,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(state.z);
   for (const double number : companion.ledger.save()) out.add(number);
   for_statistics(companion.statistics, [&out](const auto& number) { out.add(number); });
-  for_contact_statistics(companion.contact_statistics, [&out](const auto& number) { out.add(number); });
+  for_contact_statistics(companion.contact_statistics, true, [&out](const auto& number) { out.add(number); });
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
@@ -134,6 +161,8 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
     out.add(rhythm.interval);
     out.add(rhythm.fired);
   }
+  add(out, companion.joints);
+  add(out, companion.contacts);
   const std::string_view body(out.bytes().data(), out.bytes().size());
   CheckpointWriter end;
   end.add(checksum(body));
@@ -212,6 +241,38 @@ void read_rhythms(CheckpointReader& in, std::vector<Rhythm>& rhythms) {
   }
 }
 
+void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHistory& history) {
+  in.get(history.step);
+  history.known.resize(in.count());
+  for (int& known : history.known) {
+    in.get(known);
+    if (known < 0 || known > JointHistory::most) in.damaged("its history of joints is of unknown length");
+  }
+  if (history.known.empty()) return;
+  for (StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
+    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) {
+      in.get(course->numbers(ago));
+      const std::size_t size = course == &history.impulses ? course->numbers(0).size() : velocities;
+      if (course->numbers(ago).size() != size) in.damaged("its sizes do not fit the model");
+    }
+  }
+}
+
+void read_contacts(CheckpointReader& in, ContactHistory& history) {
+  double step = 0.0;
+  in.get(step);
+  history.start(step);
+  for (std::size_t left = in.count(); left > 0; --left) {
+    ConstraintKey key;
+    std::array<double, 2> impulse{};
+    get(in, key.a);
+    get(in, key.b);
+    for (double& number : impulse) in.get(number);
+    history.add(key, impulse);
+  }
+  history.contacts.finish();
+}
+
 /// Demands the periodic events of the simulation.
 void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
                     const std::vector<Rhythm>& present) {
@@ -229,9 +290,10 @@ void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
 
 /// Content of a checkpoint without its mark and its checksum, both of which are demanded.
 std::string_view checked_body(const std::string& path, std::string_view text) {
-  if (!text.starts_with(mark))
+  if (!text.starts_with(mark) && !text.starts_with(mark_before))
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   text.remove_prefix(mark.size());
+  static_assert(mark.size() == mark_before.size());
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
   const std::string_view body = text.substr(0, text.size() - checksum_size);
@@ -263,7 +325,8 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   for (double& number : ledger) in.get(number);
   other.ledger.load(ledger);
   for_statistics(other.statistics, [&in](auto& number) { in.get(number); });
-  for_contact_statistics(other.contact_statistics, [&in](auto& number) { in.get(number); });
+  const bool present = content.starts_with(mark);
+  for_contact_statistics(other.contact_statistics, present, [&in](auto& number) { in.get(number); });
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   read_history(in, state.v.size(), other.history);
@@ -274,6 +337,10 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.grid_steps);
   read_modes(in, other);
   read_rhythms(in, other.rhythms);
+  if (present) {
+    read_joint_history(in, state.v.size(), other.joints);
+    read_contacts(in, other.contacts);
+  }
   in.finish();
   demand_rhythms(path, other.rhythms, companion.rhythms);
   state = std::move(read);

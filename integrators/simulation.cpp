@@ -44,6 +44,7 @@ struct Simulation::Impl {
     companion.modes.clear();
     companion.rounding.assign(state.v.size(), 0.0);
     companion.history.known = 0;
+    companion.joints.clear();
     companion.iterations.clear();
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();

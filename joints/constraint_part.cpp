@@ -11,6 +11,16 @@ namespace {
 
 double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
+/// Writes the numbers of G for a body that is pushed along `along`; returns their end.
+template <class Place>
+double* write_block(const Place& place, const Vec<2>& along, const Vec<2>& lever, double turn, double* out) {
+  if (place.v == none) return out;
+  *out++ = along[0];
+  *out++ = along[1];
+  if (place.rotation != none) *out++ = cross(lever, along) + turn;
+  return out;
+}
+
 }  // namespace
 
 /// The ends of a joint at one configuration.
@@ -144,12 +154,14 @@ inline Vec<2> ConstraintPartTable::Place::velocity(const JointView& at, const Ve
   return rotation == none ? velocity : Vec<2>(velocity + spin(at) * turned(lever));
 }
 
+/// Without the motion, which drifts alone need, the last three are void.
+template <bool WithMotion>
 inline ConstraintPartTable::Geometry ConstraintPartTable::geometry(const JointView& at, Index joint) const {
   const auto& [from, to] = places_[joint];
   const Vec<2>& from_point = from_point_[joint];
   const Vec<2>& to_point = to_point_[joint];
   const Vec<2> from_lever = from.lever(at, from_point), to_lever = to.lever(at, to_point);
-  const double from_spin = from.spin(at), to_spin = to.spin(at);
+  const double from_spin = WithMotion ? from.spin(at) : 0.0, to_spin = WithMotion ? to.spin(at) : 0.0;
   return {places_[joint],
           carrier_place_[joint],
           from_lever,
@@ -178,6 +190,7 @@ inline Vec<2> ConstraintPartTable::direction(const JointView& at, const Geometry
 }
 
 /// Writes a row, its numbers of G only if there is a place for them; returns the end of these.
+template <bool WithDrift>
 inline double* ConstraintPartTable::write(const JointView& at, const Geometry& geometry,
                                           const Condition& condition, Index joint, double& gap, double& drift,
                                           double* jacobian) const {
@@ -188,17 +201,20 @@ inline double* ConstraintPartTable::write(const JointView& at, const Geometry& g
   const ConstraintPart::Form form = condition.form[joint];
   // Part of turning `from` where the axis turns with it.
   double swing = 0.0;
-  drift = a.dot(geometry.drift);
+  drift = WithDrift ? a.dot(geometry.drift) : 0.0;
   gap = a.dot(between);
   if (form == ConstraintPart::Form::axis_of_from && from.rotation != none) {
     const Vec<2> across = turned(a);
     const double spin = geometry.from_spin;
     swing = across.dot(between);
-    drift += 2.0 * spin * across.dot(geometry.apart) - spin * spin * gap;
+    if constexpr (WithDrift) drift += 2.0 * spin * across.dot(geometry.apart) - spin * spin * gap;
   } else if (form == ConstraintPart::Form::distance) {
-    const double length = between.norm(), sideways = cross(a, geometry.apart);
-    drift += sideways * sideways / length;
+    const double length = between.norm();
     gap = length;
+    if constexpr (WithDrift) {
+      const double sideways = cross(a, geometry.apart);
+      drift += sideways * sideways / length;
+    }
   }
   const Turns& turns = condition.turns[joint];
   if (turns.from != 0.0) gap += turns.from * from.angle(at);
@@ -206,16 +222,9 @@ inline double* ConstraintPartTable::write(const JointView& at, const Geometry& g
   if (turns.carrier != 0.0) gap += turns.carrier * carrier.angle(at);
   gap -= condition.offset[joint];
   if (jacobian == nullptr) return nullptr;
-  const auto block = [&](const Place& place, double sign, const Vec<2>& lever, double turn) {
-    if (place.v == none) return;
-    *jacobian++ = sign * a[0];
-    *jacobian++ = sign * a[1];
-    if (place.rotation != none) *jacobian++ = sign * cross(lever, a) + turn;
-  };
-  block(from, -1.0, geometry.from_lever, turns.from + swing);
-  block(to, 1.0, geometry.to_lever, turns.to);
-  block(carrier, 0.0, Vec<2>::Zero(), turns.carrier);
-  return jacobian;
+  jacobian = write_block(from, -a, geometry.from_lever, turns.from + swing, jacobian);
+  jacobian = write_block(to, a, geometry.to_lever, turns.to, jacobian);
+  return write_block(carrier, Vec<2>::Zero(), Vec<2>::Zero(), turns.carrier, jacobian);
 }
 
 void ConstraintPartTable::derivatives(const JointView& at, Index joint, Index which,
@@ -265,7 +274,7 @@ void ConstraintPartTable::evaluate(const JointView& at, Index joint, Index which
   pattern(joint, row);
   std::array<double, std::size_t{JointRow::max_bodies * JointRow::max_columns}> numbers{};
   row.rate = 0.0;
-  write(at, geometry(at, joint), conditions_[which], joint, row.gap, row.drift, numbers.data());
+  write<true>(at, geometry(at, joint), conditions_[which], joint, row.gap, row.drift, numbers.data());
   const double* number = numbers.data();
   for (JointRow::Block& block : std::span(row.blocks).first(static_cast<std::size_t>(row.bodies))) {
     std::copy_n(number, block.columns, block.jacobian.begin());
@@ -274,13 +283,36 @@ void ConstraintPartTable::evaluate(const JointView& at, Index joint, Index which
 }
 
 void ConstraintPartTable::evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const {
-  double unwanted = 0.0;
   if (out.rate != nullptr) std::fill_n(out.rate, joints.size() * rows, 0.0);
+  out.drift != nullptr ? evaluate_rows<true>(at, joints, rows, out)
+                       : evaluate_rows<false>(at, joints, rows, out);
+}
+
+template <bool WithDrift>
+void ConstraintPartTable::evaluate_rows(const JointView& at, Range joints, Index rows,
+                                        JointNumbers out) const {
+  // Pins, along axes that do not turn, without angles: most of a chain.
+  const auto is_pin = [](const Condition& of) {
+    const auto& [from, to, carrier] = of.turns[0];
+    const bool turn = !of.turns.uniform() || from != 0.0 || to != 0.0 || carrier != 0.0;
+    return !turn && of.form.uniform() && of.form[0] == ConstraintPart::Form::fixed_axis;
+  };
+  const bool pins = carrier_place_.uniform() && carrier_place_[0].v == none &&
+                    std::all_of(conditions_.begin(), conditions_.begin() + rows, is_pin);
+  double unwanted = 0.0;
   for (Index joint = joints.begin; joint < joints.end; ++joint) {
-    const Geometry ends = geometry(at, joint);
-    for (Index row = 0; row < rows; ++row) {
-      double& drift = out.drift == nullptr ? unwanted : *out.drift++;
-      out.jacobian = write(at, ends, conditions_[row], joint, *out.gap++, drift, out.jacobian);
+    const Geometry ends = geometry<WithDrift>(at, joint);
+    for (Index row = 0; row < rows; ++row, ++out.gap) {
+      double& drift = WithDrift ? *out.drift++ : unwanted;
+      if (!pins)
+        out.jacobian = write<WithDrift>(at, ends, conditions_[row], joint, *out.gap, drift, out.jacobian);
+      if (!pins) continue;
+      const Vec<2>& a = conditions_[row].axis[joint];
+      *out.gap = a.dot(ends.between) - conditions_[row].offset[joint];
+      if constexpr (WithDrift) drift = a.dot(ends.drift);
+      if (out.jacobian == nullptr) continue;
+      out.jacobian = write_block(ends.places.from, -a, ends.from_lever, 0.0, out.jacobian);
+      out.jacobian = write_block(ends.places.to, a, ends.to_lever, 0.0, out.jacobian);
     }
   }
 }

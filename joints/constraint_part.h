@@ -110,9 +110,13 @@ private:
   [[nodiscard]] BodyId id(Index serial) const {
     return serial == ground.serial ? ground : BodyId{serial, token_};
   }
+  template <bool WithMotion = true>
   [[nodiscard]] Geometry geometry(const JointView& at, Index joint) const;
+  template <bool WithDrift>
+  void evaluate_rows(const JointView& at, Range joints, Index rows, JointNumbers out) const;
   [[nodiscard]] Vec<2> direction(const JointView& at, const Geometry& geometry, const Condition& condition,
                                  Index joint) const;
+  template <bool WithDrift>
   double* write(const JointView& at, const Geometry& geometry, const Condition& condition, Index joint,
                 double& gap, double& drift, double* jacobian) const;
 

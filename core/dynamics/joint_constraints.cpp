@@ -1,6 +1,7 @@
 #include <carom/core/dynamics/joint_constraints.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace carom {
@@ -26,9 +27,7 @@ void JointConstraints::fix(Range velocities) {
 }
 
 void JointConstraints::update(const JointView& at) {
-  if (empty()) return;
-  pattern_->evaluate(at,
-                     {jacobian_.data(), gap_.data(), rate_.empty() ? nullptr : rate_.data(), drift_.data()});
+  if (!empty()) pattern_->evaluate(at, {jacobian_.data(), gap_.data(), rates(), nullptr});
 }
 
 void JointConstraints::update_gaps(const JointView& at) {
@@ -36,7 +35,8 @@ void JointConstraints::update_gaps(const JointView& at) {
 }
 
 void JointConstraints::update_and_factor(const JointView& at) {
-  update(at);
+  if (empty()) return;
+  pattern_->evaluate(at, {jacobian_.data(), gap_.data(), rates(), drift_.data()});
   factor();
 }
 
@@ -75,11 +75,31 @@ void JointConstraints::residuals(JointLevel level, const double* x, double* out)
     std::fill_n(out, size(), 0.0);
   }
   pattern_->for_blocks(jacobian_.data(),
-                       [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                       [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
                          for (Index i = 0; i < rows; ++i) {
                            double sum = 0.0;
                            for (Index c = 0; c < columns; ++c) sum += number[i * stride + c] * x[v + c];
                            out[row + i] += sum;
+                         }
+                       });
+}
+
+void JointConstraints::residuals_and_sizes(const double* x, double* out, double* sizes) const {
+  for (std::size_t row = 0; row < size(); ++row) {
+    out[row] = rate(row);
+    sizes[row] = std::abs(out[row]);
+  }
+  pattern_->for_blocks(jacobian_.data(),
+                       [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
+                         for (Index i = 0; i < rows; ++i) {
+                           double sum = 0.0, size = 0.0;
+                           for (Index c = 0; c < columns; ++c) {
+                             const double term = number[i * stride + c] * x[v + c];
+                             sum += term;
+                             size += std::abs(term);
+                           }
+                           out[row + i] += sum;
+                           sizes[row + i] += size;
                          }
                        });
 }
@@ -90,7 +110,7 @@ namespace {
 template <class F>
 void for_transposed(const JointPattern& pattern, const double* jacobian, const double* multipliers, F&& add) {
   pattern.for_blocks(jacobian,
-                     [&](Index row, auto rows, auto columns, Index v, const double* number, Index stride) {
+                     [&](Index row, auto rows, auto columns, Index v, const double* number, auto stride) {
                        for (Index c = 0; c < columns; ++c) {
                          double sum = 0.0;
                          for (Index i = 0; i < rows; ++i)

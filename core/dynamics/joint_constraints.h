@@ -63,7 +63,8 @@ public:
   void fix(Range velocities);
   /// Brings the rows to a configuration and factorises.
   void update_and_factor(const JointView& at);
-  /// Brings the rows alone to a configuration: until factor(), the factors are those of another one.
+  /// Brings the rows to a configuration, but for drifts: those of JointLevel::acceleration are void. Until
+  /// factor(), the factors are those of another one.
   void update(const JointView& at);
   /// Factorises with the rows as they are.
   void factor();
@@ -78,6 +79,8 @@ public:
   [[nodiscard]] double rate(std::size_t row) const { return rate_.empty() ? 0.0 : rate_[row]; }
   /// Writes G x + c of all rows.
   void residuals(JointLevel level, const double* x, double* out) const;
+  /// Writes G x + rate of all rows, and beside it the sum of the magnitudes that it is made of.
+  void residuals_and_sizes(const double* x, double* out, double* sizes) const;
   /// x += G^T l.
   void add_transposed(const double* multipliers, double* x) const;
 
@@ -104,6 +107,8 @@ public:
   [[nodiscard]] SparseFactors& factors() { return factors_; }
 
 private:
+  [[nodiscard]] double* rates() { return rate_.empty() ? nullptr : rate_.data(); }
+
   Range v_;
   std::shared_ptr<const JointPattern> pattern_ = JointPattern::empty();
   std::vector<double> jacobian_;            // row by row

@@ -47,6 +47,7 @@ void JointPattern::add(const JointKind& kind, Index joint) {
       if (rows[row].bodies != rows[0].bodies || other.v != block.v || other.columns != block.columns)
         refuse("rows of a joint have different blocks; allowed: the same");
     }
+    pinned_ = pinned_ && kind.rows() == 2 && rows[0].bodies <= 2 && block.columns == 3;
     blocks_.push_back({block.v, static_cast<Index>(block.columns)});
     columns += blocks_.back().columns;
   }

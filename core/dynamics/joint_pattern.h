@@ -50,6 +50,8 @@ public:
   void for_blocks(const double* jacobian, F&& f) const;
 
 private:
+  template <class F>
+  void for_pins(const double* jacobian, F&& f) const;
   // Velocities of a body.
   struct Block {
     Index v, columns;
@@ -95,6 +97,7 @@ private:
   std::vector<Block> blocks_;
   std::vector<Product> products_;
   bool depends_on_time_ = false;
+  bool pinned_ = true;  // all joints have two rows, on the three velocities of one body or of two
 };
 
 /// Calls f with numbers of rows and columns, the usual ones as constants for loops.
@@ -109,10 +112,32 @@ void with_sizes(Index rows, Index columns, F&& f) {
   }
 }
 
+/// Likewise where everything is usual.
+template <class F>
+void JointPattern::for_pins(const double* jacobian, F&& f) const {
+  constexpr std::integral_constant<Index, 2> rows;
+  constexpr std::integral_constant<Index, 3> columns;
+  constexpr std::integral_constant<Index, 6> both;
+  const double* number = jacobian;
+  for (std::size_t joint = 0; joint < size(); ++joint) {
+    const Index row = joints_[joint].row;
+    const Block* const block = blocks_.data() + joints_[joint].block;
+    if (joints_[joint + 1].block - joints_[joint].block == 1) {
+      f(row, rows, columns, block->v, number, columns);
+      number += rows * columns;
+    } else {
+      f(row, rows, columns, block[0].v, number, both);
+      f(row, rows, columns, block[1].v, number + columns, both);
+      number += rows * both;
+    }
+  }
+}
+
 template <class F>
 void JointPattern::for_blocks(const double* jacobian, F&& f) const {
   const Joint* joint = joints_.data();
   const double* number = jacobian;
+  if (pinned_) return for_pins(jacobian, f);
   for (const Joint* const end = joint + size(); joint != end; ++joint) {
     const Index rows = joint[1].row - joint->row;
     const Block* const first = blocks_.data() + joint->block;

@@ -9,6 +9,7 @@
 #include <carom/core/energy_ledger.h>
 #include <carom/integrators/run/contact_history.h>
 #include <carom/integrators/run/iteration_memory.h>
+#include <carom/integrators/run/joint_history.h>
 #include <carom/integrators/run/load_history.h>
 #include <carom/integrators/run/step_report.h>
 
@@ -47,6 +48,7 @@ struct Companion {
   std::vector<float>
       rounding;         ///< what rounding cut off the velocities: carried on, so that it does not add up
   LoadHistory history;  ///< for the guess at the loads of the next step
+  JointHistory joints;  ///< for that at reactions of joints
   IterationMemory iterations;   ///< with which the next step begins
   double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;  ///< n

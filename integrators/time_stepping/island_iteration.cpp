@@ -28,7 +28,7 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
       parts_->errors(in, front).fail_contact(*failed);
     }
     const SweepChange change = made.change;
-    const bool ahead = joints == nullptr && !method_.is_newton();
+    const bool ahead = joints == nullptr ? !method_.is_newton() : joints->looks_ahead();
     Verdict verdict =
         ahead ? judge.judge_ahead(change.change, change.size) : judge.judge(change.change, change.size);
     // Newton's first is that from t_j: small or not, it says nothing of the guess.
@@ -100,7 +100,6 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
               parts_->trial.end.z.begin() + z.begin);
   }
   JointContacts contacts = contacts_of(island);
-  if (joints != nullptr) joints->start(in, contacts, parts_->trial);
   method_.start(front);
   if (parts_->located.on() && joints == nullptr && !method_.is_newton()) {
     for (const Index component : island.components) {
@@ -112,6 +111,10 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
     presolve(island, in);
   } else {
     for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
+  }
+  if (joints != nullptr) {
+    const bool guesses = method_.current() == Iteration::fixed_point;
+    joints->start(in, parts_->rule, guesses, contacts, parts_->trial);
   }
   if (!method_.is_newton()) return;
   demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);

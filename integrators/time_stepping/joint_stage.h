@@ -8,7 +8,8 @@
 ///   q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
-/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0.
+/// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0. Where nothing touches or rubs the steps before
+/// say what to begin with (untouched_joints.h).
 ///
 /// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
 /// their rows G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees velocities
@@ -31,29 +32,17 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/integrators/time_stepping/joint_iterate.h>
 #include <carom/integrators/time_stepping/step_input.h>
-#include <carom/integrators/time_stepping/step_joint_rows.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
+#include <carom/integrators/time_stepping/untouched_joints.h>
 
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace carom {
-
-/// Arrays over all velocities or coordinates of a model with joints; a component uses its part.
-struct JointArrays {
-  explicit JointArrays(const Assembly& assembly);
-
-  std::vector<double> dv_joints;           ///< changes of velocity by reactions
-  std::vector<double> dv_contact;          ///< by contact
-  std::vector<double> displacement;        ///< back onto the joints
-  std::vector<double> scratch;             ///< between two lines
-  std::vector<double> before_q, before_v;  ///< the iterate before
-  std::vector<double> allowed;             ///< v_{j+1} as contact of bodies with joints sees it
-  std::vector<double> lengths;             ///< Assembly::length_scales()
-};
 
 /// Friction of the island that is bound by forces of joints, and how its problem is solved.
 struct JointContacts {
@@ -67,23 +56,32 @@ struct JointContacts {
 /// Joints of one component. Keeps memory.
 class CAROM_API JointStage {
 public:
-  /// \param arrays shared by all components; must outlive it
-  JointStage(const Assembly& assembly, Index component, JointArrays& arrays);
+  /// \param first_row of its rows among those of all components \param arrays shared by all components; must
+  /// outlive it
+  JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
+  JointStage(const JointStage&) = delete;
+  JointStage& operator=(const JointStage&) = delete;
 
-  /// The first guess: no reactions, and the positions that the present velocities lead to. Bounds of friction
-  /// in joints become those of impulses.
-  void start(const StepInput& in, JointContacts& contacts, StepTrial& trial);
+  /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
+  /// the positions that the present velocities lead to. Bounds of friction in joints become those of
+  /// impulses.
+  void start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
+             StepTrial& trial);
   /// One sweep. False if the contact problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,
                            StepTrial& trial);
   /// Brings the rows to the iterate.
-  void place(const StepInput& in, StepTrial& trial) { rows_.place(in, trial); }
-  /// Change that the sweep has made.
-  [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial) const;
+  void place(const StepInput& in, StepTrial& trial) { joints_.rows.place(in, trial); }
+  /// Change that the sweep has made, or that another would make.
+  [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
+  /// True if it is to be judged as the latter.
+  [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
   void settle_velocities(const StepInput& in, StepTrial& trial);
+  /// Brings the midpoint to the answer, rotations included.
+  void finish(const StepInput& in, StepTrial& trial) const;
   /// Velocities that the joints allow where bodies have been moved to. Returns the kinetic energy lost [J].
   double project_velocities(StepTrial& trial);
   /// Makes velocities obey the joints with the rows at the start and the rates at the end.
@@ -94,33 +92,33 @@ public:
   /// Impulses of the joints, with those by which they answer to contact.
   [[nodiscard]] const double* multipliers(const IslandProblem* problem);
   /// Impulses of the joints alone, of the last sweep.
-  [[nodiscard]] const std::vector<double>& reactions() const { return impulse_; }
+  [[nodiscard]] const std::vector<double>& reactions() const { return joints_.impulse; }
   /// The last displacement back onto the joints, over all velocities.
-  [[nodiscard]] const std::vector<double>& displacement() const { return arrays_->displacement; }
+  [[nodiscard]] const std::vector<double>& displacement() const { return joints_.arrays->displacement; }
+  /// Work of the impulses of the joints alone along the mean velocities [J].
+  [[nodiscard]] double work_of_reactions(const StepTrial& trial) { return joints_.work(trial); }
+  /// Takes the step down for the guess at the next one.
+  void record(JointHistory& history) const { untouched_.record(struck_, history); }
   /// True if anything but friction in joints takes part.
   [[nodiscard]] bool is_struck() const { return struck_; }
-  [[nodiscard]] StepJointRows& rows() { return rows_; }
-  [[nodiscard]] const StepJointRows& rows() const { return rows_; }
+  [[nodiscard]] StepJointRows& rows() { return joints_.rows; }
+  [[nodiscard]] const StepJointRows& rows() const { return joints_.rows; }
   /// The joint whose constraints the last iterate violates most. \param violation out: by how much
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
-  void correct_impulses(const StepTrial& trial);
+  void begin_at_start(const StepInput& in, StepTrial& trial);
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
   void return_to_joints(const StepInput& in, StepTrial& trial);
-  void move(const std::vector<double>& displacement, State& state) const;
-  void clear(std::vector<double>& numbers) const;
+  void return_near_singular(const StepInput& in, StepTrial& trial);
 
-  const Assembly* assembly_;
-  Index component_;
-  JointArrays* arrays_;
-  StepJointRows rows_;
+  JointIterate joints_;
+  UntouchedJoints untouched_;  // iterates joints_
   bool struck_ = false;
-  std::vector<double> impulse_;  // L
-  std::vector<double> total_;    // L, and what contact adds
-  std::vector<double> left_;     // of the constraints
-  FrictionBounds bounds_;        // of friction in them
+  bool guessed_ = false;       // untouched_ iterates the step
+  std::vector<double> total_;  // L, and what contact adds
+  FrictionBounds bounds_;      // of friction in the joints
   FrictionBoundSolver bound_solver_;
 };
 
@@ -133,9 +131,12 @@ public:
   [[nodiscard]] JointStage* of(Index component) const {
     return stages_.empty() ? nullptr : stages_[component].get();
   }
+  /// Takes a step down for the guess at the next one. \param step its length [s]
+  void record(double step, JointHistory& history) const;
 
 private:
   std::unique_ptr<JointArrays> arrays_;              // null without joints
+  Index rows_ = 0;                                   // of all joints
   std::vector<std::unique_ptr<JointStage>> stages_;  // by component, or empty
 };
 

@@ -54,16 +54,26 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   const Range q = assembly.components()[component].q, v = assembly.components()[component].v;
   const JointConstraints &start = joints.rows().at_start(), &end = joints.rows().at_end();
   const double* const total = joints.multipliers(contact);
-  trial.place_midpoint(in, component);
+  joints.finish(in, trial);
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
   // along the rows at the start have none.
-  rates_.resize(end.size());
-  joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
-  for (std::size_t row = 0; row < rates_.size(); ++row) {
+  coupling_work_.add(joints.work_of_reactions(trial));
+  if (contact != nullptr) rates_.resize(end.size());
+  if (joints.is_struck()) {
+    // Half of what rounding of the step before has left of the constraints, which the answers meet.
+    start.residuals(JointLevel::velocity, in.start.v.data(), rates_.data());
+  } else if (contact != nullptr) {
+    joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
+  }
+  for (std::size_t row = 0; row < end.size() && (contact != nullptr || start.depends_on_time()); ++row) {
+    const double reaction = joints.reactions()[row];
     double rate = 0.0;
     if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
-    coupling_work_.add((joints.is_struck() ? joints.reactions()[row] : total[row]) * (rates_[row] + rate));
+    coupling_work_.add(reaction * rate);
+    if (contact == nullptr) continue;
+    coupling_work_.add((total[row] - reaction) *
+                       (joints.is_struck() ? 0.5 * rates_[row] : rates_[row] + rate));
   }
   // Work of the conservative loads along the displacement, where that is not below the last digit of the
   // coordinates: at rest it would add up, although nothing moves.
@@ -78,7 +88,6 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   }
   energy_position_projection_ += taken;
 
-  evaluate_positions(assembly, component, trial.midpoint.view(), trial.at_midpoint);
   const JointView halfway{trial.midpoint.view(), trial.at_midpoint.rotation.data()};
   Index row = 0;
   for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
@@ -290,6 +299,7 @@ void hand_over(StepReport& made, StepReport& report) {
 void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
+  memory.joints->record(step, companion.joints);
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
   std::swap(state.z, trial.end.z);

@@ -88,10 +88,11 @@ private:
 
 /// Memory of how the components of a step were iterated, for the next step.
 struct StepMemory {
-  std::span<const int> sweeps;  ///< by component, as many as were needed
-  IterationMemory iterations;   ///< with which the next step begins
-  bool guesses = false;         ///< whether any component has loads that change
-  bool mean = false;            ///< loads are mean loads of the step
+  std::span<const int> sweeps;          ///< by component, as many as were needed
+  IterationMemory iterations;           ///< with which the next step begins
+  const JointStages* joints = nullptr;  ///< of the model
+  bool guesses = false;                 ///< whether any component has loads that change
+  bool mean = false;                    ///< loads are mean loads of the step
 };
 
 /// Makes the end of a step the state, and takes its result over.

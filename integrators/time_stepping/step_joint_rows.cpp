@@ -61,21 +61,35 @@ void StepJointRows::place(const StepInput& in, StepTrial& trial) {
          in);
 }
 
+bool StepJointRows::begin_regular(const StepInput& in, StepTrial& trial) {
+  start();
+  place(in, trial);
+  end_.factor();
+  judge_pivots();
+  return regular_;
+}
+
+/// How near the rows at the end are to following from each other, by their factors.
+void StepJointRows::judge_pivots() {
+  double nearest = 1.0, nearest_kept = 1.0;
+  for (std::size_t row = 0; row < end_.size(); ++row) {
+    const double pivot = end_.factors().pivot(row);
+    nearest = std::min(nearest, pivot);
+    if (pivot >= dependent_pivot) nearest_kept = std::min(nearest_kept, pivot);
+  }
+  roundoff_growth_ = 1.0 / std::sqrt(nearest_kept);
+  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
+  regular_ = nearest > near_angle * near_angle;
+}
+
 /// Where rows depend on each other, those halfway may point across those at the end: with an angle a from
 /// there at the end, b halfway, sweeps contract by |1 - b/a|. Reactions along the rows at the end contract,
 /// and cost an error of second order once; where those halfway have some hold, the matrix of both does
 /// without. The angle at the start is 2 b - a.
 void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<double>& work) {
   end_.factor();
-  roundoff_growth_ = 1.0;
-  double nearest = 1.0;
-  for (std::size_t row = 0; row < end_.size(); ++row) {
-    const double pivot = end_.factors().pivot(row);
-    nearest = std::min(nearest, pivot);
-    if (pivot >= dependent_pivot) roundoff_growth_ = std::max(roundoff_growth_, 1.0 / std::sqrt(pivot));
-  }
-  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
-  if (nearest > near_angle * near_angle) return;
+  judge_pivots();
+  if (regular_) return;
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);

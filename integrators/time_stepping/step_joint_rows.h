@@ -30,6 +30,9 @@ public:
 
   /// Begins a step: reactions along the rows halfway.
   void start() { reactions_ = Reactions::halfway; }
+  /// Begins a step at its first iterate where no row is near to following from others: place(), and the
+  /// factors of the rows at the end. False where one is.
+  [[nodiscard]] bool begin_regular(const StepInput& in, StepTrial& trial);
   /// Brings the rows at the start to it; evaluates rotations there. Throws SolverError where a prescribed
   /// motion is not finite, as the others.
   void place_start(const StepInput& in, StepTrial& trial);
@@ -62,12 +65,15 @@ public:
   [[nodiscard]] bool is_mixed() const { return reactions_ == Reactions::mixed; }
   /// True if reactions have left the rows halfway alone.
   [[nodiscard]] bool is_singular() const { return reactions_ != Reactions::halfway; }
+  /// True if no row at the end of the first iterate was near to following from others.
+  [[nodiscard]] bool is_regular() const { return regular_; }
   /// True near a singular position.
   [[nodiscard]] bool is_near_singular() const { return near_singular_; }
   /// Growth of rounding there.
   [[nodiscard]] double roundoff_growth() const { return roundoff_growth_; }
 
 private:
+  void judge_pivots();
   void look_ahead(std::size_t row, double halfway, double start);
 
   Index component_;
@@ -75,7 +81,7 @@ private:
   MixedConstraints mixed_;
   Reactions reactions_ = Reactions::halfway;
   double roundoff_growth_ = 1.0;
-  bool near_singular_ = false;
+  bool near_singular_ = false, regular_ = false;
 };
 
 }  // namespace carom

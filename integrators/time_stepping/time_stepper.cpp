@@ -33,6 +33,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       balance_(assembly, options),
       couplings_(assembly) {
   demand_options_for_bodies(parts_.constraints.detector(), options);
+  memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
 }

@@ -1,0 +1,96 @@
+// Problem: velocities and positions that obey the joints to rounding, one step of Newton's method at a time.
+
+#include <carom/integrators/time_stepping/joint_iterate.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+JointArrays::JointArrays(const Assembly& assembly) : lengths(assembly.length_scales()) {
+  for (std::vector<double>* const numbers :
+       {&dv_joints, &dv_contact, &displacement, &scratch, &before_v, &allowed}) {
+    numbers->resize(assembly.layout()->v_size());
+  }
+  before_q.resize(assembly.layout()->q_size());
+}
+
+JointIterate::JointIterate(const Assembly& model, Index which, JointArrays& shared)
+    : assembly(&model),
+      component(which),
+      arrays(&shared),
+      rows(model, which),
+      impulse(rows.at_end().size()),
+      left(impulse),
+      sizes(impulse) {}
+
+void JointIterate::clear(std::vector<double>& numbers) const {
+  std::fill(numbers.begin() + v().begin, numbers.begin() + v().end, 0.0);
+}
+
+void JointIterate::find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const {
+  const Range v = this->v();
+  const double half = 0.5 * in.step;
+  const double* const load0 = rule.start_of_sum(in, trial);
+  for (Index i = v.begin; i < v.end; ++i) trial.free[i] = half * (load0[i] + trial.loads_guess[i]);
+  rows.at_end().apply_inverse_mass(trial.free.data());
+  for (Index i = v.begin; i < v.end; ++i) {
+    trial.free[i] += static_cast<double>(in.companion.rounding[i]) + in.start.v[i];
+  }
+}
+
+/// With G1 on both sides, instead of Gm on one, the matrix is symmetric and its range is that of G1, where
+/// rows depend on each other too.
+void JointIterate::correct_impulses(const StepTrial& trial) {
+  const Range v = this->v();
+  std::vector<double>& sum = arrays->scratch;
+  for (Index i = v.begin; i < v.end; ++i) {
+    sum[i] = trial.free[i] + arrays->dv_joints[i] + arrays->dv_contact[i];
+  }
+  rows.at_end().residuals(JointLevel::velocity, sum.data(), left.data());
+  rows.solve(left);
+  clear(arrays->dv_joints);
+  for (std::size_t row = 0; row < left.size(); ++row) impulse[row] += left[row];
+  rows.at_midpoint().add_transposed(impulse.data(), arrays->dv_joints.data());
+  rows.at_end().apply_inverse_mass(arrays->dv_joints.data());
+}
+
+void JointIterate::move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const {
+  const Component& all = assembly->components()[component];
+  for (Index i = all.v.begin; i < all.v.end; ++i) {
+    trial.dv_impulses[i] = arrays->dv_joints[i] + arrays->dv_contact[i];
+  }
+  rule.move(in, all.bodies, true, trial);
+}
+
+void JointIterate::displace(const std::vector<double>& by, State& state) const {
+  assembly->for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    kind.advance(slots, state.q.data() + q, by.data() + v, state.q.data() + q);
+  });
+}
+
+double JointIterate::violation(const State& end) {
+  const JointConstraints& at_end = rows.at_end();
+  const Range q = assembly->components()[component].q;
+  double extent = 0.0, gap = 0.0, largest = 0.0;
+  for (Index i = q.begin; i < q.end; ++i) extent = std::max(extent, std::abs(end.q[i]));
+  at_end.residuals_and_sizes(end.v.data(), left.data(), sizes.data());
+  for (std::size_t row = 0; row < left.size(); ++row) {
+    gap = std::max(gap, std::abs(at_end.gap(row)));
+    if (sizes[row] > 0.0) largest = std::max(largest, std::abs(left[row]) / sizes[row]);
+  }
+  if (extent > 0.0) largest = std::max(largest, gap / extent);
+  return largest / rounding;
+}
+
+double JointIterate::work(const StepTrial& trial) {
+  const Range v = this->v();
+  std::vector<double>& masses = arrays->scratch;
+  std::fill(masses.begin() + v.begin, masses.begin() + v.end, 1.0);
+  rows.at_end().apply_inverse_mass(masses.data());
+  double sum = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) sum += trial.midpoint.v[i] * (arrays->dv_joints[i] / masses[i]);
+  return sum;
+}
+
+}  // namespace carom

@@ -1,0 +1,128 @@
+// Problem: a step of a mechanism in the air at the cost of one sweep.
+
+#include <carom/integrators/time_stepping/untouched_joints.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+UntouchedJoints::UntouchedJoints(JointIterate& iterate, Index first_row)
+    : iterate_(&iterate), rows_{first_row, first_row + static_cast<Index>(iterate.impulse.size())} {}
+
+bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  JointIterate& joints = *iterate_;
+  const JointHistory& history = in.companion.joints;
+  const auto known = static_cast<std::size_t>(history.usable(joints.component, rows_.end, in.step));
+  if (known == 0) return false;
+  // Displacements have the rounding of positions, which more steps would magnify.
+  constexpr std::size_t few = 5;
+  history.impulses.guess(rows_, known, joints.impulse.data() - rows_.begin);
+  history.velocities.guess(joints.v(), known, joints.arrays->dv_joints.data());
+  history.displacements.guess(joints.v(), std::min(known, few), joints.arrays->displacement.data());
+  joints.find_free_velocities(in, rule, trial);
+  joints.move_bodies(in, rule, trial);
+  joints.displace(joints.arrays->displacement, trial.end);
+  sweeps_ = 0;
+  return joints.rows.begin_regular(in, trial);
+}
+
+void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  // Factors of the first iterate serve all, as they change by what rows turn between two iterates, unless
+  // that does not help.
+  constexpr int patience = 4;
+  JointIterate& joints = *iterate_;
+  note_velocities(trial);
+  if (sweeps_ >= patience) joints.rows.factor();
+  if (sweeps_ > 0) joints.find_free_velocities(in, rule, trial);
+  joints.correct_impulses(trial);
+  if (turns_rows(in, trial)) {
+    // A second look at the rows alone costs less than another sweep.
+    joints.move_bodies(in, rule, trial);
+    return_to_joints(in, trial);
+    joints.rows.place_end(in, trial);
+    note_velocities(trial);
+  }
+  joints.correct_impulses(trial);
+  joints.move_bodies(in, rule, trial);
+  return_to_joints(in, trial);
+  joints.rows.place(in, trial);
+  violation_ = joints.violation(trial.end);
+  ++sweeps_;
+  trial.account.swept = true;
+}
+
+/// Velocities with which the rows were brought to where they are.
+void UntouchedJoints::note_velocities(const StepTrial& trial) {
+  const Range v = iterate_->v();
+  std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end,
+            iterate_->arrays->before_v.begin() + v.begin);
+}
+
+/// True if the correction turns the rows by more than what is left of velocities may be [rad, or m in place
+/// of it: whether it is exact does not matter to the answer].
+bool UntouchedJoints::turns_rows(const StepInput& in, const StepTrial& trial) const {
+  const JointArrays& arrays = *iterate_->arrays;
+  const Range v = iterate_->v();
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i) {
+    largest = std::max(largest, std::abs(trial.free[i] + arrays.dv_joints[i] - arrays.before_v[i]));
+  }
+  return 0.5 * in.step * largest > JointIterate::rounding;
+}
+
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0, with the rows of the iterate before and the gaps
+/// that they predict. The displacement is made anew, so that nothing across the joints goes on from guess to
+/// guess.
+void UntouchedJoints::return_to_joints(const StepInput& in, StepTrial& trial) {
+  JointIterate& joints = *iterate_;
+  JointArrays& arrays = *joints.arrays;
+  const Range v = joints.v();
+  const double half = 0.5 * in.step;
+  for (Index i = v.begin; i < v.end; ++i) {
+    arrays.scratch[i] = half * (trial.end.v[i] - arrays.before_v[i]) - arrays.displacement[i];
+  }
+  joints.rows.at_end().residuals(JointLevel::displacement, arrays.scratch.data(), joints.left.data());
+  joints.rows.solve(joints.left);
+  joints.clear(arrays.displacement);
+  joints.rows.pushing().add_response(joints.left.data(), arrays.displacement.data());
+  joints.displace(arrays.displacement, trial.end);
+}
+
+SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial) {
+  JointIterate& joints = *iterate_;
+  const JointArrays& arrays = *joints.arrays;
+  const Range v = joints.v();
+  const bool obeyed = violation_ <= 1.0;
+  SweepChange change;
+  const double* now = trial.end.v.data();
+  const double* then = arrays.before_v.data();
+  if (obeyed) {
+    joints.clear(joints.arrays->scratch);
+    joints.rows.at_midpoint().add_response(joints.impulse.data(), joints.arrays->scratch.data());
+    now = arrays.scratch.data();
+    then = arrays.dv_joints.data();
+  }
+  // Positions change by h/2 times this.
+  for (Index i = v.begin; i < v.end; ++i) {
+    const double weight = in.step * arrays.lengths[i];
+    change.take(weight * (now[i] - then[i]), weight * trial.end.v[i]);
+  }
+  if (obeyed && change.change <= JointIterate::rounding * change.size) change.change = 0.0;
+  return change;
+}
+
+void UntouchedJoints::record(bool struck, JointHistory& history) const {
+  const JointIterate& joints = *iterate_;
+  int& known = history.known[joints.component];
+  if (!joints.rows.is_regular()) {
+    known = 0;
+    return;
+  }
+  known = struck ? 1 : std::min(known + 1, JointHistory::most);
+  history.impulses.record(rows_, joints.impulse.data() - rows_.begin);
+  history.velocities.record(joints.v(), joints.arrays->dv_joints.data());
+  history.displacements.record(joints.v(), joints.arrays->displacement.data());
+}
+
+}  // namespace carom
