@@ -48,7 +48,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       memory_(assembly, options, stop),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
-      balance_({.records = options.record_events.choice() != EventRecords::none,
+      balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
   for (Index component = 0; component < assembly.components().size(); ++component) {

@@ -11,21 +11,21 @@
 
 namespace carom {
 
-/// Which events are recorded. Converts from bool: false is `none`, true `usual`.
+/// Which events are recorded. Converts from bool: false is `nothing`, true `usual`.
 class EventRecords {
 public:
   /// The choices.
   enum Choice : std::uint8_t {
-    none,   ///< no event
-    usual,  ///< all but contacts without impulse in an impact
-    all     ///< these too
+    nothing,  ///< no event
+    usual,    ///< all but contacts without impulse in an impact
+    all       ///< these too
   };
-  constexpr EventRecords(bool on) : choice_(on ? usual : none) {}  // NOLINT(google-explicit-constructor)
+  constexpr EventRecords(bool on) : choice_(on ? usual : nothing) {}  // NOLINT(google-explicit-constructor)
   constexpr EventRecords(Choice choice) : choice_(choice) {}       // NOLINT(google-explicit-constructor)
   /// The choice.
   [[nodiscard]] constexpr Choice choice() const { return choice_; }
-  /// True unless it is `none`.
-  constexpr explicit operator bool() const { return choice_ != none; }
+  /// True unless it is `nothing`.
+  constexpr explicit operator bool() const { return choice_ != nothing; }
 
 private:
   Choice choice_;
