@@ -20,8 +20,12 @@ public:
     usual,    ///< all but contacts without impulse in an impact
     all       ///< these too
   };
-  constexpr EventRecords(bool on) : choice_(on ? usual : nothing) {}  // NOLINT(google-explicit-constructor)
-  constexpr EventRecords(Choice choice) : choice_(choice) {}       // NOLINT(google-explicit-constructor)
+  /// `usual` or `nothing`. Implicit, as the next: an option is a bool or a choice.
+  constexpr EventRecords(bool on)  // NOLINT(google-explicit-constructor)
+      : choice_(on ? usual : nothing) {}
+  /// That choice.
+  constexpr EventRecords(Choice choice)  // NOLINT(google-explicit-constructor)
+      : choice_(choice) {}
   /// The choice.
   [[nodiscard]] constexpr Choice choice() const { return choice_; }
   /// True unless it is `nothing`.
