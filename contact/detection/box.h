@@ -25,7 +25,7 @@ struct BoxPair {
 };
 
 /// 1 if a comparison holds, else 0: comparisons joined by & have no branches.
-[[nodiscard]] constexpr unsigned as_bit(bool holds) { return holds ? 1U : 0U; }
+[[nodiscard]] constexpr unsigned as_bit(bool holds) { return static_cast<unsigned>(holds); }
 
 /// True if no axis parts two boxes by more than a margin >= 0 [m].
 template <int D>

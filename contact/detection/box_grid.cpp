@@ -42,7 +42,8 @@ BoxPair* pair_with(const OwnedBox<D>& box, const OwnedBox<D>* from, const OwnedB
   const unsigned free = as_bit(box.owner == none);
   for (; from < to; ++from) {
     *out = {box.number, from->number};
-    out += as_bit(overlap(box.box, from->box)) & (free | as_bit(box.owner != from->owner));
+    const unsigned found = as_bit(overlap(box.box, from->box)) & (free | as_bit(box.owner != from->owner));
+    out += found != 0 ? 1 : 0;
   }
   return out;
 }

@@ -80,7 +80,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       group_of_(assembly.components().size()),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
-      balance_({.records = options.record_events.choice() != EventRecords::none,
+      balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
   for (const GroupComponents& components : find_groups(assembly, detector_)) {

@@ -11,21 +11,25 @@
 
 namespace carom {
 
-/// Which events are recorded. Converts from bool: false is `none`, true `usual`.
+/// Which events are recorded. Converts from bool: false is `nothing`, true `all`.
 class EventRecords {
 public:
   /// The choices.
   enum Choice : std::uint8_t {
-    none,   ///< no event
-    usual,  ///< all but contacts without impulse in an impact
-    all     ///< these too
+    nothing,       ///< no event
+    with_impulse,  ///< all but contacts without impulse in an impact
+    all            ///< these too
   };
-  constexpr EventRecords(bool on) : choice_(on ? usual : none) {}  // NOLINT(google-explicit-constructor)
-  constexpr EventRecords(Choice choice) : choice_(choice) {}       // NOLINT(google-explicit-constructor)
+  /// `all` or `nothing`. Implicit, as the next: an option is a bool or a choice.
+  constexpr EventRecords(bool on)  // NOLINT(google-explicit-constructor)
+      : choice_(on ? all : nothing) {}
+  /// That choice.
+  constexpr EventRecords(Choice choice)  // NOLINT(google-explicit-constructor)
+      : choice_(choice) {}
   /// The choice.
   [[nodiscard]] constexpr Choice choice() const { return choice_; }
-  /// True unless it is `none`.
-  constexpr explicit operator bool() const { return choice_ != none; }
+  /// True unless it is `nothing`.
+  constexpr explicit operator bool() const { return choice_ != nothing; }
 
 private:
   Choice choice_;
@@ -73,8 +77,8 @@ struct EventDriven {
   /// two looks at it end a run with a SolverError, > 0.
   std::int64_t evaluation_limit = 10'000'000;
   /// Keep a record of every event (Simulation::events()). With false no record is made, and the report of a
-  /// step lists neither contacts nor impulses of joints; statistics count events all the same. With true
-  /// contacts that were closed in an impact and took no impulse have none; with EventRecords::all they do.
+  /// step lists neither contacts nor impulses of joints; statistics count events all the same. Contacts
+  /// that were closed in an impact and took no impulse have none with EventRecords::with_impulse.
   EventRecords record_events = true;
   /// Keep at most so many records, the latest; the report of a step lists the contacts of these. 0: all.
   std::int64_t record_limit = 0;

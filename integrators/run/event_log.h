@@ -72,7 +72,7 @@ struct EventMotion {
 struct EventRecord : EventParts, EventSolution {
   double time = 0.0;  ///< [s]
   /// Number of the instant: records of one group of bodies at one time, with what follows there from one
-  /// event, have the same. Ascends along the list by 0 or 1; the first is 0.
+  /// event, have the same. Ascends along the list by 0 or 1, from 0 where none were cleared.
   std::int64_t instant = 0;
   EventKind kind = EventKind::impact;       ///< what happened
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
