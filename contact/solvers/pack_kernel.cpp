@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__)
 // Lanes stay within this source, inlined: no call depends on how they would be passed.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
