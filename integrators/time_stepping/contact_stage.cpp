@@ -61,9 +61,8 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
   return nullptr;
 }
 
-/// Bodies that have constraints, ascending.
+/// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
-  struck_.clear();
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
       const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
@@ -77,8 +76,9 @@ void ContactStage::list_struck(std::span<const Constraint> constraints) {
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
                                                   StepTrial& trial) {
   in_use_ = 0;
-  list_struck(island.constraints);
+  struck_.clear();
   if (island.constraints.empty()) return nullptr;
+  list_struck(island.constraints);
   trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
   return part_problems(in, island, [&](IslandProblem& problem) {
