@@ -64,9 +64,8 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
   return nullptr;
 }
 
-/// Bodies that have constraints, ascending.
+/// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
-  struck_.clear();
   bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
@@ -99,8 +98,9 @@ void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
                                                   StepTrial& trial) {
   in_use_ = 0;
-  list_struck(island.constraints);
+  struck_.clear();
   if (island.constraints.empty()) return nullptr;
+  list_struck(island.constraints);
   trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
   return part_problems(in, island, [&](IslandProblem& problem) {
