@@ -17,7 +17,8 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
   using Verdict = FixedPointJudge::Verdict;
   begin(island, in);
   const Index front = island.components.front();
-  JointStage* const joints = parts_->joints.of(front);
+  JointStage* const joints = joints_of(island);
+  const bool joined = parts_->joined.takes(island);
   const std::vector<int>& before = parts_->trial.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[front] : 1;
   for (;;) {
@@ -28,7 +29,7 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
       parts_->errors(in, front).fail_contact(*failed);
     }
     const SweepChange change = made.change;
-    const bool ahead = joints == nullptr ? !method_.is_newton() : joints->looks_ahead();
+    const bool ahead = joints == nullptr ? !method_.is_newton() && !joined : joints->looks_ahead();
     Verdict verdict =
         ahead ? judge.judge_ahead(change.change, change.size) : judge.judge(change.change, change.size);
     // Newton's first is that from t_j: small or not, it says nothing of the guess.
@@ -43,7 +44,8 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
-      const bool moved = joints != nullptr && converge_joints(island, in);
+      const bool moved =
+          joined ? converge_joined(island, in) : joints != nullptr && converge_joints(island, in);
       return moved ? LoadsKnown::total : made.known;
     }
     for (const Index component : island.components) {
@@ -84,12 +86,14 @@ bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, 
 /// Contact problems, and a first guess at the loads.
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const Index front = island.components.front();
-  JointStage* const joints = parts_->joints.of(front);
-  for (const Index component : island.components) {
-    if (island.components.size() == 1 || parts_->joints.of(component) == nullptr) continue;
-    parts_->errors(in, component).fail_joined(island.constraints);
+  JointStage* const joints = joints_of(island);
+  const bool joined = parts_->joined.takes(island);
+  if (joined && std::any_of(island.constraints.begin(), island.constraints.end(),
+                            [](const Constraint& constraint) { return constraint.has_dry_friction(); })) {
+    parts_->errors(in, front).fail_joined(island.constraints);
   }
-  parts_->contacts.state_problems(in, island, method_.is_newton() || joints != nullptr, parts_->trial);
+  const bool together = method_.is_newton() || joints != nullptr || joined;
+  parts_->contacts.state_problems(in, island, together, parts_->trial);
   parts_->located.clear();
   parts_->trial.jumps.on = false;
   jump_updates_ = 0;
@@ -112,6 +116,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   } else {
     for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
   }
+  if (joined) parts_->joined.start(in, island, *contacts.problem, parts_->trial);
   if (joints != nullptr) {
     const bool guesses = method_.current() == Iteration::fixed_point;
     joints->start(in, parts_->rule, guesses, contacts, parts_->trial);
@@ -168,11 +173,14 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
                                                           int expected, const FixedPointJudge& judge) {
   const Index front = island.components.front();
   const bool newton = method_.is_newton(), alone = island.components.size() == 1;
-  JointStage* const joints = parts_->joints.of(front);
+  JointStage* const joints = joints_of(island);
+  const bool joined = parts_->joined.takes(island);
   SweepsMade made;
   made.known = alone && judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
   JointContacts contacts = contacts_of(island);
-  if (joints != nullptr) {
+  if (joined) {
+    sweep_joined(island, in);
+  } else if (joints != nullptr) {
     if (newton) {
       demand(method_.newton().step_with_joints(in, parts_->rule, front, *joints, contacts.problem,
                                                contacts.chain, parts_->trial),
@@ -195,6 +203,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
     made.change.take(newton ? method_.newton().change(in, component, parts_->trial)
                             : parts_->schedule.change(parts_->stages(in, component)));
   }
+  if (joined) parts_->joined.take_change(in, island, parts_->trial, made.change);
   if (joints == nullptr) return made;
   made.change.take(joints->change(in, parts_->trial));
   made.change.size *= joints->rows().roundoff_growth();
@@ -205,6 +214,13 @@ void IslandIteration::sweep_joints(const StepInput& in, Index component, JointSt
                                    JointContacts& contacts) {
   if (joints.sweep(in, parts_->rule, contacts, parts_->trial)) return;
   parts_->errors(in, component).fail_contact(*contacts.problem);
+}
+
+void IslandIteration::sweep_joined(const StepIsland& island, const StepInput& in) {
+  IslandProblem& problem = *parts_->problem();
+  if (parts_->joined.sweep(in, parts_->rule, island, problem, parts_->contacts.chain(), parts_->trial))
+    return;
+  parts_->errors(in, island.components.front()).fail_contact(problem);
 }
 
 /// Quantities of the iterate that its loads need: rotations, internal variables, the state halfway where an
@@ -246,6 +262,26 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   if (joints.rows().is_near_singular()) joints.settle_velocities(in, parts_->trial);
   follow(in, component);
   return true;
+}
+
+/// Likewise of several components.
+bool IslandIteration::converge_joined(const StepIsland& island, const StepInput& in) {
+  constexpr double improved = 0.8;
+  double left = parts_->joined.violation(in, island, parts_->trial);
+  if (!(left > 1.0)) return false;
+  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
+    sweep_joined(island, in);
+    const double now = parts_->joined.violation(in, island, parts_->trial);
+    if (!(now < improved * left)) break;
+    left = now;
+  }
+  for (const Index component : island.components) follow(in, component);
+  return true;
+}
+
+/// The joints of an island of one component; null if there are none, or several components.
+JointStage* IslandIteration::joints_of(const StepIsland& island) const {
+  return island.components.size() == 1 ? parts_->joints.of(island.components.front()) : nullptr;
 }
 
 /// Nothing comes between the bodies of a block and their loads.

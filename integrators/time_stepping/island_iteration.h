@@ -52,7 +52,10 @@ private:
                                         const FixedPointJudge& judge);
   void sweep_joints(const StepInput& in, Index component, JointStage& joints, JointContacts& contacts);
   void follow(const StepInput& in, Index component);
+  void sweep_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] bool converge_joined(const StepIsland& island, const StepInput& in);
+  [[nodiscard]] JointStage* joints_of(const StepIsland& island) const;
   [[nodiscard]] bool is_streamed(const StepIsland& island) const;
   void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);
   [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,

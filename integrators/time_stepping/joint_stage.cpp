@@ -8,7 +8,7 @@
 
 namespace carom {
 
-JointStages::JointStages(const Assembly& assembly) {
+JointStages::JointStages(const Assembly& assembly) : assembly_(&assembly) {
   const auto components = static_cast<Index>(assembly.components().size());
   for (Index component = 0; component < components; ++component) {
     if (!assembly.has_joints(component)) continue;
@@ -17,6 +17,22 @@ JointStages::JointStages(const Assembly& assembly) {
     stages_[component] = std::make_unique<JointStage>(assembly, component, rows_, *arrays_);
     rows_ += static_cast<Index>(stages_[component]->rows().at_end().size());
   }
+}
+
+const double* JointStages::velocities_of_contact(std::span<const Index> components, StepTrial& trial) const {
+  const auto has_joints = [this](Index component) { return of(component) != nullptr; };
+  if (std::none_of(components.begin(), components.end(), has_joints)) return trial.end.v.data();
+  if (components.size() == 1) return of(components.front())->velocities_of_contact(trial);
+  std::vector<double>& allowed = arrays_->allowed;
+  for (const Index component : components) {
+    if (has_joints(component)) {
+      static_cast<void>(of(component)->velocities_of_contact(trial));
+    } else {
+      const Range v = assembly_->components()[component].v;
+      std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, allowed.begin() + v.begin);
+    }
+  }
+  return allowed.data();
 }
 
 void JointStages::record(double step, JointHistory& history) const {
@@ -71,28 +87,59 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
     untouched_.sweep(in, rule, trial);
     return true;
   }
+  react(in, rule, trial);
+  if (contacts.problem != nullptr) {
+    if (!struck_) joints_.rows.at_midpoint().factor();
+    if (!react_to_contact(in, contacts, trial)) return false;
+    joints_.correct_impulses(trial);  // for what contact changed
+  }
+  move(in, rule, trial);
+  trial.account.swept = true;
+  return true;
+}
+
+/// Reactions to the loads, with the rows of the iterate.
+void JointStage::react(const StepInput& in, const StepRule& rule, StepTrial& trial) {
   JointArrays& arrays = *joints_.arrays;
   StepJointRows& rows = joints_.rows;
   const Range q = joints_.assembly->components()[joints_.component].q, v = joints_.v();
   std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, arrays.before_q.begin() + q.begin);
   std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, arrays.before_v.begin() + v.begin);
-
   rows.place(in, trial);
   // Choosing factors the rows at the end.
   if (!trial.account.swept) rows.choose(in, trial, joints_.left);
   if (trial.account.swept || rows.is_mixed()) rows.factor();
-  if (contacts.problem != nullptr && !struck_) rows.at_midpoint().factor();
-
   joints_.find_free_velocities(in, rule, trial);
   joints_.correct_impulses(trial);
-  if (contacts.problem != nullptr) {
-    if (!react_to_contact(in, contacts, trial)) return false;
-    joints_.correct_impulses(trial);  // for what contact changed
-  }
+}
+
+/// Bodies move, and back onto the joints.
+void JointStage::move(const StepInput& in, const StepRule& rule, StepTrial& trial) {
   joints_.move_bodies(in, rule, trial);
-  trial.account.swept = true;
   return_to_joints(in, trial);
-  return true;
+}
+
+void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
+  joints_.clear(joints_.arrays->dv_contact);
+  struck_ = true;
+  guessed_ = false;
+  begin_at_start(in, trial);
+  joints_.rows.place_start(in, trial);
+  joints_.rows.at_start().factor();
+}
+
+void JointStage::approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free) {
+  react(in, rule, trial);
+  const Range v = joints_.v();
+  for (Index i = v.begin; i < v.end; ++i) free[i] = trial.free[i] + joints_.arrays->dv_joints[i];
+  allow_at_start(free);
+}
+
+void JointStage::leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial) {
+  const Range v = joints_.v();
+  std::copy(change + v.begin, change + v.end, joints_.arrays->dv_contact.begin() + v.begin);
+  joints_.correct_impulses(trial);
+  move(in, rule, trial);
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before. All of

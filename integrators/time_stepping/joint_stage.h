@@ -70,6 +70,13 @@ public:
   /// One sweep. False if the contact problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,
                            StepTrial& trial);
+  /// The first guess in an island of several components (joined_mechanisms.h), which answers as a whole.
+  void start_joined(const StepInput& in, StepTrial& trial);
+  /// First half of a sweep there: reactions without contact. \param free out: velocities that contact sees,
+  /// if it did nothing, over all velocities
+  void approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free);
+  /// Second half. \param change of velocities by contact and what joints answer to it, over all velocities
+  void leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial);
   /// Brings the rows to the iterate.
   void place(const StepInput& in, StepTrial& trial) { joints_.rows.place(in, trial); }
   /// Change that the sweep has made, or that another would make.
@@ -107,6 +114,8 @@ public:
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
+  void react(const StepInput& in, const StepRule& rule, StepTrial& trial);
+  void move(const StepInput& in, const StepRule& rule, StepTrial& trial);
   void begin_at_start(const StepInput& in, StepTrial& trial);
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
@@ -125,16 +134,21 @@ private:
 /// Joints of all components of a model. Stages share arrays.
 class CAROM_API JointStages {
 public:
+  /// \param assembly must outlive it
   explicit JointStages(const Assembly& assembly);
 
   /// Those of a component; null where there are none.
   [[nodiscard]] JointStage* of(Index component) const {
     return stages_.empty() ? nullptr : stages_[component].get();
   }
+  /// Velocities at the end as contact of some components sees them, over all velocities.
+  [[nodiscard]] const double* velocities_of_contact(std::span<const Index> components,
+                                                    StepTrial& trial) const;
   /// Takes a step down for the guess at the next one. \param step its length [s]
   void record(double step, JointHistory& history) const;
 
 private:
+  const Assembly* assembly_;
   std::unique_ptr<JointArrays> arrays_;              // null without joints
   Index rows_ = 0;                                   // of all joints
   std::vector<std::unique_ptr<JointStage>> stages_;  // by component, or empty

@@ -218,7 +218,8 @@ void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
     if (constraint.bodies > 1) failure.parts.push_back(detector_.name(constraint.key));
   }
   const std::string message = place(in_) + listed(failure.parts) +
-                              " joins bodies with joints; allowed: between bodies without joints";
+                              " joins a mechanism with friction in its joints to other bodies; allowed: "
+                              "between mechanisms without friction in joints";
   throw SolverError(message, std::move(failure));
 }
 

@@ -6,6 +6,7 @@
 #include <carom/core/assembly.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
+#include <carom/integrators/time_stepping/joined_mechanisms.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/located_impacts.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
@@ -30,7 +31,8 @@ struct StepParts {
         located(model, constraints.detector(), chosen),
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),
-        joints(model) {}
+        joints(model),
+        joined(model, joints) {}
 
   /// Stages of a component.
   [[nodiscard]] SweepStages stages(const StepInput& in, Index component) {
@@ -60,6 +62,7 @@ struct StepParts {
   StepTrial trial;
   SweepSchedule schedule;
   JointStages joints;
+  JoinedMechanisms joined;
 };
 
 }  // namespace carom

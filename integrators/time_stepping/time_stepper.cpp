@@ -223,10 +223,9 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
 }
 
 void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
-  JointStage* const joints = parts_.joints.of(island.components.front());
-  const double* const after = joints != nullptr && !parts_.contacts.problems().empty()
-                                  ? joints->velocities_of_contact(parts_.trial)
-                                  : parts_.trial.end.v.data();
+  const double* const after = parts_.contacts.problems().empty()
+                                  ? parts_.trial.end.v.data()
+                                  : parts_.joints.velocities_of_contact(island.components, parts_.trial);
   const bool all = parts_.located.empty();
   for (const IslandProblem& problem : parts_.contacts.problems()) {
     const Index body = problem.constraints().front().body();

@@ -213,7 +213,9 @@ TEST(EventBodies, ADiscRollsOverTheCornerOfATable) {
     const double cosine = std::min(1.0, 2.0 / 3.0 + speed * speed / (3.0 * g * radius));
     EXPECT_NEAR(at.norm(), radius, 1e-9) << speed;
     EXPECT_NEAR(at[1] / radius, cosine, 1e-8) << speed;
-    if (cosine == 1.0) EXPECT_NEAR(time, 0.2 / speed, 1e-9);
+    if (cosine == 1.0) {
+      EXPECT_NEAR(time, 0.2 / speed, 1e-9);
+    }
   }
 }
 
