@@ -59,8 +59,6 @@ public:
   /// \param first_row of its rows among those of all components \param arrays shared by all components; must
   /// outlive it
   JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
-  JointStage(const JointStage&) = delete;
-  JointStage& operator=(const JointStage&) = delete;
 
   /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
   /// the positions that the present velocities lead to. Bounds of friction in joints become those of
@@ -70,8 +68,6 @@ public:
   /// One sweep. False if the contact problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,
                            StepTrial& trial);
-  /// Brings the rows to the iterate.
-  void place(const StepInput& in, StepTrial& trial) { joints_.rows.place(in, trial); }
   /// Change that the sweep has made, or that another would make.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
   /// True if it is to be judged as the latter.
