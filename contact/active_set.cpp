@@ -141,7 +141,8 @@ void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* ac
     load_.resize(v.end);
     std::fill(load_.begin() + v.begin, load_.begin() + v.end, 0.0);
     contact.at.add_force(0.0, contact.tangential, load_.data());
-    joints.constrained_response(load_.data());
+    joints.apply_inverse_mass(load_.data());
+    joints.project(JointLevel::change, load_.data());
     for (Index k = v.begin; k < v.end; ++k) acceleration[k] += load_[k];
   }
 }

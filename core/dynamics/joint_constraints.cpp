@@ -27,7 +27,8 @@ void JointConstraints::fix(Range velocities) {
 }
 
 void JointConstraints::update(const JointView& at) {
-  if (!empty()) pattern_->evaluate(at, {jacobian_.data(), gap_.data(), rates(), nullptr});
+  if (empty()) return;
+  pattern_->evaluate(at, {jacobian_.data(), gap_.data(), rate_.empty() ? nullptr : rate_.data(), nullptr});
 }
 
 void JointConstraints::update_gaps(const JointView& at) {
@@ -36,7 +37,8 @@ void JointConstraints::update_gaps(const JointView& at) {
 
 void JointConstraints::update_and_factor(const JointView& at) {
   if (empty()) return;
-  pattern_->evaluate(at, {jacobian_.data(), gap_.data(), rates(), drift_.data()});
+  pattern_->evaluate(at,
+                     {jacobian_.data(), gap_.data(), rate_.empty() ? nullptr : rate_.data(), drift_.data()});
   factor();
 }
 
@@ -139,11 +141,6 @@ void JointConstraints::add_response(const double* multipliers, double* x) const 
 
 void JointConstraints::apply_inverse_mass(double* x) const {
   for (Index i = v_.begin; i < v_.end; ++i) x[i] *= inverse_mass_[i - v_.begin];
-}
-
-void JointConstraints::constrained_response(double* x) {
-  apply_inverse_mass(x);
-  project(JointLevel::change, x);
 }
 
 void JointConstraints::project(JointLevel level, double* x, double* multipliers) {

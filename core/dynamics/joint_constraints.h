@@ -93,8 +93,6 @@ public:
   void add_response(const double* multipliers, double* x) const;
   /// x becomes M^-1 x over the component.
   void apply_inverse_mass(double* x) const;
-  /// Impulses or forces x of the bodies become what they do, with the joints' answer: M^-1 x, held.
-  void constrained_response(double* x);
   /// Velocities of the component.
   [[nodiscard]] Range velocities() const { return v_; }
 
@@ -107,8 +105,6 @@ public:
   [[nodiscard]] SparseFactors& factors() { return factors_; }
 
 private:
-  [[nodiscard]] double* rates() { return rate_.empty() ? nullptr : rate_.data(); }
-
   Range v_;
   std::shared_ptr<const JointPattern> pattern_ = JointPattern::empty();
   std::vector<double> jacobian_;            // row by row

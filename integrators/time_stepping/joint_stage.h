@@ -59,8 +59,6 @@ public:
   /// \param first_row of its rows among those of all components \param arrays shared by all components; must
   /// outlive it
   JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
-  JointStage(const JointStage&) = delete;
-  JointStage& operator=(const JointStage&) = delete;
 
   /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
   /// the positions that the present velocities lead to. Bounds of friction in joints become those of
@@ -77,8 +75,6 @@ public:
   void approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free);
   /// Second half. \param change of velocities by contact and what joints answer to it, over all velocities
   void leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial);
-  /// Brings the rows to the iterate.
-  void place(const StepInput& in, StepTrial& trial) { joints_.rows.place(in, trial); }
   /// Change that the sweep has made, or that another would make.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
   /// True if it is to be judged as the latter.

@@ -25,7 +25,7 @@ NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepR
     trial.loads_guess[i] = rule.is_mean() ? 0.0 : -in.companion.loads.total[i];
   }
   if (contact != nullptr) contact->forget_impulses();
-  if (joints != nullptr) joints->place(in, trial);
+  if (joints != nullptr) joints->rows().place(in, trial);
   if (!linearise(in, component, in.start.view(), trial.at_start, joints, contact)) return Outcome::singular;
   matrix_.add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),
                               trial.loads_end.total.data());
@@ -90,7 +90,7 @@ NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, 
                                                            IslandProblem* contact, SolverChain& chain,
                                                            StepTrial& trial) {
   const Range v = in.assembly.components()[component].v;
-  joints.place(in, trial);
+  joints.rows().place(in, trial);
   // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
   // couplings would be loaded across them.
   if (!linearise(in, component, trial.end.view(), trial.at_end, &joints, contact)) return Outcome::singular;
