@@ -40,22 +40,73 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
                      std::max(start.gap_accelerations[bound], end.gap_accelerations[bound]);
 }
 
+/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the same.
+struct FeatureLook {
+  QuantityLook gap;
+  Index feature = none;
+  double margin = 0.0;  // of the feature [m]
+};
+
+/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a bound of
+/// the rate, which holds for the margins too, shows that the gap does not close in them.
+class KinkedSearch {
+public:
+  KinkedSearch(SearchedStep& step, std::size_t pair, const FallRule& rule, double until)
+      : step_(&step), pair_(pair), rule_(rule), until_(until) {}
+
+  [[nodiscard]] double first() { return between(look(step_->begin()), look(step_->end()), 0); }
+
+private:
+  [[nodiscard]] FeatureLook look(double time) {
+    const SmoothMotion& motion = step_->motion;
+    const MotionSample& at = step_->sample(time);
+    const FeatureRegions regions = motion.regions(motion.model().pairs[pair_], at);
+    FeatureLook out;
+    out.gap = {time, body_gap(motion, pair_, at), 0.0};
+    out.feature = regions.nearest();
+    out.margin = regions.margin(out.feature).value;
+    return out;
+  }
+  [[nodiscard]] double between(const FeatureLook& from, const FeatureLook& to, int depth) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    constexpr int deepest = 30;
+    const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
+    if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;
+    const bool smooth = from.feature == to.feature && from.margin + to.margin > way;
+    if (smooth || depth == deepest) {
+      QuantityOf gap([&](double time) -> QuantityLook {
+        return {time, body_gap(step_->motion, pair_, step_->sample(time)), 0.0};
+      });
+      return FallSearch(gap, rule_, until_).first(from.gap, to.gap);
+    }
+    const FeatureLook middle = look(begin + 0.5 * (end - begin));
+    const double first = between(from, middle, depth + 1);
+    return first < never ? first : between(middle, to, depth + 1);
+  }
+
+  SearchedStep* step_;
+  std::size_t pair_;
+  FallRule rule_;
+  double until_;
+};
+
 /// About the first time at which a gap closes.
 double first_closing(SearchedStep& step, std::size_t pair, double fastest, double until) {
   constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
-  constexpr int deepest = 30, least_of_kinks = 2;
   const SmoothMotion& motion = step.motion;
   const std::size_t place = pair - motion.model().body_pairs;
   const BodyPairBound& bound = motion.model().bounds[place];
-  const bool smooth = bound.round && bound.rounding > 0.0;
   FallRule rule;
   rule.raise = step.scales.gap_noise - step.ends.gap_level(pair);
   rule.fine = fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
+  if (!bound.round) {
+    rule.fastest = fastest;
+    return KinkedSearch(step, pair, rule, until).first();
+  }
+  // Two points without rounding have a kink where they meet, and do not touch.
+  const bool smooth = bound.rounding > 0.0;
   rule.measured = !(bound.central && smooth && motion.flies_freely());
-  rule.least_depth = smooth ? 0 : least_of_kinks;
-  rule.deepest = deepest;
-  if (!smooth) rule.fastest = fastest;
   const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {
     return {time, smooth ? smooth_of(gap, bound.rounding) : gap, 0.0};
   };

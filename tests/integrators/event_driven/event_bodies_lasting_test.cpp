@@ -90,11 +90,32 @@ TEST(EventBodies, ADiscSlidesOffADisc) {
   }
 }
 
-TEST(EventBodies, ADiscRollsOffADisc) {
-  // Rolling has 3/4 v^2 in place of 1/2 v^2: cos = 4/7 cos_0. It slips just before, where the normal force
-  // falls to 1/mu of the friction.
-  for (const double angle : {0.05, 0.3, 0.6}) {
-    EXPECT_NEAR(cosine_of_lift_off(1e7, angle), 4.0 / 7.0 * std::cos(angle), 1e-6) << angle;
+TEST(EventBodies, ADiscRollsOnADiscUntilItSlips) {
+  // Rolling from rest, 3/4 v^2 = g (R + r)(cos_0 - cos): normal force m g (7 cos - 4 cos_0)/3, friction m g sin/3. It
+  // slips where sin = mu (7 cos - 4 cos_0), and lifts off after that.
+  constexpr double base = 0.5, radius = 0.2, from_centre = base + radius;
+  for (const double mu : {0.5, 2.0, 10.0}) {
+    for (const double angle : {0.05, 0.3, 0.6}) {
+      System system;
+      system.set_default_law({.friction = mu, .normal_restitution = 0.0});
+      system.add(Gravity{{0.0, -g}});
+      const BodyId fixed = add_disc(system, 1.0, base, {0.0, 0.0});
+      system.add(Weld{.from = {ground, {0.0, 0.0}}, .to = {fixed, {0.0, 0.0}}});
+      const BodyId disc = add_disc(system, 1.0, radius, from_centre * Vec<2>(std::sin(angle), std::cos(angle)));
+      Simulation simulation(system, tight());
+      simulation.run_until(2.5);
+      const EventRecord* const slip = find_event(simulation, EventKind::slip);
+      const EventRecord* const lift_off = find_event(simulation, EventKind::lift_off);
+      ASSERT_NE(slip, nullptr) << mu << ", " << angle;
+      ASSERT_NE(lift_off, nullptr) << mu << ", " << angle;
+      EXPECT_LT(slip->time, lift_off->time);
+      Simulation again(system, tight());
+      again.run_until(slip->time);
+      const Vec<2> at = again.state().position(disc) / from_centre;
+      EXPECT_NEAR(at[0], mu * (7.0 * at[1] - 4.0 * std::cos(angle)), 1e-9 * (1.0 + mu)) << mu << ", " << angle;
+      EXPECT_NEAR(again.state().velocity(disc).squaredNorm(),
+                  4.0 / 3.0 * g * from_centre * (std::cos(angle) - at[1]), 1e-9);
+    }
   }
 }
 
