@@ -14,6 +14,7 @@ struct ContactFilter {
   std::uint32_t groups = 1;             ///< groups that it belongs to; 0: none, it touches nothing
   std::uint32_t touches = 0xffffffffU;  ///< groups that it touches; 0: nothing
 
+  /// True of the same groups on both sides.
   friend constexpr bool operator==(const ContactFilter&, const ContactFilter&) = default;
 };
 

@@ -40,15 +40,16 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
                      std::max(start.gap_accelerations[bound], end.gap_accelerations[bound]);
 }
 
-/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the same.
+/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the
+/// same.
 struct FeatureLook {
   QuantityLook gap;
   Index feature = none;
   double margin = 0.0;  // of the feature [m]
 };
 
-/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a bound of
-/// the rate, which holds for the margins too, shows that the gap does not close in them.
+/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
+/// bound of the rate, which holds for the margins too, shows that the gap does not close in them.
 class KinkedSearch {
 public:
   KinkedSearch(SearchedStep& step, std::size_t pair, const FallRule& rule, double until)
