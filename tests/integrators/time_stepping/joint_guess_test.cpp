@@ -46,7 +46,7 @@ System chain(int rods, const double& broken_after = never) {
   return system;
 }
 
-constexpr TimeStepping options{.step = 1e-3, .tolerance = 1e-10};
+const TimeStepping options{.step = 1e-3, .tolerance = 1e-10};
 
 TEST(JointGuess, StepsNeedOneSweepOrTwo) {
   for (const int rods : {1, 10}) {
