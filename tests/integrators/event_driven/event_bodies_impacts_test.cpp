@@ -251,7 +251,7 @@ TEST(EventBodies, TurningBoxesInABoxKeepTheirEnergyAndNeverOverlap) {
     }
   });
   simulation.run_until(2.0);
-  EXPECT_GT(simulation.statistics().impacts, 40);
+  EXPECT_GT(simulation.statistics().impacts, 20);
   EXPECT_NEAR(simulation.energy().total(), energy, 1e-9 * energy);
   EXPECT_GT(least, -1e-11);  // places at outputs within a step are interpolated
 }

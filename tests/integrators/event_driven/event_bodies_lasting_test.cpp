@@ -168,14 +168,14 @@ std::vector<double> forces_at_rest(const System& system) {
   return forces;
 }
 
-System stack(int count, bool blocks) {
+System stack(int count, bool blocks, double narrower = 0.0) {
   System system;
   system.set_default_law({.friction = 0.5, .normal_restitution = 0.5, .tangential_restitution = 0.5});
   system.add(Gravity{{0.0, -g}});
   system.add(HalfPlane{.normal = {0.0, 1.0}});
   for (int i = 0; i < count; ++i) {
-    // Each block is a little narrower than that below: corners stand on edges.
-    if (blocks) add_box(system, 1.0, 0.5 - 0.03125 * i, 0.25, {0.0, 0.125 + 0.25 * i});
+    // Each block is a little narrower than that below: corners stand on edges, not on corners.
+    if (blocks) add_box(system, 1.0, 0.5 - narrower * i, 0.25, {0.0, 0.125 + 0.25 * i});
     if (!blocks) add_disc(system, 1.0, 0.125, {0.0, 0.125 + 0.25 * i});
   }
   return system;
@@ -196,13 +196,24 @@ TEST(EventBodies, TenDiscsStackedAreAtRest) {
 TEST(EventBodies, TenBlocksStackedAreAtRest) {
   const Json expected =
       reference_data("contacts_planar.json").at("static_stack").at("block_corner_forces_bottom_up");
-  const System system = stack(10, true);
+  const System system = stack(10, true, 0.03125);
   // Twenty corners, two for each block.
   std::vector<double> forces = forces_at_rest(system);
   ASSERT_EQ(forces.size(), 2 * expected.size());
   for (std::size_t i = 0; i < forces.size(); ++i) {
     EXPECT_NEAR(forces[i], expected.at(i / 2).get<double>(), 1e-9);
   }
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(1.0);
+  const Simulation start(system, EventDriven{});
+  for (std::size_t i = 0; i < start.state().q.size(); ++i) {
+    EXPECT_NEAR(simulation.state().q[i], start.state().q[i], 1e-12);
+  }
+}
+
+TEST(EventBodies, EqualBlocksStackedAreAtRest) {
+  // Corners stand on corners: which features are nearest is a matter of rounding.
+  const System system = stack(10, true);
   Simulation simulation(system, EventDriven{});
   simulation.run_until(1.0);
   const Simulation start(system, EventDriven{});
@@ -240,6 +251,32 @@ TEST(EventBodies, ADiscRollsOverTheCornerOfATable) {
       EXPECT_NEAR(time, 0.2 / speed, 1e-9);
     }
   }
+}
+
+TEST(EventBodies, ABlockSlidesOffTheEdgeOfATable) {
+  // Half a width w/2 before the edge the leading corner leaves the table, whose corner takes over; at mu h/2 before it
+  // the normal force there balances friction alone, and the trailing corner lifts off.
+  constexpr double v = 1.5, mu = 0.1, w = 0.2, h = 0.1, way = 0.2;
+  System system;
+  system.set_default_law({.friction = mu, .normal_restitution = 0.0});
+  system.add(Gravity{{0.0, -g}});
+  const BodyId table = add_box(system, 5.0, 1.0, 0.4, {0.0, 0.2});
+  system.add(Weld{.from = {ground, {0.0, 0.0}}, .to = {table, {0.0, -0.2}}});
+  add_box(system, 1.0, w, h, {0.5 - way, 0.4 + 0.5 * h}, 0.0, {v, 0.0});
+  Simulation simulation(system, tight());
+  const LedgerWatch ledger(simulation);
+  simulation.run_until(0.4);
+  const auto time_at = [](double x) { return (v - std::sqrt(v * v - 2.0 * mu * g * x)) / (mu * g); };
+  std::vector<double> times;
+  for (const EventRecord& event : simulation.events()) {
+    EXPECT_NE(event.kind, EventKind::impact);
+    if (event.kind == EventKind::lift_off) times.push_back(event.time);
+  }
+  ASSERT_GE(times.size(), 2U);
+  // A corner leaves 2e-9 m beyond the edge.
+  EXPECT_NEAR(times[0], time_at(way - 0.5 * w), 2e-9);
+  EXPECT_NEAR(times[1], time_at(way - 0.5 * mu * h), 1e-8);
+  EXPECT_TRUE(ledger.closes());
 }
 
 TEST(EventBodies, ADoublePendulumHitsADisc) {
