@@ -17,14 +17,14 @@ struct ActiveContact {
   ContactPair pair;                       ///< what touches
   Index place = none;                     ///< of the pair in a list of all, where there is one
   ContactMode mode = ContactMode::stick;  ///< stick, slip+ or slip-
-  /// Of two bodies: the feature of the outline that the vertex is nearest to in this phase; `none` if there is but
-  /// one.
+  /// Of two bodies: the feature of the outline that the vertex is nearest to in this phase; `none` if there
+  /// is but one.
   Index feature = none;
-  bool frictionless = false;              ///< without friction: neither sticks nor cares which way it slips
-  Constraint at;                          ///< at the present configuration
-  double friction = 0.0;                  ///< coefficient: sliding where it slips, static where it sticks
-  double normal = 0.0;                    ///< force; of friction in a joint Constraint::friction_bound [N]
-  double tangential = 0.0;                ///< force; of friction in a joint along its coordinate [N, N m]
+  bool frictionless = false;  ///< without friction: neither sticks nor cares which way it slips
+  Constraint at;              ///< at the present configuration
+  double friction = 0.0;      ///< coefficient: sliding where it slips, static where it sticks
+  double normal = 0.0;        ///< force; of friction in a joint Constraint::friction_bound [N]
+  double tangential = 0.0;    ///< force; of friction in a joint along its coordinate [N, N m]
   /// False where forces were shared out and it is at its end by chance: others set the margin.
   bool sets_margin = true;
 

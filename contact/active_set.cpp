@@ -30,8 +30,8 @@ void ActiveSet::update(const Detector& detector, const StateView& state, const E
                        const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
     if (contact.feature != none) {
-      follow_feature(*assembly_, detector.bodies().outlines(), contact.pair, contact.feature, state, evaluation,
-                     contact.at);
+      follow_feature(*assembly_, detector.bodies().outlines(), contact.pair, contact.feature, state,
+                     evaluation, contact.at);
     } else {
       detector.contact(contact.pair, state, evaluation, places, contact.at);
     }

@@ -6,8 +6,8 @@
 #include <carom/core/joint_kind.h>
 
 #include <algorithm>
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 

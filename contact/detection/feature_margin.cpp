@@ -56,8 +56,7 @@ FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& out
 
 Index FeatureRegions::nearest() const {
   std::array<GapPoint, 2> found;
-  static_cast<void>(
-      find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
+  static_cast<void>(find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
   const GapPoint& at = found[0];
   if (!sharp_ || !has_several() || std::abs(at.gap) > corner_follows) return at.feature_b;
   // In the place of a corner rounding decides which feature is nearest.

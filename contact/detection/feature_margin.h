@@ -1,15 +1,15 @@
 #pragma once
 
 /// \file
-/// Which feature of a convex outline is nearest to a vertex of another body, and how far the vertex is from where
-/// that changes.
+/// Which feature of a convex outline is nearest to a vertex of another body, and how far the vertex is from
+/// where that changes.
 ///
-/// The normal of such a contact is continuous there, the rate at which it turns is not: the forces of a contact
-/// that lasts have a kink or a jump, over which no step of an integrator may pass.
+/// The normal of such a contact is continuous there, the rate at which it turns is not: the forces of a
+/// contact that lasts have a kink or a jump, over which no step of an integrator may pass.
 ///
-/// Two sharp corners do not touch each other: whatever overlaps does so at an edge of either. A corner that stands
-/// at the end of an edge to rounding, or has left it by a little, stands before that edge; else its normal would be
-/// that between two places that are the same.
+/// Two sharp corners do not touch each other: whatever overlaps does so at an edge of either. A corner that
+/// stands at the end of an edge to rounding, or has left it by a little, stands before that edge; else its
+/// normal would be that between two places that are the same.
 
 #include <carom/contact/detection/body_outlines.h>
 #include <carom/contact/detection/contact_pair.h>
@@ -23,19 +23,19 @@ namespace carom {
 
 /// Distance of a vertex from the border of the region in which a feature is the nearest one.
 struct FeatureMargin {
-  double value = 0.0;     ///< positive inside [m]
-  double rate = 0.0;      ///< its rate [m/s]
-  Index beyond = none;    ///< the feature beyond the border
+  double value = 0.0;   ///< positive inside [m]
+  double rate = 0.0;    ///< its rate [m/s]
+  Index beyond = none;  ///< the feature beyond the border
 };
 
 /// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.
 class CAROM_API FeatureRegions {
 public:
-  /// How far beyond the end of an edge a sharp corner may stand and still touch it, is taken to leave it when it
-  /// slides, and still has its normal [m].
+  /// How far beyond the end of an edge a sharp corner may stand and still touch it, is taken to leave it when
+  /// it slides, and still has its normal [m].
   static constexpr double corner_touches = 1e-9, corner_leaves = 2e-9, corner_follows = 4e-9;
-  /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and its normal
-  /// has not turned by more than rounding [m].
+  /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and
+  /// its normal has not turned by more than rounding [m].
   static constexpr double past_border = 2e-14;
 
   /// All must outlive it. \param pair of two bodies \param evaluation position group up to date
@@ -59,11 +59,11 @@ private:
   [[nodiscard]] Index edge_at(Index corner) const;
   [[nodiscard]] double separation_along(const OutlineEdge& edge) const;
 
-  ConvexOutline outline_;   // in the frame of its body,
-  Vec<2> place_, rate_;     // as the vertex and its velocity,
-  ConvexOutline of_vertex_;                 // in the frame of the other body, which
-  Vec<2> shift_;                            // stands here in the frame of the first,
-  double cosine_ = 1.0, sine_ = 0.0;        // turned by this
+  ConvexOutline outline_;             // in the frame of its body,
+  Vec<2> place_, rate_;               // as the vertex and its velocity,
+  ConvexOutline of_vertex_;           // in the frame of the other body, which
+  Vec<2> shift_;                      // stands here in the frame of the first,
+  double cosine_ = 1.0, sine_ = 0.0;  // turned by this
   bool sharp_ = false;
 };
 

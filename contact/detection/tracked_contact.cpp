@@ -8,10 +8,12 @@
 
 namespace carom {
 
-void follow_feature(const Assembly& assembly, const BodyOutlines& outlines, const ContactPair& pair, Index feature,
-                    const StateView& state, const Evaluation& evaluation, Constraint& contact) {
+void follow_feature(const Assembly& assembly, const BodyOutlines& outlines, const ContactPair& pair,
+                    Index feature, const StateView& state, const Evaluation& evaluation,
+                    Constraint& contact) {
   const BodySlots& bodies = assembly.layout()->bodies();
-  const BodyOutline &a = outlines.list()[outlines.outline_of(pair.feature)], &b = outlines.list()[pair.outline];
+  const BodyOutline &a = outlines.list()[outlines.outline_of(pair.feature)],
+                    &b = outlines.list()[pair.outline];
   const auto turn = [&](const BodySlot& body, const Vec<2>& at, double sign) -> Vec<2> {
     if (body.rotation == none) return at;
     const double c = evaluation.rotation[body.rotation], s = sign * evaluation.rotation[body.rotation + 1];

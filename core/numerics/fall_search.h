@@ -55,7 +55,7 @@ struct FallRule {
   int least_depth = 0;  ///< halvings at least
   /// The largest size of the rate, if known: where values cannot reach zero with it nothing is searched.
   double fastest = std::numeric_limits<double>::infinity();
-  int deepest = 14;     ///< halvings at most
+  int deepest = 14;  ///< halvings at most
 };
 
 /// The search in one step.

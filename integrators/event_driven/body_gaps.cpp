@@ -40,15 +40,16 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
                      std::max(start.gap_accelerations[bound], end.gap_accelerations[bound]);
 }
 
-/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the same.
+/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the
+/// same.
 struct FeatureLook {
   QuantityLook gap;
   Index feature = none;
   double margin = 0.0;  // of the feature [m]
 };
 
-/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a bound of
-/// the rate, which holds for the margins too, shows that the gap does not close in them.
+/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
+/// bound of the rate, which holds for the margins too, shows that the gap does not close in them.
 class KinkedSearch {
 public:
   KinkedSearch(SearchedStep& step, std::size_t pair, const FallRule& rule, double until)
@@ -161,7 +162,8 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
     const std::size_t pair = model.body_pairs + place;
     if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
     const double fastest = fastest_in(step, place);
-    if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise) continue;
+    if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise)
+      continue;
     const double until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
     const double time = first_closing(step, pair, fastest, until);
     if (time < until) found = {time, Guard::gap, pair};

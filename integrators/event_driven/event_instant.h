@@ -50,9 +50,9 @@ struct CAROM_API EventInstant {
   /// The rate of a driver jumps: contacts that were closed approach without having approached before.
   bool rate_jumps = false;
 
-  /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch have
-  /// no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at an edge of
-  /// either, or not at all.
+  /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch
+  /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
+  /// an edge of either, or not at all.
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();

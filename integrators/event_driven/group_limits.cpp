@@ -85,7 +85,8 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
   const System& system = motion_->model().assembly->system();
   if (event.guard == Guard::switching_point) return {system.name(motion_->guards().element(event.which))};
   const std::vector<ActiveContact>& closed = motion_->active().list();
-  if (event.guard == Guard::slip || event.guard == Guard::feature) return {failure_->name(closed[event.which].at)};
+  if (event.guard == Guard::slip || event.guard == Guard::feature)
+    return {failure_->name(closed[event.which].at)};
   if (event.guard == Guard::gap) {
     Constraint contact;
     motion_->contact(event.which, at, contact);

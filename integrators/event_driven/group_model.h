@@ -7,8 +7,8 @@
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/discontinuity.h>
-#include <carom/core/layout.h>
 #include <carom/core/export.h>
+#include <carom/core/layout.h>
 #include <carom/core/state.h>
 #include <carom/integrators/event_driven/group_joints.h>
 #include <carom/integrators/event_driven/motion_sample.h>
@@ -66,7 +66,7 @@ struct CAROM_API GroupModel {
   /// Everything that might touch, and friction in joints, which always does. First what touches the ground
   /// and what belongs to joints, that of one mechanism together; then pairs of two bodies.
   std::vector<ContactPair> pairs;
-  std::size_t body_pairs = 0;  ///< place of the first pair of two bodies
+  std::size_t body_pairs = 0;         ///< place of the first pair of two bodies
   std::vector<BodyPairBound> bounds;  ///< of the pairs of two bodies, from that on
   /// Times at which laws of the group's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;

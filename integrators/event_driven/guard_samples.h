@@ -17,11 +17,11 @@ namespace carom {
 struct GuardSample {
   double time = 0.0;                       ///< [s]
   std::vector<StepPolynomial::End> slips;  ///< sliding velocities and their rates, by closed contact
-  /// Margins of features with their borders (FeatureRegions::border()), by closed contact; largest where there is
-  /// but one feature.
+  /// Margins of features with their borders (FeatureRegions::border()), by closed contact; largest where
+  /// there is but one feature.
   std::vector<StepPolynomial::End> features;
-  std::vector<double> margins;             ///< of forces, by island that touches
-  std::vector<GuardMotion> guards;         ///< of elements
+  std::vector<double> margins;      ///< of forces, by island that touches
+  std::vector<GuardMotion> guards;  ///< of elements
 };
 
 /// Maker of samples within a step.

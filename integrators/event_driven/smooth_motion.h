@@ -51,7 +51,8 @@ public:
   void sample(double time, const double* y, Forces forces, MotionSample& out);
   /// The contact of a pair in a sample.
   void contact(std::size_t pair, const MotionSample& at, Constraint& out) const;
-  /// Likewise; of two bodies farther from each other than `near` [m] only a lower bound of the gap, and no bodies.
+  /// Likewise; of two bodies farther from each other than `near` [m] only a lower bound of the gap, and no
+  /// bodies.
   void contact_if_near(std::size_t pair, const MotionSample& at, double near, Constraint& out) const;
   /// Regions of the features of the outline of a pair of two bodies in a sample.
   [[nodiscard]] FeatureRegions regions(const ContactPair& pair, const MotionSample& at) const {

@@ -26,9 +26,9 @@ struct StepEnd {
   std::vector<char> gap_known;
   std::vector<double> gap_speeds;         ///< by such pair: bound of the rate of the gap [m/s],
   std::vector<double> gap_accelerations;  ///< and of what accelerations add to it [m/s^2]
-  GuardSample sample;          ///< all other guards
-  PathEnd path;                ///< where elements have guards
-  std::vector<double> noises;  ///< rounding of the margins of forces [N]
+  GuardSample sample;                     ///< all other guards
+  PathEnd path;                           ///< where elements have guards
+  std::vector<double> noises;             ///< rounding of the margins of forces [N]
 };
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that

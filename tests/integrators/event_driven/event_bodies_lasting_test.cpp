@@ -91,8 +91,8 @@ TEST(EventBodies, ADiscSlidesOffADisc) {
 }
 
 TEST(EventBodies, ADiscRollsOnADiscUntilItSlips) {
-  // Rolling from rest, 3/4 v^2 = g (R + r)(cos_0 - cos): normal force m g (7 cos - 4 cos_0)/3, friction m g sin/3. It
-  // slips where sin = mu (7 cos - 4 cos_0), and lifts off after that.
+  // Rolling from rest, 3/4 v^2 = g (R + r)(cos_0 - cos): normal force m g (7 cos - 4 cos_0)/3, friction m g
+  // sin/3. It slips where sin = mu (7 cos - 4 cos_0), and lifts off after that.
   constexpr double base = 0.5, radius = 0.2, from_centre = base + radius;
   for (const double mu : {0.5, 2.0, 10.0}) {
     for (const double angle : {0.05, 0.3, 0.6}) {
@@ -101,7 +101,8 @@ TEST(EventBodies, ADiscRollsOnADiscUntilItSlips) {
       system.add(Gravity{{0.0, -g}});
       const BodyId fixed = add_disc(system, 1.0, base, {0.0, 0.0});
       system.add(Weld{.from = {ground, {0.0, 0.0}}, .to = {fixed, {0.0, 0.0}}});
-      const BodyId disc = add_disc(system, 1.0, radius, from_centre * Vec<2>(std::sin(angle), std::cos(angle)));
+      const BodyId disc =
+          add_disc(system, 1.0, radius, from_centre * Vec<2>(std::sin(angle), std::cos(angle)));
       Simulation simulation(system, tight());
       simulation.run_until(2.5);
       const EventRecord* const slip = find_event(simulation, EventKind::slip);
@@ -112,7 +113,8 @@ TEST(EventBodies, ADiscRollsOnADiscUntilItSlips) {
       Simulation again(system, tight());
       again.run_until(slip->time);
       const Vec<2> at = again.state().position(disc) / from_centre;
-      EXPECT_NEAR(at[0], mu * (7.0 * at[1] - 4.0 * std::cos(angle)), 1e-9 * (1.0 + mu)) << mu << ", " << angle;
+      EXPECT_NEAR(at[0], mu * (7.0 * at[1] - 4.0 * std::cos(angle)), 1e-9 * (1.0 + mu))
+          << mu << ", " << angle;
       EXPECT_NEAR(again.state().velocity(disc).squaredNorm(),
                   4.0 / 3.0 * g * from_centre * (std::cos(angle) - at[1]), 1e-9);
     }
@@ -250,8 +252,8 @@ TEST(EventBodies, ADiscRollsOverTheCornerOfATable) {
 }
 
 TEST(EventBodies, ABlockSlidesOffTheEdgeOfATable) {
-  // Half a width w/2 before the edge the leading corner leaves the table, whose corner takes over; at mu h/2 before it
-  // the normal force there balances friction alone, and the trailing corner lifts off.
+  // Half a width w/2 before the edge the leading corner leaves the table, whose corner takes over; at mu h/2
+  // before it the normal force there balances friction alone, and the trailing corner lifts off.
   constexpr double v = 1.5, mu = 0.1, w = 0.2, h = 0.1, way = 0.2;
   System system;
   system.set_default_law({.friction = mu, .normal_restitution = 0.0});
