@@ -34,8 +34,8 @@ public:
   /// How far beyond the end of an edge a sharp corner may stand and still touch it, is taken to leave it when
   /// it slides, and still has its normal [m].
   static constexpr double corner_touches = 1e-9, corner_leaves = 2e-9, corner_follows = 4e-9;
-  /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and its normal
-  /// has not turned by more than rounding [m].
+  /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and
+  /// its normal has not turned by more than rounding [m].
   static constexpr double past_border = 2e-14;
 
   /// All must outlive it. \param pair of two bodies \param evaluation position group up to date

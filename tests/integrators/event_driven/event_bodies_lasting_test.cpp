@@ -254,8 +254,8 @@ TEST(EventBodies, ADiscRollsOverTheCornerOfATable) {
 }
 
 TEST(EventBodies, ABlockSlidesOffTheEdgeOfATable) {
-  // Half a width w/2 before the edge the leading corner leaves the table, whose corner takes over; at mu h/2 before it
-  // the normal force there balances friction alone, and the trailing corner lifts off.
+  // Half a width w/2 before the edge the leading corner leaves the table, whose corner takes over; at mu h/2
+  // before it the normal force there balances friction alone, and the trailing corner lifts off.
   constexpr double v = 1.5, mu = 0.1, w = 0.2, h = 0.1, way = 0.2;
   System system;
   system.set_default_law({.friction = mu, .normal_restitution = 0.0});
