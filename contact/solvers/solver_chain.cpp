@@ -23,7 +23,6 @@ namespace {
 // Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
 constexpr double polish_from = 1e-16;
 constexpr int polish_steps = 3;
-
 // Steps where these leave the answer unacceptable: far from rounding, modes still change.
 constexpr int rescue_steps = 30;
 
