@@ -39,7 +39,8 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
   int sweep = 0, plain = 0;
   // What must not be used is worth more sweeps than what is not exact.
   const auto goes_on = [&] {
-    return sweep < budget_.sweeps || (best > budget_.accepted && sweep < most_times * budget_.sweeps);
+    const bool refused = budget_.accepted > 0.0 && best > budget_.accepted;
+    return sweep < budget_.sweeps || (refused && sweep < most_times * budget_.sweeps);
   };
   while (goes_on() && best <= std::numeric_limits<double>::max()) {
     const SweepChange change = sweeps_.sweep();

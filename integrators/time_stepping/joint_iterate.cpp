@@ -63,6 +63,56 @@ void JointIterate::move_bodies(const StepInput& in, const StepRule& rule, StepTr
   rule.move(in, all.bodies, true, trial);
 }
 
+/// Reactions to the loads, with the rows of the iterate.
+void JointIterate::react(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  const Range q = assembly->components()[component].q, v = this->v();
+  std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, arrays->before_q.begin() + q.begin);
+  std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, arrays->before_v.begin() + v.begin);
+  rows.place(in, trial);
+  // Choosing factors the rows at the end.
+  if (!trial.account.swept) rows.choose(in, trial, left);
+  if (trial.account.swept || rows.is_mixed()) rows.factor();
+  find_free_velocities(in, rule, trial);
+  correct_impulses(trial);
+}
+
+/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before. All of
+/// the displacement is made anew along the rows of this sweep, so that it does not depend on how the
+/// iteration went.
+void JointIterate::return_to_joints(const StepInput& in, StepTrial& trial) {
+  displace(arrays->displacement, trial.end);
+  if (rows.is_singular()) return return_near_singular(in, trial);
+  const Range v = this->v();
+  rows.place_gaps(in, trial);
+  for (Index i = v.begin; i < v.end; ++i) arrays->scratch[i] = -arrays->displacement[i];
+  rows.at_end().residuals(JointLevel::displacement, arrays->scratch.data(), left.data());
+  rows.solve(left);
+  rows.pushing().add_response(left.data(), arrays->scratch.data());
+  for (Index i = v.begin; i < v.end; ++i) arrays->displacement[i] += arrays->scratch[i];
+  displace(arrays->scratch, trial.end);
+}
+
+/// Several steps with rows of their own, which change much from one iterate to the next there.
+void JointIterate::return_near_singular(const StepInput& in, StepTrial& trial) {
+  constexpr int turns = 6;
+  const Range v = this->v();
+  for (int turn = 0; turn < turns; ++turn) {
+    rows.place_end(in, trial);
+    rows.factor();
+    for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gap(row);
+    rows.solve(left);
+    clear(arrays->scratch);
+    rows.pushing().add_response(left.data(), arrays->scratch.data());
+    for (Index i = v.begin; i < v.end; ++i) arrays->displacement[i] += arrays->scratch[i];
+    displace(arrays->scratch, trial.end);
+  }
+}
+
+void JointIterate::move_onto_joints(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  move_bodies(in, rule, trial);
+  return_to_joints(in, trial);
+}
+
 void JointIterate::displace(const std::vector<double>& by, State& state) const {
   assembly->for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
     kind.advance(slots, state.q.data() + q, by.data() + v, state.q.data() + q);

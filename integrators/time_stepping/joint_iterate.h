@@ -41,8 +41,16 @@ struct CAROM_API JointIterate {
   void find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
   /// One step of Newton's method for G1 v_{j+1} + rate = 0.
   void correct_impulses(const StepTrial& trial);
+  /// Reactions to the loads, with the rows of the iterate. The iterate before is kept.
+  void react(const StepInput& in, const StepRule& rule, StepTrial& trial);
+  /// Bodies move, and back onto the joints.
+  void move_onto_joints(const StepInput& in, const StepRule& rule, StepTrial& trial);
   /// Velocities at the end, and positions but for the displacement back onto the joints.
   void move_bodies(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
+  /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0.
+  void return_to_joints(const StepInput& in, StepTrial& trial);
+  /// Several.
+  void return_near_singular(const StepInput& in, StepTrial& trial);
   /// Moves bodies by a displacement over all velocities.
   void displace(const std::vector<double>& by, State& state) const;
   /// Roundings of the numbers that a row is made of, some room for those of the factors included, relative to

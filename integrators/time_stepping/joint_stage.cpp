@@ -87,36 +87,15 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
     untouched_.sweep(in, rule, trial);
     return true;
   }
-  react(in, rule, trial);
+  joints_.react(in, rule, trial);
   if (contacts.problem != nullptr) {
     if (!struck_) joints_.rows.at_midpoint().factor();
     if (!react_to_contact(in, contacts, trial)) return false;
     joints_.correct_impulses(trial);  // for what contact changed
   }
-  move(in, rule, trial);
+  joints_.move_onto_joints(in, rule, trial);
   trial.account.swept = true;
   return true;
-}
-
-/// Reactions to the loads, with the rows of the iterate.
-void JointStage::react(const StepInput& in, const StepRule& rule, StepTrial& trial) {
-  JointArrays& arrays = *joints_.arrays;
-  StepJointRows& rows = joints_.rows;
-  const Range q = joints_.assembly->components()[joints_.component].q, v = joints_.v();
-  std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, arrays.before_q.begin() + q.begin);
-  std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, arrays.before_v.begin() + v.begin);
-  rows.place(in, trial);
-  // Choosing factors the rows at the end.
-  if (!trial.account.swept) rows.choose(in, trial, joints_.left);
-  if (trial.account.swept || rows.is_mixed()) rows.factor();
-  joints_.find_free_velocities(in, rule, trial);
-  joints_.correct_impulses(trial);
-}
-
-/// Bodies move, and back onto the joints.
-void JointStage::move(const StepInput& in, const StepRule& rule, StepTrial& trial) {
-  joints_.move_bodies(in, rule, trial);
-  return_to_joints(in, trial);
 }
 
 void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
@@ -129,7 +108,7 @@ void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
 }
 
 void JointStage::approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free) {
-  react(in, rule, trial);
+  joints_.react(in, rule, trial);
   const Range v = joints_.v();
   for (Index i = v.begin; i < v.end; ++i) free[i] = trial.free[i] + joints_.arrays->dv_joints[i];
   allow_at_start(free);
@@ -139,44 +118,7 @@ void JointStage::leave(const StepInput& in, const StepRule& rule, const double* 
   const Range v = joints_.v();
   std::copy(change + v.begin, change + v.end, joints_.arrays->dv_contact.begin() + v.begin);
   joints_.correct_impulses(trial);
-  move(in, rule, trial);
-}
-
-/// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before. All of
-/// the displacement is made anew along the rows of this sweep, so that it does not depend on how the
-/// iteration went.
-void JointStage::return_to_joints(const StepInput& in, StepTrial& trial) {
-  JointArrays& arrays = *joints_.arrays;
-  StepJointRows& rows = joints_.rows;
-  joints_.displace(arrays.displacement, trial.end);
-  if (rows.is_singular()) return return_near_singular(in, trial);
-  const Range v = joints_.v();
-  rows.place_gaps(in, trial);
-  for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = -arrays.displacement[i];
-  rows.at_end().residuals(JointLevel::displacement, arrays.scratch.data(), joints_.left.data());
-  rows.solve(joints_.left);
-  rows.pushing().add_response(joints_.left.data(), arrays.scratch.data());
-  for (Index i = v.begin; i < v.end; ++i) arrays.displacement[i] += arrays.scratch[i];
-  joints_.displace(arrays.scratch, trial.end);
-}
-
-/// Several steps with rows of their own, which change much from one iterate to the next there.
-void JointStage::return_near_singular(const StepInput& in, StepTrial& trial) {
-  constexpr int turns = 6;
-  JointArrays& arrays = *joints_.arrays;
-  StepJointRows& rows = joints_.rows;
-  std::vector<double>& left = joints_.left;
-  const Range v = joints_.v();
-  for (int turn = 0; turn < turns; ++turn) {
-    rows.place_end(in, trial);
-    rows.factor();
-    for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gap(row);
-    rows.solve(left);
-    joints_.clear(arrays.scratch);
-    rows.pushing().add_response(left.data(), arrays.scratch.data());
-    for (Index i = v.begin; i < v.end; ++i) arrays.displacement[i] += arrays.scratch[i];
-    joints_.displace(arrays.scratch, trial.end);
-  }
+  joints_.move_onto_joints(in, rule, trial);
 }
 
 bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial) {

@@ -94,12 +94,8 @@ public:
 
   /// Impulses of the joints, with those by which they answer to contact.
   [[nodiscard]] const double* multipliers(const IslandProblem* problem);
-  /// Impulses of the joints alone, of the last sweep.
-  [[nodiscard]] const std::vector<double>& reactions() const { return joints_.impulse; }
-  /// The last displacement back onto the joints, over all velocities.
-  [[nodiscard]] const std::vector<double>& displacement() const { return joints_.arrays->displacement; }
-  /// Work of the impulses of the joints alone along the mean velocities [J].
-  [[nodiscard]] double work_of_reactions(const StepTrial& trial) { return joints_.work(trial); }
+  /// The iterate: impulses of the joints alone, the last displacement back onto them.
+  [[nodiscard]] JointIterate& iterate() { return joints_; }
   /// Takes the step down for the guess at the next one.
   void record(JointHistory& history) const { untouched_.record(struck_, history); }
   /// True if anything but friction in joints takes part.
@@ -110,13 +106,9 @@ public:
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
-  void react(const StepInput& in, const StepRule& rule, StepTrial& trial);
-  void move(const StepInput& in, const StepRule& rule, StepTrial& trial);
   void begin_at_start(const StepInput& in, StepTrial& trial);
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
-  void return_to_joints(const StepInput& in, StepTrial& trial);
-  void return_near_singular(const StepInput& in, StepTrial& trial);
 
   JointIterate joints_;
   UntouchedJoints untouched_;  // iterates joints_

@@ -57,7 +57,7 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
   joints.finish(in, trial);
   // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
   // along the rows at the start have none.
-  coupling_work_.add(joints.work_of_reactions(trial));
+  coupling_work_.add(joints.iterate().work(trial));
   if (contact != nullptr) rates_.resize(end.size());
   if (joints.is_struck()) {
     // Half of what rounding of the step before has left of the constraints, which the answers meet.
@@ -66,7 +66,7 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
     joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
   }
   for (std::size_t row = 0; row < end.size() && (contact != nullptr || start.depends_on_time()); ++row) {
-    const double reaction = joints.reactions()[row];
+    const double reaction = joints.iterate().impulse[row];
     double rate = 0.0;
     if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
@@ -84,7 +84,7 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
     if (!trial.loads_end.external.empty()) load -= trial.loads_end.external[i];
     // Coordinates and velocities of the plane correspond one to one.
     const double at = trial.end.q[q.begin + (i - v.begin)];
-    taken += load * (at - (at - joints.displacement()[i]));
+    taken += load * (at - (at - joints.iterate().arrays->displacement[i]));
   }
   energy_position_projection_ += taken;
 

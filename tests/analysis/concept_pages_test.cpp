@@ -127,7 +127,7 @@ TEST(ConceptPages, ShowWhatIsTestedHere) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 8U);
+  EXPECT_EQ(count, 9U);
 }
 
 // docs/modelling.md

@@ -29,6 +29,7 @@ double judge(const DiscPile& pile) {
 void expect_rest(const PileOptions& options, int falling, int resting) {
   DiscPile pile(options);
   SolverChain chain;
+  chain.set_budget({.residual = 1e-8});
   for (int step = 0; step < falling; ++step) {
     const ContactReport& report = pile.step(chain);
     ASSERT_TRUE(report.usable()) << "step " << step << ", residual " << report.residual;
