@@ -120,6 +120,7 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
   }
   if (memory.broad.size() != list.size()) {
     std::vector<Index> owners;
+    owners.reserve(list.size());
     for (const BodyOutline& outline : list) owners.push_back(outline.body);
     memory.broad.reset(owners);
   }
