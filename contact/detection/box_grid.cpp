@@ -67,7 +67,7 @@ typename BoxGrid<D>::Cell BoxGrid<D>::cell_of(const Level& level, const Vec<D>& 
 
 template <int D>
 Index BoxGrid<D>::place_of(const Level& level, const Cell& cell) {
-  Index place = static_cast<Index>(cell[0]);
+  auto place = static_cast<Index>(cell[0]);
   for (std::size_t k = 1; k < D; ++k) place += static_cast<Index>(cell[k]) * level.stride[k];
   return place & level.mask;
 }
