@@ -210,7 +210,8 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
   Constraint still;
   const StateView state{0.0, q.data(), v.data(), nullptr};
   const PairSide body = PairSide::of_body(slot, 0, local.radius, state);
-  fill_pair_rows(body, PairSide::of_motion(*ground.shapes.motion(0, ground.places), -3.0), gap_at(0), still);
+  const GapPoint at = gap_at(0);  // places the ground
+  fill_pair_rows(body, PairSide::of_motion(*ground.shapes.motion(0, ground.places), -3.0), at, still);
   EXPECT_EQ(rows.surface_velocity[1], still.surface_velocity[1] + 0.75);
   EXPECT_EQ(rows.surface_velocity[0], still.surface_velocity[0]);
 }

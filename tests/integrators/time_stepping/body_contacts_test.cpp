@@ -54,6 +54,7 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
     system.set_default_law({.friction = mu, .normal_restitution = e_n, .tangential_restitution = e_t});
     const auto any = [&] { return 2.0 * unit(random) - 1.0; };
     const Vec<2> v_a = Vec<2>(any(), any()) - n, v_b = Vec<2>(any(), any()) + n;
+    if (n.dot(v_a - v_b) > -0.01) continue;  // they part, or hardly touch
     const double w_a = any(), w_b = any();
     // Levers reach the middle of the overlap, which is hardly more than rounding.
     constexpr double overlap = 1e-14;
@@ -65,7 +66,6 @@ TEST(BodyContacts, DiscsThatCollideFollowTheLawOfWalton) {
     simulation.step();
     const double normal = n.dot(v_a - v_b);
     const double tangential = t.dot(v_a - v_b) + r_a * w_a + r_b * w_b;
-    ASSERT_LT(normal, 0.0);
     const double mass = 1.0 / (1.0 / m_a + 1.0 / m_b);
     const double P_n = -mass * (1.0 + e_n) * normal;
     const double to_stick = -mass / 3.0 * (1.0 + e_t) * tangential;
