@@ -16,7 +16,7 @@ bool is_one_planar_contact(const ContactProblem& problem) {
          problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
 }
 
-/// What moves along a row that joints hold fast, without rounding: of what moves around it, or has moved
+/// Velocity along a row that joints hold fast, without rounding: of what moves around it, or has moved
 /// before [m/s]. Seldom asked.
 [[gnu::noinline]] double along_held_row(const Constraint& constraint, int row, const double* velocity_free,
                                         double number) {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What meets of two edges that face each other, of two convex outlines: the ends of their overlap.
+/// Features that meet of two edges that face each other, of two convex outlines: the ends of their overlap.
 ///
 /// The problem: a face of one outline, and of the other outline the edge that looks most against it.
 /// Projected onto the face, the two overlap in an interval; at either end of it stands a vertex of the one

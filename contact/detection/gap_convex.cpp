@@ -16,8 +16,8 @@
 // of the edge beyond which it stands. If it is negative, the vertex stands before the edge, and along this
 // edge the overlap is least.
 //
-// What rounding leaves undecided (parallel edges, flat outlines in one line) is decided by projecting the two
-// edges that face each other onto one another, which gives the second contact of edge on edge as well
+// Cases that rounding leaves undecided (parallel edges, flat outlines in one line) are decided by projecting
+// the two edges that face each other onto one another, which gives the second contact of edge on edge as well
 // (edge_meeting.h).
 
 namespace carom {

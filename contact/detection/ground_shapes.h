@@ -43,7 +43,7 @@ public:
   [[nodiscard]] Index find(Index serial) const;
   /// Identity of a shape.
   [[nodiscard]] ObstacleId id(Index shape) const;
-  /// What a shape may touch.
+  /// Groups that a shape may touch.
   [[nodiscard]] ContactFilter filter(Index shape) const {
     return shapes_[shape].kind->filter(shapes_[shape].slot);
   }

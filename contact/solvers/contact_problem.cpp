@@ -68,7 +68,7 @@ void ContactProblem::reset_factors(int rows, int slots) {
   factored_ = true;
 }
 
-/// What solvers read of W most: its diagonal. Checks on the way that rows of a group have the same slots.
+/// Diagonal blocks of W, which solvers read most. Checks on the way that rows of a group have the same slots.
 void ContactProblem::group_factors() {
   const int slots = static_cast<int>(factors_.slots());
   for (const RowGroup& group : groups_) {

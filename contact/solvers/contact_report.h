@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What is known of the answer to a contact problem.
+/// Report on the answer to a contact problem.
 
 #include <carom/contact/solvers/chain_statistics.h>
 #include <carom/contact/solvers/contact_solver.h>

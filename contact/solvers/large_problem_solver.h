@@ -17,7 +17,7 @@ namespace carom {
 /// residual of residual.h on the problem itself.
 class LargeProblemSolver {
 public:
-  /// What an answer may cost. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and 0 <=
+  /// Budget of an answer. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and 0 <=
   /// accepted.
   void set_budget(const SweepBudget& budget);
   /// Improves impulses, and writes xi = W P + b, the modes of the groups and a report. Impulses that are an

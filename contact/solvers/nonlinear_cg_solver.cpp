@@ -19,7 +19,7 @@ constexpr int plain_looks = 8;
 // An answer that could not be accepted gets up to this many times the sweeps of the budget.
 constexpr int most_times = 10;
 
-// What the sweeps aim at is a little less than what is asked for: whoever judges adds in another order.
+// Aim of the sweeps: a little less than what is asked for: whoever judges adds in another order.
 constexpr double aim = 0.9;
 
 }  // namespace
@@ -37,7 +37,7 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
   if (best <= target) return {Outcome::solved, false, 0, {}};
   double before = 0.0;  // |g|^2 of the sweep before
   int sweep = 0, plain = 0;
-  // What must not be used is worth more sweeps than what is not exact.
+  // An answer that must not be used is worth more sweeps than one that is not exact.
   const auto goes_on = [&] {
     const bool refused = budget_.accepted > 0.0 && best > budget_.accepted;
     return sweep < budget_.sweeps || (refused && sweep < most_times * budget_.sweeps);

@@ -32,7 +32,7 @@ public:
   /// Starts from the impulses given, which may be outside their sets.
   [[nodiscard]] SolverAnswer improve(const ContactProblem& problem, std::span<double> impulse);
 
-  /// What an answer may cost.
+  /// Budget of an answer.
   [[nodiscard]] const SweepBudget& budget() const { return budget_; }
   void set_budget(const SweepBudget& budget) { budget_ = budget; }
 

@@ -61,8 +61,8 @@ public:
   [[nodiscard]] ContactReport solve_with(SolverId solver, const ContactProblem& problem,
                                          std::span<double> impulse);
 
-  /// What a problem in factors may cost. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and
-  /// 0 <= accepted.
+  /// Sets the budget of problems in factors. Throws std::invalid_argument unless sweeps >= 0, 0 < residual
+  /// and 0 <= accepted.
   void set_budget(const SweepBudget& budget);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.

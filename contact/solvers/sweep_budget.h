@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a large contact problem may cost, and how exact its answer has to be.
+/// Budget of a large contact problem: its cost, and how exact its answer has to be.
 
 namespace carom {
 
