@@ -69,7 +69,7 @@ public:
   [[nodiscard]] virtual bool has_contact_point(Index slot) const = 0;
   /// Material of that contact point.
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;
-  /// What that contact point may touch. The fingerprint of a system takes it from here.
+  /// Groups that the contact point may touch. The fingerprint of a system takes it from here.
   [[nodiscard]] virtual ContactFilter filter(Index /*slot*/) const { return {}; }
 
   /// Writes coordinates and velocities as described.

@@ -43,7 +43,7 @@ public:
   [[nodiscard]] virtual Index size() const = 0;                     ///< number of shapes
   [[nodiscard]] virtual BodyId body(Index slot) const = 0;          ///< the body it is fixed to, or `ground`
   [[nodiscard]] virtual MaterialId material(Index slot) const = 0;  ///< its material
-  /// What it may touch. The fingerprint of a system takes it from here.
+  /// Groups that it may touch. The fingerprint of a system takes it from here.
   [[nodiscard]] virtual ContactFilter filter(Index /*slot*/) const { return {}; }
   /// Appends the points that may touch a shape on ground, in a fixed order (their places are feature
   /// numbers).

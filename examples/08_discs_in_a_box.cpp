@@ -10,7 +10,7 @@
 //   time stepping h = 1e-3 s
 //
 // While the pile collapses, the sweeps end at their budget, and the step says how good its answer is. Once it
-// is at rest, each step is certified to 1e-8, and the energy account closes to rounding throughout.
+// is at rest, each step is certified to 1e-10, and the energy account closes to rounding throughout.
 //
 // Usage: 08_discs_in_a_box <folder>: writes course.csv (energies, contacts and residuals over time), and
 // discs_1.csv to discs_4.csv (places, radii and largest forces of the discs at four times) there.

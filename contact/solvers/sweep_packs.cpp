@@ -116,7 +116,7 @@ ContactPack& SweepPacks::find_room(const Group& group, int& lane) {
   return packs_[static_cast<std::size_t>(open.pack)];
 }
 
-/// What is left free in a pack is filled with contacts of nobody. Its bodies may be in the next one.
+/// Free places of a pack are filled with contacts of nobody. Its bodies may be in the next one.
 void SweepPacks::close(std::size_t open) {
   ContactPack& pack = packs_[static_cast<std::size_t>(open_[open].pack)];
   for (std::size_t lane = 0; lane < lane_count; ++lane) {

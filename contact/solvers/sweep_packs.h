@@ -24,7 +24,7 @@ struct alignas(32) SlotVelocity {
 };
 
 /// Four regular contacts (a normal row with its friction row, or a lone row P >= 0) without a body in common.
-/// What is not used is zero: such a contact keeps P = 0.
+/// Places that are not used are zero: such a contact keeps P = 0.
 struct alignas(32) ContactPack {
   std::array<Lanes, 6> h_n, h_t;       // scaled rows: three numbers of the first slot, three of the second
   Lanes b_n, b_t;                      // of the vector b

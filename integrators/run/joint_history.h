@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What joints did in the last steps, by which it is guessed for the next.
+/// Impulses and displacements of joints in the last steps, by which it is guessed for the next.
 
 #include <carom/core/export.h>
 #include <carom/core/ids.h>

@@ -18,7 +18,7 @@
 
 namespace carom::contact_test {
 
-/// What a pile is made of.
+/// Parameters of a pile.
 struct PileOptions {
   int discs = 100;
   double width = 2.0;  ///< of the box [m]; the default holds 2,000 discs about a metre high

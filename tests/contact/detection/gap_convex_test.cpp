@@ -34,7 +34,7 @@ OwnedOutline segment(double x, double y, double x_end, double y_end, double radi
   return {{{x, y}, {x_end, y_end}}, radius};
 }
 
-// What is found with a margin, with the one whose point on a is further left first.
+// Gaps found with a margin, with the one whose point on a is further left first.
 std::vector<GapPoint> find(const OwnedOutline& a, const OwnedOutline& b, double margin) {
   Gaps found;
   const int count = find_gaps(a.view(), b.view(), margin, found);

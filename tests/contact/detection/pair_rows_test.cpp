@@ -86,8 +86,8 @@ double rate(F&& f) {
   const auto slope = [&](double step) { return (f(step) - f(-step)) / (2.0 * step); };
   return (15.0 * slope(h) - 6.0 * slope(2.0 * h) + slope(3.0 * h)) / 10.0;
 }
-// What the differences leave: rounding, some 1e-15/h; of two vertices 0.5 apart with a speed up to 4, 36 (4
-// h/0.5)^6.
+// Errors that the differences leave: rounding, some 1e-15/h; of two vertices 0.5 apart with a speed up to 4,
+// 36 (4 h/0.5)^6.
 constexpr double tolerance = 3e-11;
 
 void expect_rates(const MovingPair& pair) {

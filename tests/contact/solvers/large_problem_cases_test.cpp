@@ -1,4 +1,4 @@
-// What sweeps must survive: forces that are not unique, contacts that cannot move, masses of any ratio,
+// Cases that sweeps must survive: forces that are not unique, contacts that cannot move, masses of any ratio,
 // strong friction with several local solutions or none.
 
 #include <carom/contact/solvers/nonlinear_cg_solver.h>

@@ -1,4 +1,4 @@
-// What joints did in the last steps: a ring of steps of one length, by which the next is guessed.
+// History of joints over the last steps: a ring of steps of one length, by which the next is guessed.
 
 #include <carom/integrators/run/joint_history.h>
 
