@@ -99,6 +99,10 @@ private:
     const OutlineEdge neighbour({ends, 0.0}, 0);
     return {turn_of(edge_.along, neighbour.along), false, face.head, neighbour.along, neighbour.length};
   }
+  // The ends of the neighbour, from the corner on. \param sense 1 at the head, -1 at the tail
+  static std::array<Vec<2>, 2> neighbour_at(const Corner& corner, double sense) {
+    return {corner.at, corner.at + sense * corner.length * corner.along};
+  }
   // The face goes on beyond a corner that touches nothing itself; belongs_here() says how far.
   static double opening(const Corner& corner) {
     return corner.turn == Corner::Turn::convex ? 0.0 : std::numeric_limits<double>::infinity();
@@ -129,9 +133,7 @@ private:
     if (height < -depth_) return false;
     const Index edge = at.feature_a - a_.size();
     if (best.length > 0.0 && best.tail == edge) {
-      const double reach = is_head ? corner.length : -corner.length;
-      const std::array<Vec<2>, 2> neighbour{corner.at, corner.at + reach * corner.along};
-      return is_cut_by(ends_) || (!corner.is_free && is_cut_by(neighbour));
+      return is_cut_by(ends_) || (!corner.is_free && is_cut_by(neighbour_at(corner, is_head ? 1.0 : -1.0)));
     }
     return height_above_others(edge, corner.at) <= height;
   }
@@ -194,9 +196,11 @@ private:
       case Corner::Turn::convex:
         break;
     }
-    // Inside the ridge, before both faces: the nearer one has it, if it looks at this vertex.
     const double own = edge_.normal().dot(from_corner);
     if (corner.is_free || beyond_neighbour <= 0.0 || own >= 0.0) return true;
+    // Outside the ridge, before the neighbour, and so is all of the outline.
+    if (height > 0.0 && !is_cut_by(ends_) && !is_cut_by(neighbour_at(corner, sense))) return false;
+    // Inside it, before both faces: the nearer one has it, if it looks at this vertex.
     if (sense > 0.0 ? own >= height : own > height) return true;
     return separation_at(corner.at, corner.along) < height;
   }

@@ -126,7 +126,7 @@ inline OwnedOutline random_outline(Random& random) {
   if (kind == 0) {
     out.vertices = {random.vec<2>(0.3)};
   } else if (kind == 1) {
-    out.vertices = {random.vec<2>(1.0), carom::Vec<2>(random.uniform(1.1, 2.0), random.uniform(-1.0, 1.0))};
+    out.vertices = {random.vec<2>(1.0), carom::Vec<2>{random.uniform(1.1, 2.0), random.uniform(-1.0, 1.0)}};
   } else if (kind == 2) {
     const double x = random.uniform(0.3, 1.5), y = random.uniform(0.3, 1.5);
     out.vertices = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
@@ -139,7 +139,8 @@ inline OwnedOutline random_outline(Random& random) {
       out.vertices.push_back({x * std::cos(angle), y * std::sin(angle)});
     }
   }
-  return out.moved(random.uniform(-3.0, 3.0), random.vec<2>(0.2));
+  const double angle = random.uniform(-3.0, 3.0);
+  return out.moved(angle, random.vec<2>(0.2));
 }
 
 // Two outlines: a far or near or overlapping one, or (every fourth) in touch but for rounding.
