@@ -52,10 +52,11 @@ bool LocatedMotion::advance(const LocatedStep& step) {
   return move(at);
 }
 
-/// Flights and impacts in turn.
+/// Flights and impacts in turn. A contact that rounding alone opens behind an answer without rebound closes
+/// again at once: then it takes part in the flight. Such answers are bounded like impacts.
 bool LocatedMotion::move(const At& at) {
-  int impacts = 0;
-  double now = 0.0;
+  int impacts = 0, captures = 0;
+  double now = 0.0, captured = -1.0;
   if (struck_) {
     if (!strike(at, now, true)) return false;
     ++impacts;
@@ -85,9 +86,11 @@ bool LocatedMotion::move(const At& at) {
     }
     now = hit;
     const bool fast = std::any_of(closing_.begin(), closing_.end(), [](const Closing& c) { return c.fast; });
-    if (fast && impacts == at.most_impacts) continue;
+    int& count = fast ? impacts : captures;
+    if (count == at.most_impacts || (!fast && now == captured)) continue;
     if (!strike(at, now, fast)) return false;
-    if (fast) ++impacts;
+    ++count;
+    if (!fast) captured = now;
   }
   rotate(at);
   return true;

@@ -16,7 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 namespace {
@@ -260,6 +262,48 @@ TEST(LocatedImpacts, LastingContactsOnTurningBodiesNeitherSinkNorGainEnergy) {
     EXPECT_LT(simulation.energy().total() - before, 1e-6) << i;
     before = simulation.energy().total();
     for (const ContactRecord& contact : simulation.report().contacts) EXPECT_GT(contact.gap, -1e-6) << i;
+  }
+}
+
+// A regular polygon between a floor and two inclines, rounding of whose contacts opens what just closed.
+System polygon_in_a_trough(std::uint64_t seed) {
+  carom_test::Random random(seed);
+  const double restitution = random.uniform(0.0, 1.0), friction = random.uniform(0.0, 1.0);
+  const Surface surface{
+      .friction = friction, .normal_restitution = restitution, .tangential_restitution = restitution};
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
+  for (const double side : {-1.0, 1.0}) {
+    const double slope = random.uniform(0.3, 1.5);
+    system.add(HalfPlane{.point = {2.0 * side, 0.0}, .normal = {-side * std::sin(slope), std::cos(slope)}},
+               surface);
+  }
+  const unsigned corners = 3 + random.below(4);
+  const double size = random.uniform(0.1, 0.5), angle = random.uniform(-3.0, 3.0);
+  const double x = random.uniform(-1.0, 1.0), spin = random.uniform(-10.0, 10.0);
+  Polygon shape;
+  for (unsigned i = 0; i < corners; ++i) {
+    const double at = 2.0 * std::numbers::pi * i / corners;
+    shape.vertices.emplace_back(size * std::cos(at), size * std::sin(at));
+  }
+  shape.body = system.add(RigidBody{.mass = {1.0, 0.2 * size * size},
+                                    .position = {x, 1.5},
+                                    .angle = angle,
+                                    .velocity = random.vec<2>(3.0),
+                                    .spin = spin});
+  system.add(shape);
+  return system;
+}
+
+// One common e: no impact gains energy (Johansson 1999).
+TEST(LocatedImpacts, OfPolygonsInATroughComeToAnEndInEveryStep) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Simulation simulation(polygon_in_a_trough(seed), located(2e-3));
+    simulation.run_until(2.0);
+    EXPECT_GT(simulation.statistics().impacts, 0) << seed;
+    EXPECT_EQ(simulation.statistics().energy_gains, 0) << seed;
+    EXPECT_TRUE(ledger_closes(simulation.energy())) << seed;
   }
 }
 
