@@ -70,6 +70,7 @@ bool ActiveSet::find_islands() {
 /// islands together.
 template <class F>
 void ActiveSet::for_groups(F&& f) {
+  if (contacts_.size() == 1) return f(0, 1);
   const bool islands = find_islands();
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;

@@ -20,13 +20,7 @@ std::uint64_t mixed(std::uint64_t hash, const FeatureKey& key) {
 
 }  // namespace
 
-void ConstraintTable::clear() {
-  keys_.clear();
-  slots_.clear();
-}
-
-void ConstraintTable::finish() {
-  if (keys_.empty()) return;
+void ConstraintTable::fill_slots() {
   slots_.assign(std::bit_ceil(2 * keys_.size()), none);
   for (Index i = 0; i < keys_.size(); ++i) slots_[slot_of(keys_[i])] = i;
 }
@@ -40,7 +34,11 @@ std::size_t ConstraintTable::slot_of(const ConstraintKey& key) const {
 }
 
 Index ConstraintTable::find(const ConstraintKey& key) const {
-  return slots_.empty() ? none : slots_[slot_of(key)];
+  if (!slots_.empty()) return slots_[slot_of(key)];
+  for (Index i = 0; i < keys_.size(); ++i) {
+    if (keys_[i] == key) return i;
+  }
+  return none;
 }
 
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace carom {
@@ -15,11 +16,16 @@ namespace carom {
 class CAROM_API ConstraintTable {
 public:
   /// Forgets all keys.
-  void clear();
+  void clear() {
+    keys_.clear();
+    slots_.clear();
+  }
   /// Adds a key that is not among them. find() knows it after finish().
   void add(const ConstraintKey& key) { keys_.push_back(key); }
   /// Makes the keys ready to be found, after the last add().
-  void finish();
+  void finish() {
+    if (keys_.size() > few) fill_slots();
+  }
 
   /// All, in the order of add().
   [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return keys_; }
@@ -27,10 +33,12 @@ public:
   [[nodiscard]] Index find(const ConstraintKey& key) const;
 
 private:
+  static constexpr std::size_t few = 8;  // keys that are compared one by one sooner than mixed
+  void fill_slots();
   [[nodiscard]] std::size_t slot_of(const ConstraintKey& key) const;
 
   std::vector<ConstraintKey> keys_;
-  std::vector<Index> slots_;  // their number is a power of two; none: empty
+  std::vector<Index> slots_;  // a power of two of them, none where keys are few; none: empty
 };
 
 }  // namespace carom

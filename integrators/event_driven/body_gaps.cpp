@@ -31,7 +31,7 @@ StepPolynomial::End smooth_of(const StepPolynomial::End& gap, double rho) {
 
 /// The largest speed of a gap in a step.
 double fastest_in(const SearchedStep& step, std::size_t bound) {
-  const StepEnd &start = step.ends.start, &end = step.ends.end;
+  const StepEnd &start = step.ends.start(), &end = step.ends.end();
   const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
   if (step.motion.flies_freely()) return speed;
   // Loads within the step are as at its ends, but for what steps may be wrong by.
@@ -115,7 +115,7 @@ double first_closing(SearchedStep& step, std::size_t pair, double fastest, doubl
   const auto at_end = [&](double time, const StepEnd& end) {
     return end.gap_known[place] != 0 ? look(time, end.gaps[pair]) : gap.look(time);
   };
-  const QuantityLook from = at_end(step.begin(), step.ends.start), to = at_end(step.end(), step.ends.end);
+  const QuantityLook from = at_end(step.begin(), step.ends.start()), to = at_end(step.end(), step.ends.end());
   return FallSearch(gap, rule, until).first(from, to);
 }
 
@@ -155,7 +155,7 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
 
 Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Event before) {
   const GroupModel& model = step.motion.model();
-  const StepEnd &start = step.ends.start, &end = step.ends.end;
+  const StepEnd &start = step.ends.start(), &end = step.ends.end();
   const double length = step.end() - step.begin();
   Event found = before;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {

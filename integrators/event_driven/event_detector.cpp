@@ -43,10 +43,10 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   is_active_.assign(motion_->model().pairs.size(), 0);
   for (const ActiveContact& contact : motion_->active().list()) is_active_[contact.place] = 1;
   take_features(time, y);
-  if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start)) {
+  if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start())) {
     failure_->fail_loads(memory_->within);
   }
-  guards_.update(ends_.start.sample.guards, scales_.guard_noise);
+  guards_.update(ends_.start().sample.guards, scales_.guard_noise);
 }
 
 /// Takes the features that vertices touch for those of the phase; at the border of two the one that comes
@@ -79,7 +79,7 @@ Event EventDetector::step(Flow& flow, double time, std::span<const double> y, do
       return unbounded_at(time, y, error.what());
     }
     if (!sample_step_end(*motion_, flow.end(), flow.state().data(), is_active_, scales_.force, *memory_,
-                         ends_.end)) {
+                         ends_.end())) {
       failure_->fail_loads(memory_->within);
     }
     memory_->samples.forget();
@@ -125,8 +125,8 @@ bool EventDetector::finds_unbounded_force(const Flow& flow) {
 }
 
 Event EventDetector::first(SearchedStep& step) {
-  passed_over_.gaps.assign(ends_.end.gaps.size(), 0);
-  passed_over_.forces.assign(ends_.end.sample.margins.size(), 0);
+  passed_over_.gaps.assign(ends_.end().gaps.size(), 0);
+  passed_over_.forces.assign(ends_.end().sample.margins.size(), 0);
   for (;;) {
     const Event predicted = predict_event(step, passed_over_);
     if (step.has_guards() && misses_loads(step, predicted.time)) {
@@ -150,8 +150,8 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
   // A gap of two bodies may open and close again where the nearest feature changes.
   if (predicted.which >= motion_->model().body_pairs) return !(located.time > step.begin());
   // A gap that opens: in steps of low order there would be one after each restart.
-  const StepPolynomial::End &start = ends_.start.gaps[predicted.which],
-                            &end = ends_.end.gaps[predicted.which];
+  const StepPolynomial::End &start = ends_.start().gaps[predicted.which],
+                            &end = ends_.end().gaps[predicted.which];
   return start.first >= 0.0 && end.first >= 0.0 &&
          end.value >= ends_.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
 }
@@ -169,8 +169,8 @@ Event EventDetector::first_of(SearchedStep& step, const Event& predicted, const 
 }
 
 void EventDetector::accept() {
-  std::swap(ends_.start, ends_.end);
-  guards_.update(ends_.start.sample.guards, scales_.guard_noise);
+  ends_.advance();
+  guards_.update(ends_.start().sample.guards, scales_.guard_noise);
 }
 
 void EventDetector::land(Flow& flow, const Event& event, std::span<double> y) const {

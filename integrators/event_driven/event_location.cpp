@@ -34,7 +34,7 @@ struct Bracket {
 
 Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
   Bracket bracket{step.begin(), step.end()};
-  const GuardSample &start = step.ends.start.sample, &end = step.ends.end.sample;
+  const GuardSample &start = step.ends.start().sample, &end = step.ends.end().sample;
   if (predicted.guard == Guard::force) {
     const double level = step.ends.force_level(predicted.which);
     bracket.f_low = start.margins[predicted.which] - level;
@@ -102,7 +102,7 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
   double time = std::clamp(predicted.time, at.low, at.high);
   if (predicted.guard == Guard::switching_point &&
       step.guards.passes_at_once({at.low, predicted.which, predicted.sign},
-                                 step.ends.start.sample.guards[predicted.which],
+                                 step.ends.start().sample.guards[predicted.which],
                                  step.scales.gap_noise / 4.0)) {
     time = at.high = at.low;
   }
@@ -113,7 +113,7 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     const Remainder rest = remainder_of(step, step.memory.within, predicted, step.memory.located);
     // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
     const bool opens = predicted.guard == Guard::gap && rest.rate >= 0.0 &&
-                       step.ends.start.gaps[predicted.which].first >= 0.0;
+                       step.ends.start().gaps[predicted.which].first >= 0.0;
     if ((std::abs(rest.value) <= rest.noise && !opens) || at.low == at.high) {
       landing.time = time;
       landing.y.assign(y.begin(), y.end());

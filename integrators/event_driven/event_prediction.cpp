@@ -41,7 +41,7 @@ public:
     const std::size_t count = motion.model().unknowns.q_size();
     memory.y.resize(motion.size());
     memory.path_acceleration.resize(count);
-    follow_path(step_->ends.start.path, step_->ends.end.path, count, time, memory.y,
+    follow_path(step_->ends.start().path, step_->ends.end().path, count, time, memory.y,
                 memory.path_acceleration.data());
     motion.read_guards(time, memory.y.data(), memory.path_acceleration.data(), memory.within, out.guards);
   }
@@ -56,7 +56,7 @@ void search(SearchedStep& step, GuardSampler& sampler, const FallRule& rule, con
             Event& found) {
   QuantityOf quantity([&](double time) { return read(step.memory.samples.at(time, sampler)); });
   candidate.time = FallSearch(quantity, rule, until(found))
-                       .first(read(step.ends.start.sample), read(step.ends.end.sample));
+                       .first(read(step.ends.start().sample), read(step.ends.end().sample));
   if (candidate.time < until(found)) found = candidate;
 }
 
@@ -92,7 +92,7 @@ void predict_features(SearchedStep& step, GuardSampler& sampler, Event& found) {
 }
 
 void predict_forces(SearchedStep& step, GuardSampler& sampler, const FalseAlarms& passed_over, Event& found) {
-  for (std::size_t i = 0; i < step.ends.end.sample.margins.size(); ++i) {
+  for (std::size_t i = 0; i < step.ends.end().sample.margins.size(); ++i) {
     if (passed_over.forces[i] != 0) continue;
     FallRule rule;
     rule.derivatives = 0;
@@ -110,7 +110,7 @@ void predict_switching_points(SearchedStep& step, GuardSampler& sampler, Event& 
   PathSampler along(step);
   const bool path = step.motion.guards_follow_path();
   const GuardSearch::Passage passage = step.guards.first(
-      step.motion.guards(), step.ends.start.sample, step.ends.end.sample,
+      step.motion.guards(), step.ends.start().sample, step.ends.end().sample,
       path ? step.memory.path_samples : step.memory.samples,
       path ? static_cast<GuardSampler&>(along) : sampler, step.scales.guard_noise, until(found));
   if (passage.time < until(found))
@@ -121,7 +121,7 @@ void predict_switching_points(SearchedStep& step, GuardSampler& sampler, Event& 
 
 Event predict_event(SearchedStep& step, const FalseAlarms& passed_over) {
   Event found = predict_gap(step, passed_over, {step.end()});
-  const GuardSample& end = step.ends.end.sample;
+  const GuardSample& end = step.ends.end().sample;
   if (end.margins.empty() && end.guards.empty()) return found;
   StepSampler sampler(step);
   predict_slips(step, sampler, found);
@@ -135,7 +135,7 @@ Event predict_event(SearchedStep& step, const FalseAlarms& passed_over) {
 Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event before) {
   constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
   constexpr int least_of_moving = 2;
-  const StepEnd &start = step.ends.start, &end = step.ends.end;
+  const StepEnd &start = step.ends.start(), &end = step.ends.end();
   Event found = before;
   for (std::size_t i = 0; i < step.motion.model().body_pairs; ++i) {
     if (step.is_active[i] != 0 || passed_over.gaps[i] != 0) continue;

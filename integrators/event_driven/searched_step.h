@@ -30,7 +30,7 @@ struct SearchedStep {
   /// End of the step [s].
   [[nodiscard]] double end() const { return flow.end(); }
   /// True if there are guards of elements.
-  [[nodiscard]] bool has_guards() const { return !ends.end.sample.guards.empty(); }
+  [[nodiscard]] bool has_guards() const { return !ends.end().sample.guards.empty(); }
   /// Samples the motion at a time of the step, by interpolation, into the memory.
   const MotionSample& sample(double time) {
     memory.y.resize(motion.size());

@@ -42,22 +42,22 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
 
 }  // namespace
 
-double StepEnds::gap_level(std::size_t pair) const { return std::min(0.0, start.gaps[pair].value); }
+double StepEnds::gap_level(std::size_t pair) const { return std::min(0.0, start().gaps[pair].value); }
 
 double StepEnds::slip_level(std::size_t contact) const {
-  return std::min(0.0, start.sample.slips[contact].value);
+  return std::min(0.0, start().sample.slips[contact].value);
 }
 
 double StepEnds::feature_level(std::size_t contact) const {
-  return std::min(0.0, start.sample.features[contact].value);
+  return std::min(0.0, start().sample.features[contact].value);
 }
 
 double StepEnds::force_level(std::size_t island) const {
-  return std::clamp(start.sample.margins[island], -roundoff_growth * start.noises[island], 0.0);
+  return std::clamp(start().sample.margins[island], -roundoff_growth * start().noises[island], 0.0);
 }
 
 double StepEnds::force_noise(std::size_t island) const {
-  return std::max(start.noises[island], end.noises[island]);
+  return std::max(start().noises[island], end().noises[island]);
 }
 
 namespace {
@@ -66,6 +66,7 @@ namespace {
 void read_features(const SmoothMotion& motion, const MotionSample& at, GuardSample& out) {
   constexpr StepPolynomial::End far{std::numeric_limits<double>::max(), 0.0, 0.0};
   const std::vector<ActiveContact>& closed = motion.active().list();
+  if (motion.model().bounds.empty()) return;
   out.features.resize(closed.size());
   for (std::size_t i = 0; i < closed.size(); ++i) {
     out.features[i] = far;

@@ -11,6 +11,7 @@
 #include <carom/integrators/event_driven/smooth_motion.h>
 #include <carom/integrators/event_driven/step_path.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -33,9 +34,15 @@ struct StepEnd {
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
 /// what has just passed does not pass once more.
-struct CAROM_API StepEnds {
-  StepEnd start, end;
-
+class CAROM_API StepEnds {
+public:
+  /// The ends.
+  [[nodiscard]] StepEnd& start() { return ends_[start_]; }
+  [[nodiscard]] const StepEnd& start() const { return ends_[start_]; }
+  [[nodiscard]] StepEnd& end() { return ends_[1 - start_]; }
+  [[nodiscard]] const StepEnd& end() const { return ends_[1 - start_]; }
+  /// Makes the end the start of the next step.
+  void advance() { start_ = 1 - start_; }
   /// Level of a gap [m]: of two corners that hit at almost the same time one is found late.
   [[nodiscard]] double gap_level(std::size_t pair) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
@@ -46,6 +53,10 @@ struct CAROM_API StepEnds {
   [[nodiscard]] double force_level(std::size_t island) const;
   /// Rounding of the margin of a force at either end [N].
   [[nodiscard]] double force_noise(std::size_t island) const;
+
+private:
+  std::array<StepEnd, 2> ends_;
+  std::size_t start_ = 0;
 };
 
 /// Memory of the detection of events, shared by clock groups.

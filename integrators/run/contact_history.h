@@ -20,9 +20,12 @@ struct ContactHistory {
   /// Forgets all contacts. \param length of the step whose impulses are to be added [s]
   void start(double length) {
     step = length;
+    if (empty()) return;
     contacts.clear();
     impulses.clear();
   }
+  /// True if there are no contacts.
+  [[nodiscard]] bool empty() const { return impulses.empty(); }
   /// Adds a contact of that step.
   void add(const ConstraintKey& key, const std::array<double, 2>& impulse) {
     contacts.add(key);

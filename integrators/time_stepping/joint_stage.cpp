@@ -20,6 +20,7 @@ JointStages::JointStages(const Assembly& assembly) : assembly_(&assembly) {
 }
 
 const double* JointStages::velocities_of_contact(std::span<const Index> components, StepTrial& trial) const {
+  if (stages_.empty()) return trial.end.v.data();
   const auto has_joints = [this](Index component) { return of(component) != nullptr; };
   if (std::none_of(components.begin(), components.end(), has_joints)) return trial.end.v.data();
   if (components.size() == 1) return of(components.front())->velocities_of_contact(trial);

@@ -213,13 +213,13 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
 /// Where a contact of a body touches: the lever r follows from its rows, n x r = -r.t and t x r = r.n.
 void StepBalance::place(const Constraint& at, const StepInput& in, ContactRecord& entry) const {
   if (at.type != ConstraintType::contact) return;
-  const auto dimension = static_cast<std::size_t>(at.rows);
   const double* const centre = in.start.q.data() + assembly_->layout()->bodies()[at.body()].q;
-  std::copy_n(at.row(0), dimension, entry.normal.begin());
-  std::copy_n(centre, dimension, entry.point.begin());
-  if (dimension != 2 || at.blocks[0].columns != 3) return;
-  for (std::size_t i = 0; i < 2; ++i)
-    entry.point[i] += at.row(0)[2] * at.row(1)[i] - at.row(1)[2] * at.row(0)[i];
+  const double *const n = at.row(0), *const t = at.row(1);
+  const bool turns = at.rows == 2 && at.blocks[0].columns == 3;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(at.rows); ++i) {
+    entry.normal[i] = n[i];
+    entry.point[i] = turns ? centre[i] + (n[2] * t[i] - t[2] * n[i]) : centre[i];
+  }
 }
 
 /// Impulses from which the next step starts.
@@ -256,7 +256,7 @@ StepResult& StepBalance::finish(const StepInput& in) {
   flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
   flows[EnergyFlow::coupling_discretisation] = -(result_.stored.potential() + energy_position_projection_ -
                                                  in.companion.ledger.potential() + coupling_work_.value());
-  result_.contacts.contacts.finish();
+  if (!result_.contacts.empty()) result_.contacts.contacts.finish();
   return result_;
 }
 
@@ -323,7 +323,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   }
   std::swap(companion.rounding, trial.rounding);
   companion.ledger.book(result.flows, result.stored);
-  std::swap(companion.contacts, result.contacts);
+  if (!companion.contacts.empty() || !result.contacts.empty()) std::swap(companion.contacts, result.contacts);
   companion.modes = result.joint_friction_modes;
   for (const ContactRecord& contact : result.report.contacts) {
     if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
