@@ -18,13 +18,13 @@ namespace carom {
 /// of second order.
 enum class ForceRule : std::uint8_t {
   /// h times the mean of the forces at both ends (Johansson 1999, section 4). Conserves linear momentum;
-  /// energy
-  /// too where forces are linear in the coordinates, else with a bounded error of order h^2.
+  /// energy too where forces are linear in the coordinates, else with a bounded error of order h^2.
   trapezoidal,
   /// Mean forces whose work is exactly the change of the potentials, at mean levers (docs/method.md,
-  /// section 6). Conserves energy, linear and angular momentum of springs to round-off. Elements without a
-  /// mean
-  /// force are evaluated at the middle of the step. Rigid bodies turn by 2 atan(h w/2).
+  /// section 6). Conserves energy, linear and angular momentum of springs to round-off, and of mechanisms
+  /// while nothing touches or rubs: reactions of joints do no work then, positions obey the joints, and
+  /// velocities do so to order h^2 (Gonzalez 1999; Betsch and Steinmann 2002). Elements without a mean force
+  /// are evaluated at the middle of the step. Rigid bodies turn by 2 atan(h w/2).
   energy_momentum
 };
 

@@ -41,13 +41,21 @@ void JointIterate::find_free_velocities(const StepInput& in, const StepRule& rul
 
 /// With G1 on both sides, instead of Gm on one, the matrix is symmetric and its range is that of G1, where
 /// rows depend on each other too.
-void JointIterate::correct_impulses(const StepTrial& trial) {
+void JointIterate::correct_impulses(const StepInput& in, const StepTrial& trial) {
   const Range v = this->v();
   std::vector<double>& sum = arrays->scratch;
   for (Index i = v.begin; i < v.end; ++i) {
     sum[i] = trial.free[i] + arrays->dv_joints[i] + arrays->dv_contact[i];
   }
-  rows.at_end().residuals(JointLevel::velocity, sum.data(), left.data());
+  if (rows.is_mean()) {
+    // Gaps are those of the velocities of the iterate before.
+    const double half = 0.5 * in.step;
+    for (Index i = v.begin; i < v.end; ++i) sum[i] = half * (sum[i] - arrays->before_v[i]);
+    rows.at_end().residuals(JointLevel::displacement, sum.data(), left.data());
+    for (double& gap : left) gap /= half;
+  } else {
+    rows.at_end().residuals(JointLevel::velocity, sum.data(), left.data());
+  }
   rows.solve(left);
   clear(arrays->dv_joints);
   for (std::size_t row = 0; row < left.size(); ++row) impulse[row] += left[row];
@@ -71,9 +79,9 @@ void JointIterate::react(const StepInput& in, const StepRule& rule, StepTrial& t
   rows.place(in, trial);
   // Choosing factors the rows at the end.
   if (!trial.account.swept) rows.choose(in, trial, left);
-  if (trial.account.swept || rows.is_mixed()) rows.factor();
+  if (trial.account.swept || rows.reactions() == Reactions::mixed) rows.factor();
   find_free_velocities(in, rule, trial);
-  correct_impulses(trial);
+  correct_impulses(in, trial);
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0 from the displacement of the sweep before. All of
@@ -81,7 +89,7 @@ void JointIterate::react(const StepInput& in, const StepRule& rule, StepTrial& t
 /// iteration went.
 void JointIterate::return_to_joints(const StepInput& in, StepTrial& trial) {
   displace(arrays->displacement, trial.end);
-  if (rows.is_singular()) return return_near_singular(in, trial);
+  if (rows.reactions() != Reactions::halfway) return return_near_singular(in, trial);
   const Range v = this->v();
   rows.place_gaps(in, trial);
   for (Index i = v.begin; i < v.end; ++i) arrays->scratch[i] = -arrays->displacement[i];
@@ -110,7 +118,7 @@ void JointIterate::return_near_singular(const StepInput& in, StepTrial& trial) {
 
 void JointIterate::move_onto_joints(const StepInput& in, const StepRule& rule, StepTrial& trial) {
   move_bodies(in, rule, trial);
-  return_to_joints(in, trial);
+  if (!rows.is_mean()) return_to_joints(in, trial);
 }
 
 void JointIterate::displace(const std::vector<double>& by, State& state) const {
@@ -127,7 +135,7 @@ double JointIterate::violation(const State& end) {
   at_end.residuals_and_sizes(end.v.data(), left.data(), sizes.data());
   for (std::size_t row = 0; row < left.size(); ++row) {
     gap = std::max(gap, std::abs(at_end.gap(row)));
-    if (sizes[row] > 0.0) largest = std::max(largest, std::abs(left[row]) / sizes[row]);
+    if (sizes[row] > 0.0 && !rows.is_mean()) largest = std::max(largest, std::abs(left[row]) / sizes[row]);
   }
   if (extent > 0.0) largest = std::max(largest, gap / extent);
   return largest / rounding;

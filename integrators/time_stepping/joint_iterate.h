@@ -39,8 +39,8 @@ struct CAROM_API JointIterate {
   void clear(std::vector<double>& numbers) const;
   /// Velocities at the end without joints and contact, by the guess at the loads.
   void find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
-  /// One step of Newton's method for G1 v_{j+1} + rate = 0.
-  void correct_impulses(const StepTrial& trial);
+  /// One step of Newton's method for G1 v_{j+1} + rate = 0; along mean rows for g(q_{j+1}, t_{j+1}) = 0.
+  void correct_impulses(const StepInput& in, const StepTrial& trial);
   /// Reactions to the loads, with the rows of the iterate. The iterate before is kept.
   void react(const StepInput& in, const StepRule& rule, StepTrial& trial);
   /// Bodies move, and back onto the joints.

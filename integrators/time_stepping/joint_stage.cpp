@@ -59,7 +59,7 @@ void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, 
   struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
                         [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
   guessed_ = guesses && contacts.problem == nullptr && untouched_.start(in, rule, trial);
-  if (!guessed_) begin_at_start(in, trial);
+  if (!guessed_) begin_at_start(in, rule.is_mean() && contacts.problem == nullptr, trial);
   if (!struck_ && !rows.at_start().depends_on_time()) return;
   rows.place_start(in, trial);
   if (!struck_) return;
@@ -68,11 +68,11 @@ void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, 
   contacts.problem->respond(response);
 }
 
-/// The first iterate without reactions.
-void JointStage::begin_at_start(const StepInput& in, StepTrial& trial) {
+/// The first iterate without reactions. \param mean whether these are to act along mean rows
+void JointStage::begin_at_start(const StepInput& in, bool mean, StepTrial& trial) {
   JointArrays& arrays = *joints_.arrays;
   const Range q = joints_.assembly->components()[joints_.component].q, v = joints_.v();
-  joints_.rows.start();
+  joints_.rows.start(in, mean, trial);
   std::fill(joints_.impulse.begin(), joints_.impulse.end(), 0.0);
   for (std::vector<double>* const numbers : {&trial.dv_impulses, &arrays.dv_joints, &arrays.displacement}) {
     joints_.clear(*numbers);
@@ -92,7 +92,7 @@ bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts&
   if (contacts.problem != nullptr) {
     if (!struck_) joints_.rows.at_midpoint().factor();
     if (!react_to_contact(in, contacts, trial)) return false;
-    joints_.correct_impulses(trial);  // for what contact changed
+    joints_.correct_impulses(in, trial);  // for what contact changed
   }
   joints_.move_onto_joints(in, rule, trial);
   trial.account.swept = true;
@@ -103,7 +103,7 @@ void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
   joints_.clear(joints_.arrays->dv_contact);
   struck_ = true;
   guessed_ = false;
-  begin_at_start(in, trial);
+  begin_at_start(in, false, trial);
   joints_.rows.place_start(in, trial);
   joints_.rows.at_start().factor();
 }
@@ -118,7 +118,7 @@ void JointStage::approach(const StepInput& in, const StepRule& rule, StepTrial& 
 void JointStage::leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial) {
   const Range v = joints_.v();
   std::copy(change + v.begin, change + v.end, joints_.arrays->dv_contact.begin() + v.begin);
-  joints_.correct_impulses(trial);
+  joints_.correct_impulses(in, trial);
   joints_.move_onto_joints(in, rule, trial);
 }
 
@@ -233,9 +233,7 @@ void JointStage::settle_velocities(const StepInput& in, StepTrial& trial) {
 }
 
 void JointStage::finish(const StepInput& in, StepTrial& trial) const {
-  if (guessed_) return;
-  trial.place_midpoint(in, joints_.component);
-  evaluate_positions(*joints_.assembly, joints_.component, trial.midpoint.view(), trial.at_midpoint);
+  if (!guessed_) joints_.rows.place_midpoint(in, trial);
 }
 
 double JointStage::project_velocities(StepTrial& trial) {

@@ -11,6 +11,10 @@
 /// order in h, by what is left of  g(q_{j+1}, t_{j+1}) = 0. Where nothing touches or rubs the steps before
 /// say what to begin with (untouched_joints.h).
 ///
+/// Under ForceRule::energy_momentum, where nothing touches or rubs and no row is near to following from
+/// others, Gm are mean rows (step_joint_rows.h), L is found from  g(q_{j+1}, t_{j+1}) = 0  and there is no d:
+/// reactions do no work, and velocities follow (Gonzalez 1999; Betsch and Steinmann 2002).
+///
 /// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
 /// their rows G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees velocities
 /// that the joints allow there,
@@ -106,7 +110,7 @@ public:
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
-  void begin_at_start(const StepInput& in, StepTrial& trial);
+  void begin_at_start(const StepInput& in, bool mean, StepTrial& trial);
   [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
 

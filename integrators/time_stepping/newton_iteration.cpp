@@ -100,7 +100,11 @@ NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, 
   }
   JointConstraints& end = joints.rows().at_end();
   residuals_.resize(end.size());
-  end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
+  if (joints.rows().is_mean()) {
+    std::fill(residuals_.begin(), residuals_.end(), 0.0);  // the sweep has met the positions
+  } else {
+    end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
+  }
   matrix_.solve(update_.data() + v.begin, residuals_.data());
   if (contact != nullptr) {
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];

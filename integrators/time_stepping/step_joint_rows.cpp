@@ -37,6 +37,27 @@ double angle(const JointConstraints& joints, std::size_t row) {
 StepJointRows::StepJointRows(const Assembly& assembly, Index component)
     : component_(component), end_(assembly, component), midpoint_(end_), start_(end_) {}
 
+void StepJointRows::start(const StepInput& in, bool mean, StepTrial& trial) {
+  reactions_ = Reactions::halfway;
+  mean_ = mean;
+  if (mean) evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
+}
+
+void StepJointRows::place_midpoint(const StepInput& in, StepTrial& trial) const {
+  trial.place_midpoint(in, component_);
+  if (!mean_) {
+    evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
+    return;
+  }
+  const std::vector<double>&start = trial.at_start.rotation, &end = trial.at_end.rotation;
+  const Range bodies = in.assembly.components()[component_].bodies;
+  for (Index body = bodies.begin; body < bodies.end; ++body) {
+    const Index first = in.assembly.layout()->bodies()[body].rotation;
+    if (first == none) continue;
+    for (Index i = first; i < first + 2; ++i) trial.at_midpoint.rotation[i] = 0.5 * (start[i] + end[i]);
+  }
+}
+
 void StepJointRows::place_start(const StepInput& in, StepTrial& trial) {
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
   update(start_, view_of(in.start, trial.at_start), in);
@@ -53,16 +74,15 @@ void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
 }
 
 void StepJointRows::place(const StepInput& in, StepTrial& trial) {
-  trial.place_midpoint(in, component_);
-  evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
   place_end(in, trial);
+  place_midpoint(in, trial);
   const bool halfway = reactions_ != Reactions::at_end;
   update(midpoint_, halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end),
          in);
 }
 
-bool StepJointRows::begin_regular(const StepInput& in, StepTrial& trial) {
-  start();
+bool StepJointRows::begin_regular(const StepInput& in, bool mean, StepTrial& trial) {
+  start(in, mean, trial);
   place(in, trial);
   end_.factor();
   judge_pivots();
@@ -90,6 +110,10 @@ void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<do
   end_.factor();
   judge_pivots();
   if (regular_) return;
+  if (mean_) {
+    mean_ = false;
+    place(in, trial);
+  }
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);

@@ -4,6 +4,10 @@
 /// Rows of the joints of one component in a step: G0 at the start, Gm halfway (or where the reactions push),
 /// G1 at the end; and the factors by which conditions at the end are met. Near a singular position, where
 /// rows depend on each other, the rows of the reactions are chosen so that sweeps contract.
+///
+/// Mean rows are Gm at the mean of the places and of the rotation matrices at both ends, for
+/// ForceRule::energy_momentum: where bodies turn by 2 atan(h w/2) these are, up to a factor, discrete
+/// derivatives of the constraints of planar joints, g_{j+1} - g_j = h Gm (v_j + v_{j+1})/2 (Gonzalez 1999).
 
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/joint_constraints.h>
@@ -28,22 +32,25 @@ class CAROM_API StepJointRows {
 public:
   StepJointRows(const Assembly& assembly, Index component);
 
-  /// Begins a step: reactions along the rows halfway.
-  void start() { reactions_ = Reactions::halfway; }
-  /// Begins a step at its first iterate where no row is near to following from others: place(), and the
-  /// factors of the rows at the end. False where one is.
-  [[nodiscard]] bool begin_regular(const StepInput& in, StepTrial& trial);
+  /// Begins a step: reactions along the rows halfway. \param mean whether these are mean rows
+  void start(const StepInput& in, bool mean, StepTrial& trial);
+  /// Begins a step at its first iterate where no row is near to following from others: start(), place(), and
+  /// the factors of the rows at the end. False where one is.
+  [[nodiscard]] bool begin_regular(const StepInput& in, bool mean, StepTrial& trial);
   /// Brings the rows at the start to it; evaluates rotations there. Throws SolverError where a prescribed
   /// motion is not finite, as the others.
   void place_start(const StepInput& in, StepTrial& trial);
   /// Brings the rows at the end, and of the reactions, to the iterate, with rotations there and halfway.
   void place(const StepInput& in, StepTrial& trial);
+  /// Brings the midpoint of the trial to the iterate, with the rotations of the rows halfway.
+  void place_midpoint(const StepInput& in, StepTrial& trial) const;
   /// Brings the rows at the end alone there, rotations included.
   void place_end(const StepInput& in, StepTrial& trial);
   /// Brings the gaps at the end alone there, rotations included.
   void place_gaps(const StepInput& in, StepTrial& trial);
   /// Chooses the rows of the reactions at the first iterate, where place() has brought them, and factors the
-  /// rows at the end. \param work one number by row
+  /// rows at the end. Where a row is near to following from others they are no mean rows. \param work one
+  /// number by row
   void choose(const StepInput& in, StepTrial& trial, std::vector<double>& work);
   /// Factors the matrix by which conditions at the end are met.
   void factor();
@@ -61,10 +68,10 @@ public:
   [[nodiscard]] JointConstraints& at_end() { return end_; }            ///< G1
   [[nodiscard]] const JointConstraints& at_end() const { return end_; }
   [[nodiscard]] const JointConstraints& at_start() const { return start_; }
-  /// True if conditions are met by the matrix of both rows.
-  [[nodiscard]] bool is_mixed() const { return reactions_ == Reactions::mixed; }
-  /// True if reactions have left the rows halfway alone.
-  [[nodiscard]] bool is_singular() const { return reactions_ != Reactions::halfway; }
+  /// Rows along which reactions act.
+  [[nodiscard]] Reactions reactions() const { return reactions_; }
+  /// True if they are mean rows.
+  [[nodiscard]] bool is_mean() const { return mean_; }
   /// True if no row at the end of the first iterate was near to following from others.
   [[nodiscard]] bool is_regular() const { return regular_; }
   /// True near a singular position.
@@ -81,7 +88,7 @@ private:
   MixedConstraints mixed_;
   Reactions reactions_ = Reactions::halfway;
   double roundoff_growth_ = 1.0;
-  bool near_singular_ = false, regular_ = false;
+  bool near_singular_ = false, regular_ = false, mean_ = false;
 };
 
 }  // namespace carom

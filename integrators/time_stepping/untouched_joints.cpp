@@ -19,12 +19,16 @@ bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial
   constexpr std::size_t few = 5;
   history.impulses.guess(rows_, known, joints.impulse.data() - rows_.begin);
   history.velocities.guess(joints.v(), known, joints.arrays->dv_joints.data());
-  history.displacements.guess(joints.v(), std::min(known, few), joints.arrays->displacement.data());
+  if (rule.is_mean()) {
+    joints.clear(joints.arrays->displacement);
+  } else {
+    history.displacements.guess(joints.v(), std::min(known, few), joints.arrays->displacement.data());
+  }
   joints.find_free_velocities(in, rule, trial);
   joints.move_bodies(in, rule, trial);
-  joints.displace(joints.arrays->displacement, trial.end);
+  if (!rule.is_mean()) joints.displace(joints.arrays->displacement, trial.end);
   sweeps_ = 0;
-  return joints.rows.begin_regular(in, trial);
+  return joints.rows.begin_regular(in, rule.is_mean(), trial);
 }
 
 void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial& trial) {
@@ -35,7 +39,7 @@ void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial
   note_velocities(trial);
   if (sweeps_ >= patience) joints.rows.factor();
   if (sweeps_ > 0) joints.find_free_velocities(in, rule, trial);
-  joints.correct_impulses(trial);
+  joints.correct_impulses(in, trial);
   if (turns_rows(in, trial)) {
     // A second look at the rows alone costs less than another sweep.
     joints.move_bodies(in, rule, trial);
@@ -43,7 +47,7 @@ void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial
     joints.rows.place_end(in, trial);
     note_velocities(trial);
   }
-  joints.correct_impulses(trial);
+  joints.correct_impulses(in, trial);
   joints.move_bodies(in, rule, trial);
   return_to_joints(in, trial);
   joints.rows.place(in, trial);
@@ -76,6 +80,7 @@ bool UntouchedJoints::turns_rows(const StepInput& in, const StepTrial& trial) co
 /// guess.
 void UntouchedJoints::return_to_joints(const StepInput& in, StepTrial& trial) {
   JointIterate& joints = *iterate_;
+  if (joints.rows.is_mean()) return;
   JointArrays& arrays = *joints.arrays;
   const Range v = joints.v();
   const double half = 0.5 * in.step;

@@ -32,9 +32,10 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
-/// Runs a scene with steps h, h/2, ...; each run must obey its joints and close its ledger.
+/// Runs a scene with steps h, h/2, ...; each run must obey its joints and close its ledger. Under the rule
+/// energy_momentum velocities follow positions: `speeds` is by how much joints part at most [m/s].
 struct Refined {
-  std::vector<double> steps, errors;
+  std::vector<double> steps, errors, speeds;
   [[nodiscard]] double slope() const { return analytic::slope(steps, errors); }
 };
 Refined refine(const Scene& scene, double time, double step, int runs, const Read& read,
@@ -46,7 +47,10 @@ Refined refine(const Scene& scene, double time, double step, int runs, const Rea
     JointCheck check(simulation);
     simulation.run_until(time);
     EXPECT_LE(check.gap, gap_limit) << "step " << step;
-    EXPECT_LE(check.speed, speed_limit) << "step " << step;
+    if (options.force_rule == ForceRule::trapezoidal) {
+      EXPECT_LE(check.speed, speed_limit) << "step " << step;
+    }
+    result.speeds.push_back(check.speed);
     EXPECT_TRUE(ledger_closes(simulation.energy())) << "step " << step;
     result.steps.push_back(step);
     result.errors.push_back(largest_difference(read(simulation.state(), scene.bodies), reference));
@@ -133,6 +137,7 @@ TEST(JointsTimeStepping, DoublePendulumUnderTheOtherRuleAndIteration) {
   const Refined rule = refine(rod_pendulum(2), 1.0, 2e-3, 4, angles, reference,
                               TimeStepping{.force_rule = ForceRule::energy_momentum});
   EXPECT_NEAR(rule.slope(), 2.0, 0.05);
+  EXPECT_NEAR(analytic::slope(rule.steps, rule.speeds), 2.0, 0.05);
   const Refined mixed = refine(rod_pendulum(2), 1.0, 2e-3, 4, angles, reference,
                                TimeStepping{.iteration = Iteration::anderson});
   EXPECT_NEAR(mixed.slope(), 2.0, 0.05);
