@@ -27,6 +27,9 @@ Index SurfaceTable::material(std::string_view name) {
 
 void SurfaceTable::set(Index a, Index b, const Surface& law) { pairs_[std::minmax(a, b)] = law; }
 
+void SurfaceTable::set_own(Index own, const Surface& law) { own_.insert_or_assign(own, law); }
+void SurfaceTable::remove_own(Index own) { own_.erase(own); }
+
 const Surface* SurfaceTable::find(const ContactSide& a, const ContactSide& b) const {
   if (a.material != none && b.material != none) {
     if (const auto found = pairs_.find(std::minmax(a.material, b.material)); found != pairs_.end()) {

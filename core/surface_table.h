@@ -41,9 +41,9 @@ public:
   /// Sets the law between two materials, whatever their order. The last one holds.
   void set(Index a, Index b, const Surface& law);
   /// Sets the law of a shape on ground against everything.
-  void set_own(Index own, const Surface& law) { own_.insert_or_assign(own, law); }
+  void set_own(Index own, const Surface& law);
   /// Forgets it.
-  void remove_own(Index own) { own_.erase(own); }
+  void remove_own(Index own);
   /// Sets the law of all pairs that have no other.
   void set_default(const Surface& law) { default_ = law; }
 

@@ -16,6 +16,25 @@ Index next_token() {
 }  // namespace
 
 System::System() : token_(next_token()) {}
+// Here, so that programs do not compile them: they copy and destroy all kinds of parts.
+System::System(const System& other) = default;
+System::System(System&& other) noexcept = default;
+System& System::operator=(const System& other) = default;
+System& System::operator=(System&& other) noexcept = default;
+System::~System() = default;
+
+template <class Identity, class K>
+std::vector<Identity> System::identities(const Registry<K>& registry) const {
+  std::vector<Identity> all;
+  for (const Index serial : registry.serials()) all.push_back({serial, token_});
+  return all;
+}
+
+std::vector<BodyId> System::bodies() const { return identities<BodyId>(bodies_); }
+std::vector<ElementId> System::elements() const { return identities<ElementId>(forces_); }
+std::vector<JointId> System::joints() const { return identities<JointId>(joints_); }
+std::vector<ShapeId> System::shapes() const { return identities<ShapeId>(shapes_); }
+std::vector<ObstacleId> System::obstacles() const { return identities<ObstacleId>(ground_shapes_); }
 
 std::string System::describe(std::string_view label, const std::string& name, Index serial) {
   std::string text(label);

@@ -28,6 +28,11 @@ namespace carom {
 class CAROM_API System {
 public:
   System();
+  System(const System& other);
+  System(System&& other) noexcept;
+  System& operator=(const System& other);
+  System& operator=(System&& other) noexcept;
+  ~System();
 
   /// Adds a part, of the library or of the user: a body, force element, joint, shape of a body or on ground.
   /// \param name optional, unique among the parts of its role
@@ -142,11 +147,11 @@ public:
   [[nodiscard]] std::vector<ModelFinding> check() const;
 
   /// Parts, in the order in which they were added.
-  [[nodiscard]] std::vector<BodyId> bodies() const { return identities<BodyId>(bodies_); }
-  [[nodiscard]] std::vector<ElementId> elements() const { return identities<ElementId>(forces_); }
-  [[nodiscard]] std::vector<JointId> joints() const { return identities<JointId>(joints_); }
-  [[nodiscard]] std::vector<ShapeId> shapes() const { return identities<ShapeId>(shapes_); }
-  [[nodiscard]] std::vector<ObstacleId> obstacles() const { return identities<ObstacleId>(ground_shapes_); }
+  [[nodiscard]] std::vector<BodyId> bodies() const;
+  [[nodiscard]] std::vector<ElementId> elements() const;
+  [[nodiscard]] std::vector<JointId> joints() const;
+  [[nodiscard]] std::vector<ShapeId> shapes() const;
+  [[nodiscard]] std::vector<ObstacleId> obstacles() const;
 
   /// 2 or 3; 0 while no part determines it.
   [[nodiscard]] int dimension() const { return dimension_; }
@@ -179,11 +184,7 @@ private:
     }
   }
   template <class Identity, class K>
-  [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const {
-    std::vector<Identity> all;
-    for (const Index serial : registry.serials()) all.push_back({serial, token_});
-    return all;
-  }
+  [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const;
 
   using Names = std::map<Index, std::string>;
 
