@@ -2,6 +2,7 @@
 
 #include <carom/integrators/event_driven/accumulation.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,22 @@ void Accumulation::remember(double time, const ConstraintKey& contact) {
   if (!impacts_.empty() && impacts_.back().time == time && impacts_.back().contact == contact) return;
   if (impacts_.size() == remembered) impacts_.erase(impacts_.begin());
   impacts_.push_back({time, contact});
+}
+
+void Accumulation::take(const Accumulation& other) {
+  if (impacts_.empty()) {
+    impacts_ = other.impacts_;
+    return;
+  }
+  // Groups that part remember the same: no impact counts twice.
+  for (const Impact& impact : other.impacts_) {
+    if (std::find(impacts_.begin(), impacts_.end(), impact) == impacts_.end()) impacts_.push_back(impact);
+  }
+  std::stable_sort(impacts_.begin(), impacts_.end(),
+                   [](const Impact& a, const Impact& b) { return a.time < b.time; });
+  if (impacts_.size() > remembered) {
+    impacts_.erase(impacts_.begin(), impacts_.end() - static_cast<std::ptrdiff_t>(remembered));
+  }
 }
 
 /// Where the pattern of contacts repeats (by one to four impacts) and its intervals shrink in a constant

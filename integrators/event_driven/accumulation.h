@@ -18,6 +18,8 @@ public:
   void clear() { impacts_.clear(); }
   /// Remembers an impact. \param time not before that of the last one [s]
   void remember(double time, const ConstraintKey& contact);
+  /// Remembers the impacts of another group too.
+  void take(const Accumulation& other);
   /// Time at which infinitely many impacts would have ended [s], by the times up to an impact that is not
   /// remembered yet; NaN where the intervals do not shrink in a constant ratio.
   [[nodiscard]] double end(double time) const;
@@ -26,6 +28,7 @@ private:
   struct Impact {
     double time;
     ConstraintKey contact;
+    friend bool operator==(const Impact&, const Impact&) = default;
   };
   static constexpr std::size_t remembered = 16;
   std::vector<Impact> impacts_;  // in time

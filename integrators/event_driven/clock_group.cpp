@@ -46,8 +46,7 @@ void ClockGroup::advance(double target, EventBalance& balance) try {
     if (phase_.kind == Phase::flowing) {
       if (!is_reachable) limits_.demand_reachable(target);
       is_reachable = true;
-      limits_.count_step(clock_.now, y_.data(), memory_->instant.now);
-      phase_ = {Phase::ahead, detector_.step(flow_.change(), clock_.now, y_, limits_.longest_step())};
+      make_step();
     }
     const bool has_event = phase_.event.guard != Guard::nothing;
     if (target < (has_event ? phase_.event.time : flow.end())) break;
@@ -64,11 +63,16 @@ void ClockGroup::advance(double target, EventBalance& balance) try {
   limits_.fail_evaluations();
 }
 
+void ClockGroup::make_step() {
+  limits_.count_step(clock_.now, y_.data(), memory_->instant.now);
+  phase_ = {Phase::ahead, detector_.step(flow_.change(), clock_.now, y_, limits_.longest_step())};
+}
+
 void ClockGroup::resolve_event(EventBalance& balance) {
   const Event event = phase_.event;
   const bool starts = event.guard == Guard::start;
   EventInstant at(motion_, memory_->instant, clock_.now, y_, balance);
-  if (!starts) arrive(event, at);
+  if (!starts) arrive_at(event, at);
   at.update();
   at.scales = event_scales(motion_, at.now, at.contacts);
   at.touch_gap = starts ? motion_.model().options->gap_tolerance : 4.0 * at.scales.gap_noise;
@@ -80,15 +84,15 @@ void ClockGroup::resolve_event(EventBalance& balance) {
     at.update();           // and loads may depend on velocities
   }
   modes_.select(at);
-  phase_ = {start_flow(at)};
+  phase_ = {is_connected() ? start_flow(at) : Phase::parted};
   unbounded_.clear();
 }
 
 /// Follows an event on which the flow landed, before anything touches or parts by it.
-void ClockGroup::arrive(const Event& event, EventInstant& at) {
+void ClockGroup::arrive_at(const Event& event, EventInstant& at) {
   motion_.sample(at.time, at.y.data(), Forces::all, at.now);
   limits_.count_event(event, at.now);
-  modes_.note(event, motion_.active(), 4.0 * detector_.force_noise(event));
+  if (event.guard != Guard::meeting) modes_.note(event, motion_.active(), 4.0 * detector_.force_noise(event));
   record_event(event, at.balance);
   // Contacts push but do not pull: where the rate of a driver jumps, what was closed may part, or be hit.
   // Slower jumps count as none, as impacts do.
@@ -192,6 +196,7 @@ void ClockGroup::accept_step(EventBalance& balance) {
 
 /// Writes the output state: the present one, or one within the last step, projected onto the joints.
 void ClockGroup::output(double target, EventBalance& balance) {
+  if (phase_.kind == Phase::at_rest) clock_.now = target;
   double projected = 0.0;
   if (clock_.now == target) {
     std::copy(y_.begin(), y_.end(), output_.y().begin());

@@ -12,6 +12,7 @@ namespace carom {
 enum class Guard : std::uint8_t {
   nothing,          ///< no event
   start,            ///< a motion begins: gaps within the tolerance count as touching
+  meeting,          ///< groups were joined within their motions: bodies of two of them touch
   gap,              ///< a gap closes
   force,            ///< a contact force comes to its end
   slip,             ///< sliding stops
@@ -37,6 +38,7 @@ struct Phase {
     at_event,  ///< its time is that of `event`, which is not resolved yet
     flowing,   ///< modes are decided; the flow stands at its time
     ahead,     ///< likewise; the flow made a step beyond, in which `event` is the first
+    parted,    ///< modes are decided, and nothing lasting connects all components
     at_rest    ///< nothing moves, nor will
   };
   Kind kind = at_event;

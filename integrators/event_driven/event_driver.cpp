@@ -1,7 +1,6 @@
 // Problem: clock groups at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
-#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
 
@@ -41,53 +40,20 @@ void check_options(const EventDriven& options) {
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
-namespace {
-
-/// Components whose bodies may ever touch each other are one group, wherever they are now: groups are not
-/// parted or joined in a run, so that no horizon is needed.
-std::vector<GroupComponents> find_groups(const Assembly& assembly, const Detector& detector) {
-  const auto count = static_cast<Index>(assembly.components().size());
-  const std::vector<ContactPair> pairs = detector.body_pairs();
-  UnionFind sets;
-  sets.start(count);
-  for (const ContactPair& pair : pairs) {
-    sets.join(assembly.component_of(pair.body), assembly.component_of(pair.other));
-  }
-  std::vector<GroupComponents> groups;
-  std::vector<Index> group_of(count, none);  // by the first component
-  for (Index component = 0; component < count; ++component) {
-    const Index first = sets.find(component);
-    if (group_of[first] == none) {
-      group_of[first] = static_cast<Index>(groups.size());
-      groups.emplace_back();
-    }
-    groups[group_of[first]].components.push_back(component);
-  }
-  for (const ContactPair& pair : pairs) {
-    groups[group_of[sets.find(assembly.component_of(pair.body))]].body_pairs.push_back(pair);
-  }
-  return groups;
-}
-
-}  // namespace
-
 EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
       memory_(assembly, options, stop),
-      group_of_(assembly.components().size()),
+      groups_(assembly, detector_, options_, memory_),
       evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
-  for (const GroupComponents& components : find_groups(assembly, detector_)) {
-    const auto group = static_cast<Index>(groups_.size());
-    for (const Index component : components.components) group_of_[component] = group;
-    groups_.push_back(std::make_unique<ClockGroup>(assembly, detector_, options_, components, memory_));
-  }
+  if (!detector_.bodies_touch()) return;
+  meetings_ = std::make_unique<GroupMeetings>(assembly, detector_, options_, memory_, groups_);
 }
 
 /// Evaluates a state outside of any step or event, whose group would fail for too many evaluations.
@@ -107,7 +73,8 @@ auto EventDriver::within_limit(double time, F&& evaluate) const {
 
 void EventDriver::demand_start(const State& state) {
   within_limit(state.time, [&] {
-    for (auto& group : groups_) group->demand_start(state);
+    if (meetings_) meetings_->regroup(state), started_ = false;
+    groups_.for_each([&](ClockGroup& group) { group.demand_start(state); });
   });
 }
 
@@ -115,7 +82,9 @@ void EventDriver::start(const State& state, const Companion& companion) {
   ContactModes present = companion.modes;
   std::sort(present.begin(), present.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   within_limit(state.time, [&] {
-    for (auto& group : groups_) group->start(state, present);
+    if (meetings_) meetings_->regroup(state);
+    groups_.for_each([&](ClockGroup& group) { group.start(state, present); });
+    if (meetings_) meetings_->start(state.time);
   });
   counted_ = memory_.flows.counts();
   started_ = true;
@@ -125,10 +94,10 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
                           std::vector<EventRecord>& events) {
   laws_.demand(state.time, target, options_.interval);
   if (!started_) start(state, companion);
-  advance_groups(state.time, target);
+  advance_groups(target);
   trial_.time = target;
   modes_.clear();
-  for (auto& group : groups_) group->write(trial_, modes_);
+  groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
   balance_.finish();
@@ -158,15 +127,14 @@ void EventDriver::append(std::vector<EventRecord>& fresh, std::vector<EventRecor
   events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(limit));
 }
 
-/// The earliest group goes first, as far as it can meet no other one.
-void EventDriver::advance_groups(double from, double to) {
+/// Groups that may meet go on together, others each to the end.
+void EventDriver::advance_groups(double to) {
   balance_.clear();
-  queue_.fill(static_cast<Index>(groups_.size()), from);
   try {
-    while (!queue_.empty()) {
-      const Index group = queue_.take();
-      groups_[group]->advance(std::min(to, groups_[group]->horizon()), balance_);
-      if (groups_[group]->time() < to) queue_.put(group, groups_[group]->time());
+    if (meetings_) {
+      meetings_->advance(to, balance_);
+    } else {
+      groups_.for_each([&](ClockGroup& group) { group.advance(to, balance_); });
     }
   } catch (...) {
     started_ = false;
@@ -220,7 +188,7 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   };
   while (!within(component)) ++component;
   return within_limit(state.time, [&] {
-    return groups_[group_of_[component]]->reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
+    return groups_.of(component).reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
 }
 

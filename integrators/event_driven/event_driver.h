@@ -9,8 +9,9 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/event_balance.h>
+#include <carom/integrators/event_driven/group_meetings.h>
 #include <carom/integrators/event_driven/group_memory.h>
-#include <carom/integrators/event_driven/group_queue.h>
+#include <carom/integrators/event_driven/group_set.h>
 #include <carom/integrators/event_driven/law_continuity.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
@@ -53,7 +54,7 @@ private:
   auto within_limit(double time, F&& evaluate) const;
   void append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const;
   void count(Companion& companion);
-  void advance_groups(double from, double to);
+  void advance_groups(double to);
   void write_report(double from, double to, StepReport& out) const;
   [[noreturn]] void fail_energy(double from, double to);
   void report_contacts(StepReport& report) const;
@@ -63,9 +64,8 @@ private:
   Detector detector_;
   LawContinuity laws_;
   GroupMemory memory_;
-  std::vector<std::unique_ptr<ClockGroup>> groups_;
-  std::vector<Index> group_of_;  // by component
-  GroupQueue queue_;
+  GroupSet groups_;
+  std::unique_ptr<GroupMeetings> meetings_;  // null where no two bodies may touch
   Evaluation evaluation_;
   State trial_;
   ContactModes modes_;

@@ -28,6 +28,8 @@ public:
   [[nodiscard]] Flow& change();
   /// Keeps the length of the next step for the next start(). \param length [s], 0: none
   void keep_step(double length) { first_step_ = length; }
+  /// That length [s].
+  [[nodiscard]] double kept_step() const { return first_step_; }
   /// Lets other groups have the flow. \param at_rest nothing of it is needed any more \param alone there are
   /// no others
   void leave(bool at_rest, bool alone);

@@ -6,6 +6,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 #include <carom/integrators/event_driven/mode_selection.h>
@@ -35,6 +36,7 @@ struct CAROM_API GroupMemory {
   ImpactMemory impacts;
   ModeMemory modes;
   DetectionMemory detection;
+  UnionFind components;  ///< of a group, that closed contacts connect
 };
 
 }  // namespace carom

@@ -33,24 +33,8 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
 std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& detector,
                                      const std::vector<ContactPair>& body_pairs) {
   std::vector<BodyPairBound> bounds;
-  const BodyOutlines& outlines = detector.bodies().outlines();
-  for (const ContactPair& pair : body_pairs) {
-    const BodyOutline& of_vertex = outlines.list()[outlines.outline_of(pair.feature)];
-    const BodyOutline& outline = outlines.list()[pair.outline];
-    BodyPairBound& bound = bounds.emplace_back();
-    bound.a = assembly.layout()->bodies()[pair.body];
-    bound.b = assembly.layout()->bodies()[pair.other];
-    bound.lever = outlines.vertices()[pair.feature].norm();
-    bound.radius = of_vertex.radius;
-    bound.rounding = of_vertex.radius + outline.radius;
-    double farthest = 0.0;
-    for (const Vec<2>& vertex : outlines.described(outline).vertices) {
-      farthest = std::max(farthest, vertex.norm());
-    }
-    bound.reach = farthest + outline.radius;
-    bound.round = outline.vertices.size() == 1;
-    bound.central = bound.round && bound.lever == 0.0 && farthest == 0.0;
-  }
+  bounds.reserve(body_pairs.size());
+  for (const ContactPair& pair : body_pairs) bounds.push_back(bound_of(assembly, detector, pair));
   return bounds;
 }
 
@@ -152,19 +136,6 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
   for (const Index component : group.components) add_load_traits(*assembly, component, loads);
   discontinuities = discontinuities_of(
       *assembly, group.components, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
-}
-
-double BodyPairBound::least_gap(const StateView& state) const {
-  const double x = state.q[a.q] - state.q[b.q], y = state.q[a.q + 1] - state.q[b.q + 1];
-  return std::sqrt(x * x + y * y) - (lever + radius + reach);
-}
-
-double BodyPairBound::most_speed(const double* velocities) const {
-  const double x = velocities[a.v] - velocities[b.v], y = velocities[a.v + 1] - velocities[b.v + 1];
-  double speed = std::sqrt(x * x + y * y);
-  if (a.v_size > 2) speed += std::abs(velocities[a.v + 2]) * lever;
-  if (b.v_size > 2) speed += std::abs(velocities[b.v + 2]) * reach;
-  return speed;
 }
 
 ElementId GroupModel::find_without_direction(const MotionSample& at, double speed) const {

@@ -10,6 +10,7 @@
 #include <carom/core/export.h>
 #include <carom/core/layout.h>
 #include <carom/core/state.h>
+#include <carom/integrators/event_driven/body_pair_bound.h>
 #include <carom/integrators/event_driven/group_joints.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/motion_unknowns.h>
@@ -28,22 +29,6 @@ struct LoadTraits {
   bool books_external = false;     ///< some elements book external work
   bool depends_on_time = false;    ///< loads, joints or shapes on ground do
   bool only_fields = true;         ///< nothing but uniform fields acts
-};
-
-/// Bounds of the gap of a pair of two bodies, from the places and velocities of their centres of mass.
-struct BodyPairBound {
-  BodySlot a, b;          ///< body of the vertex, and of the outline
-  double lever = 0.0;     ///< of the vertex from the centre of mass of `a` [m]
-  double reach = 0.0;     ///< of the outline from that of `b`, with its rounding [m]
-  double radius = 0.0;    ///< of the rounding of the vertex [m]
-  double rounding = 0.0;  ///< of both [m]; 0: the corners are sharp
-  bool round = false;     ///< the outline has one vertex: the gap is a distance of two points less a constant
-  bool central = false;   ///< likewise, and these are the centres of mass
-
-  /// Not more than the gap, and equal to it of discs around their centres of mass [m].
-  [[nodiscard]] double least_gap(const StateView& state) const;
-  /// Not less than the speed at which the gap may change, wherever the bodies are, at these velocities [m/s].
-  [[nodiscard]] double most_speed(const double* velocities) const;
 };
 
 /// Components that share one time.

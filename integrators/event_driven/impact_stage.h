@@ -36,6 +36,8 @@ public:
 
   /// Begins with a new motion.
   void start() { accumulation_.clear(); }
+  /// Remembers the impacts of another group too.
+  void take(const ImpactStage& other) { accumulation_.take(other.accumulation_); }
   /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
   /// loads and accelerations those before.
   [[nodiscard]] bool resolve(EventInstant& at);

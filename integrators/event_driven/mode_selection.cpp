@@ -42,6 +42,14 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
   }
 }
 
+void ModeSelection::take(const ModeSelection& other, double time) {
+  if (other.ended_at_ != time) return;
+  exhausted_.insert(exhausted_.end(), other.exhausted_.begin(), other.exhausted_.end());
+  releasing_.insert(releasing_.end(), other.releasing_.begin(), other.releasing_.end());
+  ended_at_ = time;
+  if (other.stopped_ != ContactPair{}) stopped_ = other.stopped_;
+}
+
 void ModeSelection::select(EventInstant& at) {
   constexpr int most_rounds = 100;  // impacts without collision change the candidates
   at.motion.active().list().clear();

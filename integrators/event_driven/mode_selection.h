@@ -42,6 +42,8 @@ public:
   /// Notes which contacts an event ends. \param contacts closed ones, with their forces and margins at the
   /// event \param noise of the force that came to its end [N]
   void note(const Event& event, ActiveSet& active, double noise);
+  /// Takes what another selection noted of an event at a time [s] too.
+  void take(const ModeSelection& other, double time);
   /// Forgets which contacts the event ended: impacts changed the motion.
   void forget_ends();
   /// Selects the modes of all that touches into the active set of the motion, and records the changes.

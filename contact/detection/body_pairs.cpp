@@ -1,0 +1,47 @@
+// Problem: what of two bodies may touch each other?
+
+#include <carom/contact/detection/body_pairs.h>
+
+namespace carom {
+
+BodyPairs::BodyPairs(const Assembly& assembly, const BodyOutlines& outlines)
+    : outlines_(&outlines),
+      filter_(assembly),
+      materials_(outlines.materials().size()),
+      of_(assembly.layout()->bodies().size()) {
+  for (const MaterialId a : outlines.materials()) {
+    for (const MaterialId b : outlines.materials()) {
+      has_law_.push_back(static_cast<char>(assembly.system().law(a, b).has_value()));
+    }
+  }
+  const std::vector<BodyOutline>& list = outlines.list();
+  for (Index i = 0; i < list.size(); ++i) {
+    Range& range = of_[list[i].body];
+    if (range.empty()) range.begin = i;
+    range.end = i + 1;
+  }
+}
+
+void BodyPairs::append(std::span<const Index> bodies, std::vector<ContactPair>& out) const {
+  for (const Index body : bodies) {
+    for (Index i = of_[body].begin; i < of_[body].end; ++i) {
+      for (const Index other : bodies) {
+        for (Index j = of_[other].begin; j < of_[other].end; ++j) append(outlines_->list()[i], j, out);
+      }
+    }
+  }
+}
+
+/// Appends the pairs of the vertices of an outline and another one.
+void BodyPairs::append(const BodyOutline& a, Index of_b, std::vector<ContactPair>& out) const {
+  const BodyOutline& b = outlines_->list()[of_b];
+  if (!may_touch(a, b)) return;
+  // Of two round ends one is enough.
+  if (a.vertices.size() == 1 && b.vertices.size() == 1 && b.key < a.key) return;
+  if (b.vertices.size() == 1 && a.vertices.size() > 1) return;
+  for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
+    out.push_back({.body = a.body, .feature = vertex, .other = b.body, .outline = of_b});
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,138 @@
+// Problem: where can the bodies of a group be before its horizon?
+
+#include <carom/integrators/event_driven/body_flights.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// Rounding of places, relative to their size: volumes are larger by it.
+constexpr double place_rounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+/// Largest and least value of x + v s + a s^2/2 for s from 0 to a length.
+void span_parabola(double x, double v, double a, double length, double& low, double& high) {
+  const double end = x + length * (v + 0.5 * length * a);
+  low = std::min(x, end);
+  high = std::max(x, end);
+  const double vertex = -v / a;
+  if (!(vertex > 0.0 && vertex < length)) return;
+  const double extreme = x + 0.5 * v * vertex;
+  low = std::min(low, extreme);
+  high = std::max(high, extreme);
+}
+
+}  // namespace
+
+BodyFlights::BodyFlights(const Assembly& assembly, const Detector& detector)
+    : assembly_(&assembly),
+      flights_(assembly.layout()->bodies().size()),
+      horizons_(assembly.components().size(), 0.0) {
+  for (const BodyOutline& outline : detector.bodies().outlines().list()) {
+    BodyFlight& flight = flights_[outline.body];
+    flight.reach = std::max(flight.reach, outline.reach);
+    flight.component = assembly.component_of(outline.body);
+  }
+}
+
+void BodyFlights::start(const State& state, double extra) {
+  double size = 0.0, count = 0.0;
+  Vec<2> low(never, never), high(-never, -never);
+  for (Index body = 0; body < flights_.size(); ++body) {
+    BodyFlight& flight = flights_[body];
+    if (flight.reach < 0.0) continue;
+    const BodySlot slot = assembly_->layout()->bodies()[body];
+    flight.place = {state.q[slot.q], state.q[slot.q + 1]};
+    flight.time = state.time;
+    low = low.cwiseMin(flight.place);
+    high = high.cwiseMax(flight.place);
+    size += 2.0 * flight.reach;
+    count += 1.0;
+  }
+  // Cells about as wide as bodies, or as the space between them.
+  const double area = count > 0.0 ? (high - low).prod() : 0.0;
+  double cell = count > 0.0 ? std::max(size / count, std::sqrt(area / count)) : 1.0;
+  if (!(std::isfinite(cell) && cell > 0.0)) cell = 1.0;
+  travel_ = 0.5 * cell;
+  volumes_.start(static_cast<Index>(flights_.size()), cell);
+  for (Index body = 0; body < flights_.size(); ++body) {
+    const BodyFlight& flight = flights_[body];
+    if (flight.reach < 0.0) continue;
+    const double reach = flight.reach + extra;
+    volumes_.set(body, {flight.place.array() - reach, flight.place.array() + reach});
+  }
+  std::fill(horizons_.begin(), horizons_.end(), state.time);
+}
+
+double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end) {
+  const SmoothMotion& motion = group.motion();
+  const bool is_free = motion.flies_freely();
+  group.sample(time, false, now);
+  const auto for_flights = [&](auto&& f) {
+    for (const MotionUnknowns::Part& part : motion.model().parts()) {
+      for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
+        if (flights_[body].reach >= 0.0) f(body, flights_[body]);
+      }
+    }
+  };
+  for_flights([&](Index body, BodyFlight& flight) {
+    const BodySlot slot = assembly_->layout()->bodies()[body];
+    flight.time = time;
+    flight.place = {now.state.q[slot.q], now.state.q[slot.q + 1]};
+    flight.velocity = {now.state.v[slot.v], now.state.v[slot.v + 1]};
+    flight.acceleration = {now.acceleration[slot.v], now.acceleration[slot.v + 1]};
+    flight.is_free = is_free;
+    flight.speed = 0.0;
+  });
+  const double due = group.due();
+  double horizon = due;
+  if (due < never) {
+    if (!is_free) {
+      group.sample(due, false, end);
+      for_flights([&](Index body, BodyFlight& flight) {
+        constexpr double unseen = 2.0;
+        const Index v = assembly_->layout()->bodies()[body].v;
+        const Vec<2> later(end.state.v[v], end.state.v[v + 1]),
+            pull(end.acceleration[v], end.acceleration[v + 1]);
+        flight.speed = std::max(flight.velocity.norm(), later.norm()) +
+                       unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
+      });
+    }
+    for_flights([&](Index, const BodyFlight& flight) {
+      const double v = is_free ? flight.velocity.norm() : flight.speed;
+      const double a = is_free ? flight.acceleration.norm() : 0.0;
+      const double length = 2.0 * travel_ / (v + std::sqrt(v * v + 2.0 * a * travel_));
+      if (time + length > time) horizon = std::min(horizon, time + length);
+    });
+  }
+  for_flights([&](Index body, const BodyFlight&) { sweep(body, horizon < never ? horizon - time : 0.0); });
+  for (const MotionUnknowns::Part& part : motion.model().parts()) horizons_[part.component] = horizon;
+  return horizon;
+}
+
+/// Sets the volume of a body that it covers within a length of time.
+void BodyFlights::sweep(Index body, double length) {
+  const BodyFlight& flight = flights_[body];
+  Box<2> box;
+  for (int k = 0; k < 2; ++k) {
+    if (flight.is_free) {
+      span_parabola(flight.place[k], flight.velocity[k], flight.acceleration[k], length, box.min[k],
+                    box.max[k]);
+    } else {
+      box.min[k] = flight.place[k] - length * flight.speed;
+      box.max[k] = flight.place[k] + length * flight.speed;
+    }
+    const double size = std::max(std::abs(box.min[k]), std::abs(box.max[k])) + flight.reach;
+    const double reach = flight.reach + place_rounding * size;
+    box.min[k] -= reach;
+    box.max[k] += reach;
+  }
+  volumes_.set(body, box);
+}
+
+}  // namespace carom

@@ -1,0 +1,71 @@
+#pragma once
+
+/// \file
+/// How bodies of clock groups move for a while, and the volumes that they sweep meanwhile.
+///
+/// A volume holds until the horizon of its group: until the step that the group has made ahead ends, or its
+/// next event, or a body has gone so far that its volume would meet too many others. Groups whose volumes do
+/// not overlap cannot meet before the earlier of their horizons. The bounds of the motion are safe because a
+/// step is bounded after it was made, not before: a body that nothing but a uniform field accelerates moves
+/// along a parabola, whose box is exact. Any other moves no faster than the faster end of its step and twice
+/// what its accelerations at the ends change over the step, the bound that the search for events within a
+/// group rests on.
+
+#include <carom/contact/detection/swept_volumes.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/clock_group.h>
+#include <carom/integrators/event_driven/motion_sample.h>
+
+#include <vector>
+
+namespace carom {
+
+/// The motion of the centre of mass of a body from a time on.
+struct BodyFlight {
+  double time = 0.0;                     ///< [s]
+  Vec<2> place = Vec<2>::Zero();         ///< then [m]
+  Vec<2> velocity = Vec<2>::Zero();      ///< then [m/s]
+  Vec<2> acceleration = Vec<2>::Zero();  ///< then [m/s^2]
+  double reach = -1.0;                   ///< of its outlines from there [m]; < 0: it has none
+  double speed = 0.0;                    ///< bound of it, where it does not fly freely [m/s]
+  Index component = none;                ///< it is of
+  bool is_free = false;                  ///< nothing but uniform fields acts: the acceleration stays
+
+  /// Place of a body that flies freely at a time [m].
+  [[nodiscard]] Vec<2> place_at(double at) const {
+    const double s = at - time;
+    return place + s * (velocity + 0.5 * s * acceleration);
+  }
+};
+
+/// The flights of all bodies.
+class CAROM_API BodyFlights {
+public:
+  /// All must outlive it.
+  BodyFlights(const Assembly& assembly, const Detector& detector);
+
+  /// Begins: chooses the size of cells by the places of bodies, and takes them where they are, for no time.
+  /// \param extra added to volumes [m]
+  void start(const State& state, double extra);
+  /// Follows the bodies of a group from a time on, within its step ahead. Returns its horizon [s]. \param
+  /// memory samples, overwritten
+  double follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end);
+  /// The horizon of a component [s].
+  [[nodiscard]] double horizon(Index component) const { return horizons_[component]; }
+  /// The flight of a body.
+  [[nodiscard]] const BodyFlight& of(Index body) const { return flights_[body]; }
+  /// The volumes, by body.
+  [[nodiscard]] const SweptVolumes& volumes() const { return volumes_; }
+
+private:
+  void sweep(Index body, double length);
+
+  const Assembly* assembly_;
+  std::vector<BodyFlight> flights_;
+  std::vector<double> horizons_;  // by component
+  SweptVolumes volumes_;
+  double travel_ = 0.0;  // the way that a volume is made for [m]
+};
+
+}  // namespace carom

@@ -1,0 +1,203 @@
+// Problem: no meeting of two groups is missed, although each has its own steps.
+
+#include <carom/integrators/event_driven/meeting_search.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Two bodies that fly freely, as they do between events; centres only.
+class FreePath final : public PairPath {
+public:
+  FreePath(const BodyPairBound& bound, const BodyFlight& a, const BodyFlight& b, MotionSample& out)
+      : bound_(&bound), a_(&a), b_(&b), out_(&out) {}
+
+  [[nodiscard]] const MotionSample& sample(double time) override {
+    write(bound_->a, *a_, time);
+    write(bound_->b, *b_, time);
+    return *out_;
+  }
+
+private:
+  void write(const BodySlot& slot, const BodyFlight& flight, double time) {
+    const Vec<2> place = flight.place_at(time);
+    const Vec<2> velocity = flight.velocity + (time - flight.time) * flight.acceleration;
+    for (Index k = 0; k < 2; ++k) {
+      out_->state.q[slot.q + k] = place[k];
+      out_->state.v[slot.v + k] = velocity[k];
+      out_->acceleration[slot.v + k] = flight.acceleration[k];
+    }
+  }
+
+  const BodyPairBound* bound_;
+  const BodyFlight *a_, *b_;
+  MotionSample* out_;
+};
+
+/// Two groups within their steps.
+class GroupsPath final : public PairPath {
+public:
+  GroupsPath(ClockGroup& a, ClockGroup& b, bool landed, MotionSample& out)
+      : a_(&a), b_(&b), landed_(landed), out_(&out) {}
+
+  [[nodiscard]] const MotionSample& sample(double time) override {
+    a_->sample(time, landed_, *out_);
+    b_->sample(time, landed_, *out_);
+    return *out_;
+  }
+
+private:
+  ClockGroup *a_, *b_;
+  bool landed_;
+  MotionSample* out_;
+};
+
+}  // namespace
+
+/// Calls f(bodies, other group, pairs) for bodies of other groups whose volumes overlap those of a group.
+template <class F>
+void MeetingSearch::for_neighbours(ClockGroup& group, F&& f) {
+  for (const MotionUnknowns::Part& part : group.motion().model().parts()) {
+    for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
+      const BodyFlight& flight = flights_->of(body);
+      if (flight.reach < 0.0) continue;
+      flights_->volumes().for_overlapping(body, [&](Index other) {
+        const BodyFlight& of_other = flights_->of(other);
+        ClockGroup& second = groups_->of(of_other.component);
+        if (&second == &group) return;
+        // In the order of assembly, whoever asks.
+        if (body < other) {
+          f(std::array{body, other}, Bodies{flight, of_other, group, second});
+        } else {
+          f(std::array{other, body}, Bodies{of_other, flight, second, group});
+        }
+      });
+    }
+  }
+}
+
+void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
+  for_neighbours(group, [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
+    const double end = std::min(flights_->horizon(bodies.a.component), flights_->horizon(bodies.b.component));
+    if (!(end > time)) return;
+    pairs_.clear();
+    groups_->pairs().append(numbers, pairs_);
+    for (const ContactPair& pair : pairs_) {
+      const double at = closing(bodies, pair, time, end);
+      if (at < never) queue.add(at, bodies.a.component, bodies.b.component);
+    }
+  });
+}
+
+/// Rounding of gaps, not above that of the group of both.
+double MeetingSearch::noise(const Bodies& bodies) const {
+  constexpr double gap_rounding = 256.0 * std::numeric_limits<double>::epsilon();
+  double size = 1.0;
+  for (const BodyFlight* flight : {&bodies.a, &bodies.b}) {
+    size = std::max(size, flight->place.cwiseAbs().maxCoeff());
+  }
+  return gap_rounding * size;
+}
+
+double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
+  const BodyPairBound bound = bound_of(*assembly_, *detector_, pair);
+  const PairGap gap{*assembly_, *detector_, pair, bound};
+  ClosingRule rule;
+  rule.noise = noise(bodies);
+  rule.flies_freely = bodies.a.is_free && bodies.b.is_free;
+  rule.until = never;
+  if (rule.flies_freely && bound.central && bound.rounding > 0.0) {
+    FreePath path(bound, flights_->of(pair.body), flights_->of(pair.other), at_);
+    const GapLook from{begin, true, gap_in(gap, path.sample(begin))};
+    const GapLook to{end, true, gap_in(gap, path.sample(end))};
+    rule.level = std::min(0.0, from.gap.value);
+    const double time = first_closing(path, gap, rule, from, to);
+    return time < never ? std::clamp(time, begin, end) : never;
+  }
+  GroupsPath path(bodies.of_a, bodies.of_b, false, at_);
+  double speed = 0.0, pull = 0.0;
+  const auto look = [&](double time) -> GapLook {
+    const MotionSample& at = path.sample(time);
+    speed = std::max(speed, bound.most_speed(at.state.v.data()));
+    pull = std::max(pull, bound.most_speed(at.acceleration.data()));
+    return {time, true, gap_in(gap, at)};
+  };
+  const GapLook from = look(begin), to = look(end);
+  constexpr double unseen = 2.0;
+  rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
+  rule.level = std::min(0.0, from.gap.value);
+  return located(bodies, gap, rule, from, to, 0);
+}
+
+/// The first closing between two looks, located. Where a closing that was predicted is none, the motion after
+/// it is searched anew.
+double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
+                              const GapLook& from, const GapLook& to, int depth) {
+  constexpr int most_landings = 60, deepest = 20;
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
+  GroupsPath looks(bodies.of_a, bodies.of_b, false, at_), landings(bodies.of_a, bodies.of_b, true, at_);
+  double time = first_closing(looks, gap, rule, from, to);
+  if (!(time < never)) return never;
+  double low = from.time, high = to.time;
+  time = std::clamp(time, low, high);
+  for (int i = 0; i < most_landings; ++i) {
+    const StepPolynomial::End at = gap_in(gap, landings.sample(time));
+    const double rest = at.value - rule.level;
+    if (std::abs(rest) <= 0.25 * rule.noise && !(at.first >= 0.0 && time == from.time)) return time;
+    if (rest > 0.0 && at.first >= 0.0) break;
+    (rest > 0.0 ? low : high) = time;
+    if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) return high;
+    const double next = time - rest / at.first;
+    time = next > low && next < high && i % 8 != 7 ? next : 0.5 * (low + high);
+  }
+  if (depth == deepest) return never;
+  // It opens there: halves are searched each by itself.
+  const bool progress = time > from.time && time < to.time;
+  const double between = progress ? time : 0.5 * (from.time + to.time);
+  if (!(between > from.time && between < to.time)) return never;
+  const GapLook middle{between, true, gap_in(gap, looks.sample(between))};
+  if (!progress) {
+    const double first = located(bodies, gap, rule, from, middle, depth + 1);
+    if (first < never) return first;
+  }
+  return located(bodies, gap, rule, middle, to, depth + 1);
+}
+
+/// The least gap of two bodies at a time, or a lower bound of it.
+double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time) {
+  pairs_.clear();
+  groups_->pairs().append(numbers, pairs_);
+  double least = never;
+  for (const ContactPair& pair : pairs_) {
+    const BodyPairBound bound = bound_of(*assembly_, *detector_, pair);
+    const PairGap gap{*assembly_, *detector_, pair, bound};
+    if (bodies.a.is_free && bodies.b.is_free && bound.central) {
+      const Vec<2> apart = bodies.a.place_at(time) - bodies.b.place_at(time);
+      least = std::min(least, apart.norm() - bound.rounding);
+      continue;
+    }
+    GroupsPath path(bodies.of_a, bodies.of_b, false, at_);
+    least = std::min(least, gap_in(gap, path.sample(time)).value);
+  }
+  return least;
+}
+
+void MeetingSearch::add_near(double time, double near, std::vector<ClockGroup*>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for_neighbours(*list[i], [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
+      ClockGroup* const other = &bodies.of_a == list[i] ? &bodies.of_b : &bodies.of_a;
+      if (std::find(list.begin(), list.end(), other) != list.end()) return;
+      if (least_gap(numbers, bodies, time) <= near) list.push_back(other);
+    });
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,58 @@
+#pragma once
+
+/// \file
+/// When bodies of one clock group meet those of others, and which of them touch at a time.
+
+#include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/body_flights.h>
+#include <carom/integrators/event_driven/body_pair_bound.h>
+#include <carom/integrators/event_driven/group_set.h>
+#include <carom/integrators/event_driven/meeting_queue.h>
+#include <carom/integrators/event_driven/motion_sample.h>
+#include <carom/integrators/event_driven/pair_closing.h>
+
+#include <array>
+#include <vector>
+
+namespace carom {
+
+/// The search for meetings of groups. Keeps memory only.
+class CAROM_API MeetingSearch {
+public:
+  /// All must outlive it.
+  MeetingSearch(const Assembly& assembly, const Detector& detector, GroupSet& groups,
+                const BodyFlights& flights)
+      : assembly_(&assembly), detector_(&detector), groups_(&groups), flights_(&flights), at_(assembly) {}
+
+  /// Makes appointments for all meetings of a group with others from a time on, before the horizons of both.
+  void find(ClockGroup& group, double time, MeetingQueue& queue);
+  /// Adds all groups that are as near to groups of a list as `near` [m], or to those added. \param time
+  /// within the horizons of all
+  void add_near(double time, double near, std::vector<ClockGroup*>& list);
+
+private:
+  /// Two bodies of two groups.
+  struct Bodies {
+    const BodyFlight &a, &b;
+    ClockGroup &of_a, &of_b;
+  };
+  template <class F>
+  void for_neighbours(ClockGroup& group, F&& f);
+  [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, double end);
+  [[nodiscard]] double located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
+                               const GapLook& from, const GapLook& to, int depth);
+  [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
+  [[nodiscard]] double noise(const Bodies& bodies) const;
+
+  const Assembly* assembly_;
+  const Detector* detector_;
+  GroupSet* groups_;
+  const BodyFlights* flights_;
+  MotionSample at_;                 // of two groups
+  std::vector<ContactPair> pairs_;  // of two bodies
+};
+
+}  // namespace carom

@@ -1,0 +1,118 @@
+// Problem: the first closing of a gap whose rate may have kinks.
+
+#include <carom/contact/detection/feature_margin.h>
+#include <carom/core/numerics/fall_search.h>
+#include <carom/integrators/event_driven/pair_closing.h>
+
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+/// Of two discs around their centres of mass without a contact: d = |c_a - c_b|.
+StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const MotionSample& at) {
+  const std::vector<double>&q = at.state.q, &v = at.state.v, &a = at.acceleration;
+  const double x = q[bound.a.q] - q[bound.b.q], y = q[bound.a.q + 1] - q[bound.b.q + 1];
+  const double u = v[bound.a.v] - v[bound.b.v], w = v[bound.a.v + 1] - v[bound.b.v + 1];
+  const double b = a[bound.a.v] - a[bound.b.v], c = a[bound.a.v + 1] - a[bound.b.v + 1];
+  const double distance = std::sqrt(x * x + y * y), rate = (x * u + y * w) / distance;
+  const double across = (x * w - y * u) / distance;
+  return {distance - bound.rounding, rate, (across * across + x * b + y * c) / distance};
+}
+
+/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the
+/// same.
+struct FeatureLook {
+  QuantityLook gap;
+  Index feature = none;
+  double margin = 0.0;  // of the feature [m]
+};
+
+/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
+/// bound of the rate, which holds for the margins too, shows that the gap does not close in them.
+class KinkedSearch {
+public:
+  KinkedSearch(PairPath& path, const PairGap& pair, const FallRule& rule, double until)
+      : path_(&path), pair_(&pair), rule_(rule), until_(until) {}
+
+  [[nodiscard]] double first(double begin, double end) { return between(look(begin), look(end), 0); }
+
+private:
+  [[nodiscard]] FeatureLook look(double time) {
+    const MotionSample& at = path_->sample(time);
+    const FeatureRegions regions(pair_->assembly, pair_->detector.bodies().outlines(), pair_->pair, at.view(),
+                                 at.evaluation);
+    FeatureLook out;
+    out.gap = {time, gap_in(*pair_, at), 0.0};
+    out.feature = regions.nearest();
+    out.margin = regions.margin(out.feature).value;
+    return out;
+  }
+  [[nodiscard]] double between(const FeatureLook& from, const FeatureLook& to, int depth) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    constexpr int deepest = 30;
+    const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
+    if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;
+    const bool smooth = from.feature == to.feature && from.margin + to.margin > way;
+    if (smooth || depth == deepest) {
+      QuantityOf gap([&](double time) -> QuantityLook {
+        return {time, gap_in(*pair_, path_->sample(time)), 0.0};
+      });
+      return FallSearch(gap, rule_, until_).first(from.gap, to.gap);
+    }
+    const FeatureLook middle = look(begin + 0.5 * (end - begin));
+    const double first = between(from, middle, depth + 1);
+    return first < never ? first : between(middle, to, depth + 1);
+  }
+
+  PairPath* path_;
+  const PairGap* pair_;
+  FallRule rule_;
+  double until_;
+};
+
+}  // namespace
+
+StepPolynomial::End gap_in(const PairGap& of, const MotionSample& at) {
+  if (of.bound.central) return gap_of_discs(of.bound, at);
+  Constraint contact;
+  of.detector.contact(of.pair, at.view(), at.evaluation, at.places, contact);
+  return {contact.gap, contact.normal_velocity(at.state.v.data()),
+          contact.normal_acceleration(at.acceleration.data())};
+}
+
+StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
+  const double part = (gap.value + rho) / rho;
+  return {gap.value * (gap.value + 2.0 * rho) / (2.0 * rho), part * gap.first,
+          part * gap.second + gap.first * gap.first / rho};
+}
+
+double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
+                     const GapLook& to) {
+  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
+  const BodyPairBound& bound = of.bound;
+  FallRule rule;
+  rule.raise = how.noise - how.level;
+  rule.fine = fine;
+  rule.clear_falls = false;  // of several gaps the first is wanted
+  if (!bound.round) {
+    rule.fastest = how.fastest;
+    return KinkedSearch(path, of, rule, how.until).first(from.time, to.time);
+  }
+  // Two points without rounding have a kink where they meet, and do not touch.
+  const bool smooth = bound.rounding > 0.0;
+  rule.measured = !(bound.central && smooth && how.flies_freely);
+  const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {
+    return {time, smooth ? smooth_gap(gap, bound.rounding) : gap, 0.0};
+  };
+  QuantityOf gap([&](double time) { return look(time, gap_in(of, path.sample(time))); });
+  const auto at_end = [&](const GapLook& end) {
+    return end.known ? look(end.time, end.gap) : gap.look(end.time);
+  };
+  const QuantityLook begin = at_end(from);
+  return FallSearch(gap, rule, how.until).first(begin, at_end(to));
+}
+
+}  // namespace carom
