@@ -32,11 +32,20 @@ public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
   void build(std::span<const ImpulseDirection> directions, BodyResponse& response);
 
+  /// A body as a slot of factors.
+  struct Slot {
+    Constraint::Block block;               ///< its velocities
+    std::array<double, 3> inverse_mass{};  ///< by column [1/kg, 1/kg, 1/(kg m^2)]
+  };
+
   /// Leaves W as its factors H and M^-1, where all bodies are those of the plane and answer for themselves;
-  /// else false, and nothing is made. Without ratios only. \param directions must outlive it
-  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response);
-  /// Writes them; slots are bodies in the order in which the constraints name them. Call group() afterwards.
-  void write_factors(ContactProblem& problem) const;
+  /// else false, and nothing is made. Slots are bodies in the order in which the constraints name them. Call
+  /// group() afterwards. Without ratios only. \param directions must outlive it \param problem in factors, of
+  /// as many rows
+  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
+                                   ContactProblem& problem);
+  /// Slots of factors that were built.
+  [[nodiscard]] std::span<const Slot> slots() const { return slots_; }
 
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
@@ -55,13 +64,8 @@ private:
     std::size_t begin = 0;  // of its numbers
     Index body = none;      // one of those that reach there
   };
-  // A body as a slot of factors.
-  struct Slot {
-    Index v = 0;
-    int columns = 0;
-    std::array<double, 3> inverse_mass{};  // by column
-  };
-  [[nodiscard]] bool add_slots(const Constraint& constraint, const BodyResponse& response);
+  [[nodiscard]] bool add_slots(const Constraint& constraint, const BodyResponse& response, int* slot);
+  void write_masses(ResponseFactors& factors) const;
   void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);

@@ -4,8 +4,8 @@
 
 namespace carom {
 
-/// By counting: constraints are large, so that each is moved once, and there are few islands of many.
-void IslandPartition::bring_together(std::span<Constraint> constraints) {
+/// By counting: there are few islands of many constraints. Names are in order afterwards.
+void IslandPartition::find_order() {
   distinct_.clear();
   for (const Index name : names_) {
     if (name >= next_.size()) next_.resize(name + 1, 0);
@@ -18,13 +18,39 @@ void IslandPartition::bring_together(std::span<Constraint> constraints) {
     next_[name] = place;
     place += count;
   }
-  moved_.assign(constraints.begin(), constraints.end());
-  for (std::size_t i = 0; i < moved_.size(); ++i) constraints[next_[names_[i]]++] = moved_[i];
+  order_.resize(names_.size());
+  for (Index i = 0; i < names_.size(); ++i) order_[next_[names_[i]]++] = i;
   place = 0;
   for (const Index name : distinct_) {
     std::fill(names_.begin() + place, names_.begin() + next_[name], name);
     place = std::exchange(next_[name], 0);
   }
+}
+
+/// Constraints are large: each is moved once.
+void IslandPartition::bring_together(std::span<Constraint> constraints) {
+  find_order();
+  moved_.assign(constraints.begin(), constraints.end());
+  for (std::size_t i = 0; i < moved_.size(); ++i) constraints[i] = moved_[order_[i]];
+}
+
+std::span<const Range> IslandPartition::list_islands() {
+  for (Index i = 0; i < names_.size(); ++i) {
+    if (i == 0 || names_[i] != names_[i - 1]) islands_.push_back({i, i});
+    islands_.back().end = i + 1;
+  }
+  return islands_;
+}
+
+std::span<const Range> IslandPartition::arrange(std::span<const JoinedNodes> constraints, Index nodes) {
+  clear(nodes);
+  for (const JoinedNodes& nodes_of : constraints) {
+    if (nodes_of.first != nodes_of.second) sets_.join(nodes_of.first, nodes_of.second);
+  }
+  names_.clear();
+  for (const JoinedNodes& nodes_of : constraints) names_.push_back(island_of(nodes_of.first));
+  find_order();
+  return list_islands();
 }
 
 }  // namespace carom

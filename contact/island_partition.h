@@ -16,6 +16,11 @@
 
 namespace carom {
 
+/// What a constraint joins: the node of its first body with that of another one, or with itself.
+struct JoinedNodes {
+  Index first = none, second = none;
+};
+
 /// Finds islands among constraints. Keeps its memory.
 class CAROM_API IslandPartition {
 public:
@@ -35,12 +40,13 @@ public:
     names_.clear();
     for (const Constraint& constraint : constraints) names_.push_back(island_of(node_of(constraint.body())));
     if (!std::is_sorted(names_.begin(), names_.end())) bring_together(constraints);
-    for (Index i = 0; i < constraints.size(); ++i) {
-      if (i == 0 || names_[i] != names_[i - 1]) islands_.push_back({i, i});
-      islands_.back().end = i + 1;
-    }
-    return islands_;
+    return list_islands();
   }
+  /// Likewise of constraints that are still to be written, and are known by what they join: nothing is moved,
+  /// order() says how they have to stand.
+  std::span<const Range> arrange(std::span<const JoinedNodes> constraints, Index nodes);
+  /// Numbers of the constraints of the last such call in the order of its islands.
+  [[nodiscard]] std::span<const Index> order() const { return order_; }
 
   /// Parts all nodes; no constraints.
   void clear(Index nodes) {
@@ -67,12 +73,15 @@ private:
   }
 
   void bring_together(std::span<Constraint> constraints);
+  void find_order();
+  std::span<const Range> list_islands();
 
   UnionFind sets_;
   std::vector<Range> islands_;
   std::vector<Index> names_;     // of the islands, by constraint
   std::vector<Index> distinct_;  // names that occur
   std::vector<Index> next_;      // by name, zero between calls: how many, or the next place
+  std::vector<Index> order_;     // of constraints, island by island
   std::vector<Constraint> moved_;
 };
 

@@ -46,9 +46,11 @@ void IslandProblem::build_any(const double* velocity_before) {
   }
   const auto count = static_cast<std::size_t>(rows);
   // A large W is not to be made before it is known whether anybody needs it.
-  may_be_factored() ? problem_.reset_factors(rows, 0) : problem_.reset(rows);
+  const bool factored = may_be_factored();
+  factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
+  given_.resize(factored ? count : 0);
   answer_.impulse.assign(count, 0.0);
   slides_.assign(constraints.size(), 0.0);
   std::size_t row = 0;
@@ -58,9 +60,13 @@ void IslandProblem::build_any(const double* velocity_before) {
       set_row(c, i);
       before_[row] = constraints[c].velocity(i, velocity_before);
       restitution_[row] = constraints[c].restitution(i);
+      if (!factored) continue;
+      const double approach = i == 0 ? constraints[c].allowed_approach : 0.0;
+      given_[row] = restitution_[row] * before_[row] + approach -
+                    constraints[c].surface_velocity_after[static_cast<std::size_t>(i)];
     }
   }
-  problem_.group();
+  if (!factored) problem_.group();  // factors are still to be written
 }
 
 /// The hot path: one planar contact after another, so that only its numbers need to be filled in.
@@ -101,11 +107,10 @@ bool IslandProblem::may_be_factored() const {
 }
 
 void IslandProblem::respond(BodyResponse& response) {
-  if (may_be_factored() && delassus_.build_factors(directions_, response)) {
-    delassus_.write_factors(problem_);
-    return problem_.group();
+  if (problem_.is_factored()) {
+    if (delassus_.build_factors(directions_, response, problem_)) return problem_.group();
+    make_dense();
   }
-  if (problem_.is_factored()) problem_ = problem_.dense();
   delassus_.build(directions_, response);
   delassus_.write_symmetric(problem_.matrix().data());
 }
@@ -131,7 +136,43 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
   problem_.group();
 }
 
+/// W in full after all: its bodies do not answer for themselves.
+void IslandProblem::make_dense() {
+  const std::vector<RowSet> sets(problem_.sets().begin(), problem_.sets().end());
+  problem_.reset(problem_.rows());
+  std::copy(sets.begin(), sets.end(), problem_.sets().begin());
+  problem_.group();
+}
+
+/// The same of a problem in factors, from the velocities of its slots.
+void IslandProblem::set_free_velocity_of_slots(const double* velocity_free) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  const std::span<const Delassus::Slot> slots = delassus_.slots();
+  slot_velocity_.assign(columns * slots.size(), 0.0);
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+    const Constraint::Block& block = slots[slot].block;
+    std::copy_n(velocity_free + block.v, block.columns, slot_velocity_.data() + columns * slot);
+  }
+  const auto b = problem_.vector();
+  for (std::size_t row = 0; row < before_.size(); ++row) {
+    b[row] = problem_.factors().along(row, slot_velocity_) + given_[row];
+    if (problem_.diagonal(static_cast<int>(row)) > 0.0) continue;
+    b[row] = along_held_row(*directions_[row].constraint, directions_[row].row, velocity_free, b[row]);
+  }
+}
+
+void IslandProblem::add_velocities(double* velocity) {
+  if (!problem_.is_factored()) return map().add_velocities(velocity);
+  problem_.factors().respond(answer_.impulse, slot_velocity_);
+  const double* change = slot_velocity_.data();
+  for (const Delassus::Slot& slot : delassus_.slots()) {
+    for (int c = 0; c < slot.block.columns; ++c) velocity[slot.block.v + static_cast<Index>(c)] += change[c];
+    change += ResponseFactors::columns;
+  }
+}
+
 void IslandProblem::set_free_velocity(const double* velocity_free) {
+  if (problem_.is_factored()) return set_free_velocity_of_slots(velocity_free);
   const auto b = problem_.vector();
   std::size_t row = 0;
   for (const Constraint& constraint : constraints_) {

@@ -17,13 +17,15 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
 
-/// Constraints from which on an island that may do so leaves W in factors. The exact chain is slower from
-/// about five contacts on, and takes milliseconds from about 40 on; up to here it is worth its exact answers.
-inline constexpr std::size_t factored_constraints = 50;
+/// Constraints from which on an island that may do so leaves W in factors. The exact solvers are slower from
+/// about five contacts on; up to here they are worth their answers of rounding. Those of 20 contacts take a
+/// millisecond, and are asked where sweeps do not end (large_problem_solver.h).
+inline constexpr std::size_t factored_constraints = 12;
 
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
@@ -75,6 +77,24 @@ public:
   [[nodiscard]] const ContactReport& report() const { return answer_.report; }
   /// Place of row 0 of a constraint, the others behind it.
   [[nodiscard]] int first_row(std::size_t constraint) const { return first_row_[constraint]; }
+  /// Adds to velocities what the impulses of the last answer change, as map() does; faster where W is left in
+  /// factors. \param velocity of all bodies
+  void add_velocities(double* velocity);
+  /// Calls f(block) for each body, of a problem in factors once, else perhaps more often.
+  template <class F>
+  void for_bodies(F&& f) const {
+    if (problem_.is_factored()) {
+      for (const Delassus::Slot& slot : delassus_.slots()) f(slot.block);
+      return;
+    }
+    Index last = none;
+    for (const Constraint& constraint : constraints_) {
+      for (std::size_t b = 0; b < static_cast<std::size_t>(constraint.bodies); ++b) {
+        const Constraint::Block& block = constraint.blocks[b];
+        if (std::exchange(last, block.body) != block.body) f(block);
+      }
+    }
+  }
   /// The way back of the last answer. Valid until the problem changes.
   [[nodiscard]] ImpulseMap map() const {
     return {constraints_, first_row_, delassus_, before_, answer_.impulse};
@@ -85,6 +105,8 @@ private:
   void build_any(const double* velocity_before);
   void set_row(std::size_t constraint, int row);
   [[nodiscard]] bool may_be_factored() const;
+  void make_dense();
+  void set_free_velocity_of_slots(const double* velocity_free);
 
   std::size_t factors_from_ = std::numeric_limits<std::size_t>::max();
   std::span<const Constraint> constraints_;
@@ -95,6 +117,7 @@ private:
   std::vector<int> first_row_;
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
   std::vector<double> before_, restitution_, xi_, slot_velocity_;
+  std::vector<double> given_;  // of a problem in factors: part of b without velocities of bodies at the end
 };
 
 }  // namespace carom

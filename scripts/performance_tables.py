@@ -14,8 +14,10 @@ from pathlib import Path
 SIZES = [10, 30, 100, 300, 1000]
 WHEELS = [500, 4000]
 DISCS = [100, 2000, 10000]
+PILES = [100, 500, 2000, 10000]
+BOXES = [100, 1000, 10000, 100000]
 TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc")
+         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc", "per_box", "ms")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -295,6 +297,43 @@ def uncoupled_table(uncoupled):
     return table(["ns per disc and step (ratio to the loop with gaps)"] + [f"{count:,} discs" for count in DISCS], rows)
 
 
+def gap_table(gap):
+    rows = [[title, figure(1e9 / gap[key]["items_per_second"])]
+            for key, title in (("two_discs", "two discs"), ("disc_and_box", "disc and box"),
+                               ("two_capsules", "two capsules"), ("two_boxes", "two boxes"),
+                               ("two_polygons_of_16", "two polygons of 16 vertices"))]
+    return table(["gap of", "ns"], rows)
+
+
+def broad_phase_table(broad):
+    rows = []
+    for key, title in (("equal_slow", "boxes of one size, slow"), ("equal_few_fast", "a hundredth of them fast"),
+                       ("equal_fast", "all fast"), ("equal_plain", "grid by hand, all anew"),
+                       ("mixed_slow", "sizes from 1 to 100, slow"), ("mixed_fast", "the same, fast"),
+                       ("few_large_fast", "one in a thousand large, fast")):
+        cells = [title]
+        for count in BOXES:
+            case = broad.get(f"{key}/{count}")
+            cells.append(figure(1e9 * case["per_box"]) if case else "")
+        rows.append(cells)
+    return table(["ns per box and call"] + [f"{count:,} boxes" for count in BOXES], rows)
+
+
+def pile_table(pile, steps):
+    """Time of a step and its residual: of the contact problem alone, and of whole steps, where measured."""
+    rows = []
+    for cases, what in ((pile, "contact problem alone"), (steps, "whole step")):
+        for key in ("settled", "collapse"):
+            found = [(cases or {}).get(f"{key}/{count}") for count in PILES]
+            if not any(found):
+                continue
+            times = [figure(case["ms"] if "ms" in case else 1e3 * seconds(case)) if case else "" for case in found]
+            rows.append([f"{key}, {what}: ms"] + times)
+            rows.append([f"{key}, {what}: residual"]
+                        + [f"{case['residual']:.1e}" if case else "" for case in found])
+    return table(["one step"] + [f"{count:,} discs" for count in PILES], rows)
+
+
 def machine(context, compiler, began, idle=1.2):
     """What was measured on. Up to `idle` is the load of the benchmark before."""
     cpu = "unknown processor"
@@ -332,10 +371,21 @@ def main():
     joint_context, joint = load(folder, "joint")
     description_context, description = load(folder, "description")
     uncoupled_context, uncoupled = load(folder, "uncoupled")
+    gap_context, gap = load(folder, "gap")
+    broad_context, broad = load(folder, "broad_phase")
+    pile_context, pile = load(folder, "pile")
+    _, steps = load(folder, "pile_steps")
     parts = {}
     if uncoupled:
         parts |= {"uncoupled_machine": machine(uncoupled_context, compiler, "the discs"),
                   "uncoupled": uncoupled_table(uncoupled)}
+    if gap:
+        parts |= {"gap_machine": machine(gap_context, compiler, "the gaps"), "gap": gap_table(gap)}
+    if broad:
+        parts |= {"broad_phase_machine": machine(broad_context, compiler, "the boxes"),
+                  "broad_phase": broad_phase_table(broad)}
+    if pile and steps:
+        parts |= {"pile_machine": machine(pile_context, compiler, "the piles"), "pile": pile_table(pile, steps)}
     if net:
         parts |= {"machine": machine(context, compiler, "the net", idle=0.5), "net": net_table(net), "second": second_table(net)}
     if net and impact and tables:

@@ -131,54 +131,70 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
   };
   for (const BoxPair& pair : memory.broad.update(memory.boxes, query.margin)) add(pair.first, pair.second);
   if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
-  if (query.lasting != nullptr) add_lasting_pairs(*query.lasting, pairs);
+  if (query.lasting != nullptr) add_lasting_pairs(query, memory);
 }
 
 /// Pairs that touched in the step before and whose boxes do not overlap any more.
-void BodyContacts::add_lasting_pairs(const LastingContacts& lasting,
-                                     std::vector<std::pair<Index, Index>>& pairs) const {
-  const auto known = static_cast<std::ptrdiff_t>(pairs.size());
-  for (const ConstraintKey& key : lasting.keys()) {
+void BodyContacts::add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const {
+  auto& pairs = memory.pairs;
+  const std::size_t known = pairs.size();
+  for (const ConstraintKey& key : query.lasting->keys()) {
     if (key.b.owner != FeatureKey::Owner::shape) continue;
     const std::pair pair(outlines_.find(key.a), outlines_.find(key.b));
     if (pair.first == none || pair.second == none) continue;
-    if (std::binary_search(pairs.begin(), pairs.begin() + known, pair)) continue;
+    if (are_within(memory.boxes[pair.first], memory.boxes[pair.second], query.margin)) continue;
     if (may_touch(outlines_.list()[pair.first], outlines_.list()[pair.second])) pairs.push_back(pair);
   }
-  if (static_cast<std::ptrdiff_t>(pairs.size()) == known) return;
+  if (pairs.size() == known) return;
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
-                        std::vector<Constraint>& out) const {
-  if (empty()) return;
+std::span<const BodyTouch> BodyContacts::find_touching(const ContactQuery& query,
+                                                       BodyContactSearch& memory) const {
+  memory.touching.clear();
+  if (empty()) return {};
   outlines_.place(*assembly_, query.state, query.evaluation, memory.placed);
   collect_pairs(query, memory);
-  for (const auto& [i, j] : memory.pairs) add(i, j, query, memory, out);
+  for (const auto& [i, j] : memory.pairs) add(i, j, query, memory);
+  return memory.touching;
 }
 
-/// Appends the contacts of two outlines.
-void BodyContacts::add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
-                       std::vector<Constraint>& out) const {
+void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
+                        std::vector<Constraint>& out) const {
+  for (const BodyTouch& touch : find_touching(query, memory)) write(touch, query.state, out.emplace_back());
+}
+
+/// Adds the contacts of two outlines.
+void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const {
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
   std::array<GapPoint, 2> found;
   const int count = find_gaps(view(a, memory.placed.data() + a.vertices.begin),
                               view(b, memory.placed.data() + b.vertices.begin),
                               query.lasting == nullptr ? query.margin : any_gap, found);
   for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    const bool touches = gap.gap <= query.margin;
-    const ConstraintKey key = key_of(a, b, gap);
-    if (!touches && !query.lasting->contains(key)) continue;
-    Constraint& contact = out.emplace_back();
-    fill(key, a, b, gap, query.state, contact);
-    if (touches) continue;
-    if (query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) {
-      contact.allowed_approach = gap.gap / query.lasting->step();
-    } else {
-      out.pop_back();
+    if (gap.gap <= query.margin) {
+      memory.touching.push_back({i, j, gap, 0.0});
+    } else if (query.lasting->contains(key_of(a, b, gap))) {
+      add_lasting({i, j, gap, gap.gap / query.lasting->step()}, query, memory);
     }
   }
+}
+
+/// Adds a contact of the step before that is a little open, where turning explains that.
+void BodyContacts::add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const {
+  Constraint& contact = memory.trial;
+  contact = {};
+  write(touch, query.state, contact);
+  if (query.lasting->lasts(contact.key, touch.gap.gap, std::abs(contact.drift[0]))) {
+    memory.touching.push_back(touch);
+  }
+}
+
+void BodyContacts::write(const BodyTouch& touch, const StateView& state, Constraint& out) const {
+  const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
+  fill(key_of(a, b, touch.gap), a, b, touch.gap, state, out);
+  out.allowed_approach = touch.allowed_approach;
 }
 
 /// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two

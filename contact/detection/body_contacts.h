@@ -17,10 +17,18 @@
 #include <carom/core/surface.h>
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace carom {
+
+/// Two outlines that touch, before the rows of their contact are written.
+struct BodyTouch {
+  Index a = none, b = none;       ///< places of the outlines, that of the lesser key first
+  GapPoint gap;                   ///< where they touch
+  double allowed_approach = 0.0;  ///< Constraint::allowed_approach [m/s]
+};
 
 /// Memory of a search for contacts of bodies: its answer does not depend on it.
 struct BodyContactSearch {
@@ -28,6 +36,8 @@ struct BodyContactSearch {
   std::vector<Box<2>> boxes;                   ///< around all outlines
   std::vector<Vec<2>> placed;                  ///< vertices of all outlines
   std::vector<std::pair<Index, Index>> pairs;  ///< of outlines that may touch
+  std::vector<BodyTouch> touching;             ///< of those, contacts
+  Constraint trial;                            ///< of one that turning may have opened
 };
 
 /// Outlines of the bodies of an assembly, which of them may touch, and by which law.
@@ -48,6 +58,12 @@ public:
   /// Appends the contacts of all bodies that a query asks for, ordered by the first outline, then the second
   /// one, in the order of assembly.
   void find(const ContactQuery& query, BodyContactSearch& memory, std::vector<Constraint>& out) const;
+  /// The same contacts before their rows are written, for whoever brings them into another order first. Valid
+  /// as long as `memory` is left alone.
+  [[nodiscard]] std::span<const BodyTouch> find_touching(const ContactQuery& query,
+                                                         BodyContactSearch& memory) const;
+  /// Writes the contact of such outlines. \param out as made by default
+  void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
   /// Appends all pairs of a vertex and an outline of another body that may touch, ordered likewise.
   void append_pairs(std::vector<ContactPair>& out) const;
   /// Writes the contact of such a pair, whatever its gap.
@@ -60,9 +76,9 @@ private:
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
-  void add_lasting_pairs(const LastingContacts& lasting, std::vector<std::pair<Index, Index>>& pairs) const;
-  void add(Index i, Index j, const ContactQuery& query, const BodyContactSearch& memory,
-           std::vector<Constraint>& out) const;
+  void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
+  void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
+  void add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,
             const StateView& state, Constraint& out) const;
 

@@ -58,13 +58,19 @@ void ContactProblem::reset_factors(int rows, int slots) {
   if (rows < 0 || slots < 0) {
     throw std::invalid_argument("contact problem: the numbers of rows and slots are not negative");
   }
-  reset(0);
+  resize_factors(rows);
+  factors_.reset(rows, slots);
+}
+
+void ContactProblem::resize_factors(int rows) {
   rows_ = rows;
   const auto n = static_cast<std::size_t>(rows);
+  w_.clear();
   b_.assign(n, 0.0);
   sets_.assign(n, RowSet{});
+  groups_.clear();
   diagonal_.assign(n, 0.0);
-  factors_.reset(rows, slots);
+  factors_.resize_rows(rows);
   factored_ = true;
 }
 
@@ -82,7 +88,7 @@ void ContactProblem::group_factors() {
         refuse(static_cast<int>(row), "a slot that is none");
       if (sets_[row].kind == SetKind::bounded_disc)
         refuse(static_cast<int>(row), "no disc in a problem in factors");
-      diagonal_[row] = factors_.entry(row, row);
+      diagonal_[row] = factors_.diagonal(row);
     }
   }
 }

@@ -40,6 +40,9 @@ public:
   /// The same for a problem in factors, which are zero then. No disc may be among its sets.
   void reset_factors(int rows, int slots);
 
+  /// Likewise without slots, the rows of the factors still to be written.
+  void resize_factors(int rows);
+
   /// Whether W is given by factors().
   [[nodiscard]] bool is_factored() const { return factored_; }
 

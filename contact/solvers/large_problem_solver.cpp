@@ -3,8 +3,7 @@
 #include <carom/contact/solvers/large_problem_solver.h>
 
 #include <carom/contact/solvers/contact_mode.h>
-#include <carom/contact/solvers/residual.h>
-
+#include <algorithm>
 #include <stdexcept>
 
 namespace carom {
@@ -13,31 +12,64 @@ void LargeProblemSolver::set_budget(const SweepBudget& budget) {
   if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
     throw std::invalid_argument("contact solver: a budget has sweeps >= 0, residual > 0 and accepted >= 0");
   }
-  sweeps_.set_budget(budget);
+  budget_ = budget;
+}
+
+Residual LargeProblemSolver::judge(const ContactProblem& problem, std::span<const double> impulse,
+                                   std::span<double> xi) {
+  problem.velocities(impulse, xi, slot_velocity_);
+  return residual(problem, impulse, xi);
+}
+
+Outcome LargeProblemSolver::judged(double residual) const {
+  if (residual <= budget_.residual) return Outcome::solved;
+  return residual <= budget_.accepted ? Outcome::accepted_at_cap : Outcome::not_solved;
+}
+
+/// Modes that sweeps found are right, or nearly: Newton steps solve them, on W in full.
+void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double> impulse) {
+  constexpr int steps = 10;
+  dense_.reset(problem.rows());
+  for (int row = 0; row < problem.rows(); ++row) {
+    for (int column = 0; column <= row; ++column) {
+      const double entry =
+          problem.factors().entry(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+      dense_.w(row, column) = dense_.w(column, row) = entry;
+    }
+  }
+  std::copy(problem.vector().begin(), problem.vector().end(), dense_.vector().begin());
+  std::copy(problem.sets().begin(), problem.sets().end(), dense_.sets().begin());
+  dense_.group();
+  static_cast<void>(polish_.improve(dense_, impulse, steps));
 }
 
 void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
                                std::span<ContactMode> modes, ContactReport& report) {
   constexpr auto id = static_cast<std::size_t>(SolverId::nonlinear_cg);
-  const SweepBudget& budget = sweeps_.budget();
+  const std::size_t contacts = problem.groups().size();
   report.solver = solver_names[id];
   report.tried = 1u << id;
-  problem.velocities(impulse, xi, slot_velocity_);
-  Residual found = residual(problem, impulse, xi);
-  if (!(found.value <= budget.residual)) {
+  Residual found = judge(problem, impulse, xi);
+  if (judged(found.value) != Outcome::solved) {
+    SweepBudget budget = budget_;
+    // Sweeps over few contacts cost less than anything else: all that there are.
+    if (contacts <= most_exact) budget.accepted = std::min(budget.accepted, budget.residual);
+    sweeps_.set_budget(budget);
     const SolverAnswer answer = sweeps_.improve(problem, impulse);
     report.iterations = answer.iterations;
     report.reason = answer.reason;
-    problem.velocities(impulse, xi, slot_velocity_);
-    found = residual(problem, impulse, xi);
+    found = judge(problem, impulse, xi);
+    const Outcome outcome = judged(found.value);
+    if (outcome != Outcome::solved &&
+        (contacts <= most_exact || (outcome == Outcome::not_solved && contacts <= most_polished))) {
+      polish(problem, impulse);
+      found = judge(problem, impulse, xi);
+    }
   }
   report.residual = found.value;
   report.worst_group = found.group;
-  if (found.value <= budget.residual) {
-    report.outcome = Outcome::solved;
-  } else {
-    report.outcome = found.value <= budget.accepted ? Outcome::accepted_at_cap : Outcome::not_solved;
-  }
+  report.outcome = judged(found.value);
+  if (report.outcome == Outcome::solved) report.reason = {};
   for (std::size_t g = 0; g < modes.size(); ++g) {
     modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
   }

@@ -5,18 +5,27 @@
 
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_report.h>
+#include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/nonlinear_cg_solver.h>
+#include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/sweep_budget.h>
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 namespace carom {
 
 /// Judges the impulses that it is given, asks for sweeps where they are no answer, and judges again, by the
-/// residual of residual.h on the problem itself.
+/// residual of residual.h on the problem itself. Of a small problem sweeps that end above the residual of the
+/// budget are polished: the modes that they found are solved exactly.
 class LargeProblemSolver {
 public:
+  /// Contacts up to which exact solvers are asked where sweeps do not end: W in full, a few milliseconds.
+  static constexpr std::size_t most_exact = 50;
+  /// Contacts up to which an answer that must not be used is polished all the same: some 0.1 s.
+  static constexpr std::size_t most_polished = 200;
+
   /// Budget of an answer. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and 0 <=
   /// accepted.
   void set_budget(const SweepBudget& budget);
@@ -24,11 +33,26 @@ public:
   /// answer stay as they are.
   void solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
              std::span<ContactMode> modes, ContactReport& report);
+  /// Outcome of an answer of some residual.
+  [[nodiscard]] Outcome judged(double residual) const;
+  /// True if the exact solvers may be asked for a problem whose sweeps did not end.
+  [[nodiscard]] bool has_dense(const ContactProblem& problem) const {
+    return problem.groups().size() <= most_exact;
+  }
+  /// The last problem that was polished, with W in full.
+  [[nodiscard]] const ContactProblem& dense() const { return dense_; }
   /// The solver that is asked.
   [[nodiscard]] NonlinearCgSolver& sweeps() { return sweeps_; }
 
 private:
+  [[nodiscard]] Residual judge(const ContactProblem& problem, std::span<const double> impulse,
+                               std::span<double> xi);
+  void polish(const ContactProblem& problem, std::span<double> impulse);
+
+  SweepBudget budget_;
   NonlinearCgSolver sweeps_;
+  NewtonPolish polish_;
+  ContactProblem dense_;
   std::vector<double> slot_velocity_;
 };
 

@@ -24,6 +24,16 @@ double ResponseFactors::entry(std::size_t row, std::size_t column) const {
   return sum;
 }
 
+double ResponseFactors::diagonal(std::size_t row) const {
+  const Row& at = rows[row];
+  double sum = 0.0;
+  for (std::size_t i = 0; i < most_slots && at.slot[i] != no_slot; ++i) {
+    const double* const mass = inverse_mass.data() + static_cast<std::size_t>(at.slot[i]) * columns;
+    for (std::size_t k = 0; k < columns; ++k) sum += at.h[columns * i + k] * mass[k] * at.h[columns * i + k];
+  }
+  return sum;
+}
+
 void ResponseFactors::respond(std::span<const double> impulse, std::vector<double>& velocity) const {
   velocity.assign(inverse_mass.size(), 0.0);
   for (std::size_t r = 0; r < rows.size(); ++r) {

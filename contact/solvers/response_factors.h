@@ -30,10 +30,17 @@ struct CAROM_API ResponseFactors {
 
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);
+  /// Sizes the rows, whose numbers are to be written; no slots.
+  void resize_rows(int row_count) {
+    inverse_mass.clear();
+    rows.resize(static_cast<std::size_t>(row_count));
+  }
   /// Number of slots.
   [[nodiscard]] std::size_t slots() const { return inverse_mass.size() / columns; }
   /// Entry of W.
   [[nodiscard]] double entry(std::size_t row, std::size_t column) const;
+  /// Entry of W on its diagonal.
+  [[nodiscard]] double diagonal(std::size_t row) const;
   /// u = M^-1 H^T P. \param velocity out, three numbers a slot
   void respond(std::span<const double> impulse, std::vector<double>& velocity) const;
   /// H u along one row.

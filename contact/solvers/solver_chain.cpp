@@ -2,16 +2,12 @@
 
 #include <carom/contact/solvers/solver_chain.h>
 
+#include <carom/contact/solvers/exact_solvers.h>
 #include <carom/contact/solvers/large_problem_solver.h>
-#include <carom/contact/solvers/newton_polish.h>
-#include <carom/contact/solvers/pivoting_solvers.h>
-#include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/single_contact.h>
-#include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -19,20 +15,6 @@
 namespace carom {
 
 namespace {
-
-// Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
-constexpr double polish_from = 1e-16;
-constexpr int polish_steps = 3;
-// Steps where these leave the answer unacceptable: far from rounding, modes still change.
-constexpr int rescue_steps = 30;
-
-constexpr std::string_view not_applicable = "not applicable";
-
-// A proof about numbers that are none is no proof.
-bool finite(const ContactProblem& problem) {
-  const auto good = [](double value) { return std::isfinite(value); };
-  return std::ranges::all_of(problem.matrix(), good) && std::ranges::all_of(problem.vector(), good);
-}
 
 void demand_grouped(const ContactProblem& problem, std::span<const double> impulse) {
   const auto rows = static_cast<std::size_t>(problem.rows());
@@ -44,60 +26,23 @@ void demand_grouped(const ContactProblem& problem, std::span<const double> impul
 }  // namespace
 
 struct SolverChain::Workspace {
-  SingleContactSolver single;
-  PrincipalPivotingSolver pivoting;
-  LemkeSolver lemke;
-  ProjectionSolver projection;
-  SolutionList list;
-  NewtonPolish polish;
+  ExactSolvers exact;
   WarmStart warm_start;
   LargeProblemSolver large;
   ChainStatistics statistics;
-  std::vector<double> trial, trial_xi, xi, start;  // the last: impulses of a start
+  std::vector<double> xi, start;  // the last: impulses of a start
   std::vector<ContactMode> modes, start_modes;
-
-  // Result of the solvers tried so far.
-  struct Attempt {
-    ContactReport& report;  // of the best answer
-    SolverId best = SolverId::single_contact;
-    SolverId last = SolverId::single_contact;  // asked last
-    bool proved_unsolvable = false;            // by the last one
-    int applicable = 0;                        // solvers that could be tried
-  };
 
   bool begin(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
-  bool attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse, Attempt& state);
-  bool enumerate(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
-  void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, std::span<double> impulse,
-            Attempt& state);
-  void conclude(const ContactProblem& problem, std::span<double> impulse, Attempt& state);
   void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
-
-  ContactSolver& solver(SolverId id) {
-    switch (id) {
-      case SolverId::principal_pivoting:
-        return pivoting;
-      case SolverId::lemke:
-        return lemke;
-      case SolverId::projection:
-        return projection;
-      case SolverId::nonlinear_cg:
-        return large.sweeps();
-      case SolverId::single_contact:
-      case SolverId::enumeration:
-        break;
-    }
-    return single;
-  }
+  void sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 };
 
 // Sizes the workspace; false for a problem without rows, which is solved.
 bool SolverChain::Workspace::begin(const ContactProblem& problem, std::span<double> impulse,
                                    ContactReport& report) {
   const std::size_t n = impulse.size();
-  trial.resize(n);
-  trial_xi.resize(n);
   xi.resize(n);
   modes.resize(problem.groups().size());
   if (n > 0) return true;
@@ -139,108 +84,24 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   return true;
 }
 
-// Takes the trial as the best answer so far if it is.
-void SolverChain::Workspace::keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate,
-                                  std::span<double> impulse, Attempt& state) {
-  ContactReport& report = state.report;
-  if (found.value < report.residual || report.worst_group < 0) {
-    report.residual = found.value;
-    report.worst_group = found.group;
-    report.degenerate = degenerate;
-    // Whether a solver was sure of itself is not asked: the residual judges.
-    const bool named = outcome == Outcome::several_solutions || outcome == Outcome::forces_not_unique;
-    report.outcome = named ? outcome : Outcome::solved;
-    report.solver = to_string(id);
-    state.best = id;
-    std::copy(trial.begin(), trial.end(), impulse.begin());
-    std::copy(trial_xi.begin(), trial_xi.end(), xi.begin());
-  }
-}
-
-// Tries one solver; returns whether the search is over: an accepted answer, or a proof that there is none.
-bool SolverChain::Workspace::attempt(const ContactProblem& problem, SolverId id, std::span<double> impulse,
-                                     Attempt& state) {
-  state.last = id;
-  if (id == SolverId::enumeration) return enumerate(problem, impulse, state);
-  const SolverAnswer answer = solver(id).solve(problem, trial);
-  ContactReport& report = state.report;
-  report.iterations += answer.iterations;
-  if (answer.outcome == Outcome::not_solved) {
-    report.reason = answer.reason;
-    if (answer.reason == not_applicable) return false;
-  }
-  ++state.applicable;
-  report.tried = static_cast<std::uint8_t>(report.tried | 1u << static_cast<unsigned>(id));
-  if (answer.outcome == Outcome::no_solution) {
-    report.reason = answer.reason;
-    state.proved_unsolvable = finite(problem);
-    return true;
-  }
-  // Where the scan gives up it has no point to offer; the others end near one, and polishing may reach it.
-  if (answer.outcome == Outcome::not_solved && id == SolverId::principal_pivoting) return false;
-  problem.velocities(trial, trial_xi);
-  Residual found = residual(problem, trial, trial_xi);
-  bool degenerate = answer.degenerate;
-  if (id != SolverId::single_contact) {
-    if (found.value > polish_from) {
-      found = polish.improve(problem, trial, polish_steps);
-      if (found.value > accepted_residual) found = polish.improve(problem, trial, rescue_steps);
-      problem.velocities(trial, trial_xi);
-    }
-    degenerate = degenerate || at_mode_boundary(problem, trial, trial_xi);
-  }
-  keep(found, id, answer.outcome, degenerate, impulse, state);
-  return report.residual <= accepted_residual;
-}
-
-bool SolverChain::Workspace::enumerate(const ContactProblem& problem, std::span<double> impulse,
-                                       Attempt& state) {
-  const Outcome outcome = list.enumerate(problem);
-  if (!list.applicable()) {
-    if (state.report.reason.empty()) state.report.reason = not_applicable;
-    return false;
-  }
-  state.report.tried =
-      static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
-  state.proved_unsolvable = outcome == Outcome::no_solution && finite(problem);
-  if (list.size() > 0) {
-    std::copy(list.impulse(0).begin(), list.impulse(0).end(), trial.begin());
-    problem.velocities(trial, trial_xi);
-    keep(residual(problem, trial, trial_xi), SolverId::enumeration, outcome,
-         at_mode_boundary(problem, trial, trial_xi), impulse, state);
-  }
-  return state.proved_unsolvable || state.report.residual <= accepted_residual;
-}
-
-// Judges what was found, and reads the modes off it.
-void SolverChain::Workspace::conclude(const ContactProblem& problem, std::span<double> impulse,
-                                      Attempt& state) {
-  ContactReport& report = state.report;
-  if (report.residual <= tolerated_residual) {
-    report.reason = {};
-  } else {
-    report.outcome = state.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
-    if (report.reason.empty()) report.reason = "residual too large";
-    if (state.proved_unsolvable) report.reason = "no mode is possible";
-    if (state.proved_unsolvable || report.worst_group < 0) {
-      // A proof, or nobody had anything to offer: nothing acts.
-      std::fill(impulse.begin(), impulse.end(), 0.0);
-      problem.velocities(impulse, xi);
-      const Residual found = residual(problem, impulse, xi);
-      report.residual = found.value;
-      report.worst_group = found.group;
-      report.solver = to_string(state.last);
-    }
-  }
-  for (std::size_t g = 0; g < modes.size(); ++g) {
-    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
-  }
-}
-
 // A problem in factors, from the impulses at hand.
 void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<double> impulse,
                                    ContactReport& report) {
   if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
+}
+
+// Likewise; a small one exactly where sweeps do not end.
+void SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
+                                            ContactReport& report) {
+  sweep(problem, impulse, report);
+  ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
+  if (report.outcome != Outcome::solved && large.has_dense(problem)) {
+    const double swept = report.residual;
+    exact.solve(large.dense(), modes, attempt);
+    // No solver has a better answer than the sweeps.
+    if (report.residual == swept && !attempt.proved_unsolvable) report.outcome = large.judged(swept);
+  }
+  count(report, attempt.best, attempt.applicable, statistics);
 }
 
 SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
@@ -262,20 +123,11 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   report = {};
   if (problem.is_factored()) {
     std::fill(impulse.begin(), impulse.end(), 0.0);
-    work.sweep(problem, impulse, report);
-    return count(report, SolverId::nonlinear_cg, 1, work.statistics);
+    return work.sweep_or_solve(problem, impulse, report);
   }
   if (!work.begin(problem, impulse, report)) return;
-  Workspace::Attempt attempt{.report = report};
-  const SolverId first =
-      problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
-  const bool done = work.attempt(problem, first, impulse, attempt) ||
-                    work.attempt(problem, SolverId::lemke, impulse, attempt) ||
-                    work.attempt(problem, SolverId::projection, impulse, attempt);
-  if (!done && !(report.residual <= tolerated_residual)) {
-    work.attempt(problem, SolverId::enumeration, impulse, attempt);
-  }
-  work.conclude(problem, impulse, attempt);
+  ExactAttempt attempt{.impulse = impulse, .xi = work.xi, .report = report};
+  work.exact.solve(problem, work.modes, attempt);
   count(report, attempt.best, attempt.applicable, work.statistics);
 }
 
@@ -292,8 +144,7 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   if (problem.is_factored()) {
     demand_grouped(problem, solution.impulse);
     report = {};
-    work.sweep(problem, solution.impulse, report);
-    count(report, SolverId::nonlinear_cg, 1, work.statistics);
+    work.sweep_or_solve(problem, solution.impulse, report);
     solution.changed_modes = warm && solution.modes != work.modes;
     solution.modes.assign(work.modes.begin(), work.modes.end());
     return;
@@ -325,17 +176,17 @@ ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& pro
   demand_grouped(problem, impulse);
   ContactReport report;
   if (!work_->begin(problem, impulse, report)) return report;
-  Workspace::Attempt attempt{.report = report, .last = solver};
+  ExactAttempt attempt{.impulse = impulse, .xi = work_->xi, .report = report, .last = solver};
   if (!problem.is_factored()) {
-    work_->attempt(problem, solver, impulse, attempt);
+    work_->exact.attempt(problem, solver, attempt);
   } else if (solver != SolverId::nonlinear_cg) {
-    report.reason = not_applicable;
+    report.reason = "not applicable";
   } else {
     std::fill(impulse.begin(), impulse.end(), 0.0);
     work_->sweep(problem, impulse, report);
     return report;
   }
-  work_->conclude(problem, impulse, attempt);
+  ExactSolvers::conclude(problem, work_->modes, attempt);
   return report;
 }
 

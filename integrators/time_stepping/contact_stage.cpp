@@ -8,7 +8,9 @@
 namespace carom {
 
 ContactStage::ContactStage(const Assembly& assembly, const SweepBudget& budget)
-    : assembly_(&assembly), masses_(assembly) {
+    : assembly_(&assembly),
+      masses_(assembly),
+      one_body_each_(assembly.components().size() == assembly.layout()->bodies().size()) {
   Index most_blocks = 1, most_runs = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -55,7 +57,7 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
     if (problem.problem().is_factored()) start_sweeps(in, problem);
     return solved(problem) ? nullptr : &problem;
   };
-  if (island.constraints.size() == 1) return take(island.constraints);
+  if (island.constraints.size() == 1 || (island.joined && one_body_each_)) return take(island.constraints);
   for (const Range problem :
        partition_.arrange(island.constraints, bodies, [](Index body) { return body; })) {
     const IslandProblem* const failed = take(island.constraints.subspan(problem.begin, problem.size()));
@@ -100,7 +102,11 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
   in_use_ = 0;
   struck_.clear();
   if (island.constraints.empty()) return nullptr;
-  list_struck(island.constraints);
+  if (island.joined && one_body_each_) {
+    struck_.assign(island.components.begin(), island.components.end());
+  } else {
+    list_struck(island.constraints);
+  }
   trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
   return part_problems(in, island, [&](IslandProblem& problem) {
@@ -212,22 +218,16 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
   constexpr int of_planar_body = 3;
-  Index last = none;
-  for (const Constraint& constraint : problem.constraints()) {
-    for (int b = 0; b < constraint.bodies; ++b) {
-      const Constraint::Block& block = constraint.blocks[static_cast<std::size_t>(b)];
-      if (block.body == last) continue;
-      last = block.body;
-      if (block.columns == of_planar_body) {
-        free_body<of_planar_body>(in, loads, block, trial);
-      } else {
-        free_body<0>(in, loads, block, trial);
-      }
+  problem.for_bodies([&](const Constraint::Block& block) {
+    if (block.columns == of_planar_body) {
+      free_body<of_planar_body>(in, loads, block, trial);
+    } else {
+      free_body<0>(in, loads, block, trial);
     }
-  }
+  });
   problem.set_free_velocity(trial.free.data());
   if (!problem.solve(chain).usable()) return false;
-  problem.map().add_velocities(trial.dv_impulses.data());
+  problem.add_velocities(trial.dv_impulses.data());
   return true;
 }
 

@@ -79,6 +79,7 @@ private:
 
   const Assembly* assembly_;
   MassResponse masses_;
+  bool one_body_each_;  // components are bodies
   IslandPartition partition_;
   std::vector<IslandProblem> problems_;
   std::size_t in_use_ = 0;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// What the joints of one component do in a step, as far as an iteration knows it: impulses L, what they do
-/// to velocities, the displacement d back onto the joints; and the pieces that every sweep is made of.
+/// Iterate of the joints of one component in a step: impulses L, what they do to velocities, the displacement
+/// d back onto the joints; and the pieces that every sweep is made of.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>

@@ -73,24 +73,61 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
   remember(in, in.last_step);
   constraints_.clear();
+  if (detector_.bodies_touch()) return find_joining(in, batches, trial);
   for (const Range batch : batches) find_in(in, batch, trial, constraints_);
-  if (detector_.bodies_touch()) find_between(in, trial);
-  islands_.find(batches, constraints_);
+  islands_.find(batches);
+  islands_.take(constraints_);
 }
 
-/// Contacts of bodies with each other come before the other constraints of the component of their first body:
-/// friction in joints stays last.
-void StepConstraints::find_between(const StepInput& in, const StepTrial& trial) {
-  between_.clear();
-  detector_.bodies().find(query(in, trial), search_, between_);
-  if (between_.empty()) return;
-  take_sticking(between_);
-  const auto before = [&](const Constraint& a, const Constraint& b) {
-    return in.assembly.component_of(a.body()) < in.assembly.component_of(b.body());
+/// With contacts of bodies with each other. Constraints are large, and these are many: they are written once,
+/// where they stand among those of their island.
+void StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
+                                   const StepTrial& trial) {
+  single_.clear();
+  for (const Range batch : batches) find_in(in, batch, trial, single_);
+  const BodyContacts& bodies = detector_.bodies();
+  const std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  if (touching.empty()) {
+    constraints_.swap(single_);
+    islands_.find(batches);
+    return islands_.take(constraints_);
+  }
+  merge(in, touching);
+  for (const Index i : islands_.find(batches, joined_)) {
+    const Index source = sources_[i];
+    if (source >= touching.size()) {
+      constraints_.push_back(single_[source - touching.size()]);
+      continue;
+    }
+    bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
+    take_sticking({&constraints_.back(), 1});
+  }
+  islands_.take(constraints_);
+}
+
+/// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each
+/// other come before the others of a component: friction in joints stays last.
+void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touching) {
+  const std::vector<BodyOutline>& outlines = detector_.bodies().outlines().list();
+  const auto count = static_cast<Index>(touching.size());
+  joined_.clear();
+  sources_.clear();
+  Index next = 0;
+  const auto add_single_before = [&](Index end) {
+    for (; next < single_.size(); ++next) {
+      const Index component = in.assembly.component_of(single_[next].body());
+      if (component >= end) return;
+      joined_.push_back({component, component});
+      sources_.push_back(count + next);
+    }
   };
-  again_.swap(constraints_);
-  constraints_.resize(again_.size() + between_.size());
-  std::merge(between_.begin(), between_.end(), again_.begin(), again_.end(), constraints_.begin(), before);
+  for (Index i = 0; i < count; ++i) {
+    const Index first = in.assembly.component_of(outlines[touching[i].a].body);
+    add_single_before(first);
+    joined_.push_back({first, in.assembly.component_of(outlines[touching[i].b].body)});
+    sources_.push_back(i);
+  }
+  add_single_before(none);
 }
 
 void StepConstraints::restore(const StepInput& in, const StepIsland& island, const StepTrial& trial) {

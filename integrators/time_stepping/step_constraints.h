@@ -44,7 +44,8 @@ public:
 private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
-  void find_between(const StepInput& in, const StepTrial& trial);
+  void find_joining(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
+  void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
@@ -55,7 +56,10 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
-  std::vector<Constraint> constraints_, again_, between_;
+  std::vector<Constraint> constraints_, again_;
+  std::vector<Constraint> single_;      // those that join no components
+  std::vector<JoinedNodes> joined_;     // components of all constraints, before they are written
+  std::vector<Index> sources_;          // of the same: place among those of two bodies, or behind them in single_
   StepIslands islands_;
 };
 

@@ -2,8 +2,8 @@
 
 #include <carom/integrators/time_stepping/step_islands.h>
 
-#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace carom {
 
@@ -12,19 +12,22 @@ StepIslands::StepIslands(const Assembly& assembly)
   std::iota(alone_.begin(), alone_.end(), Index{0});
 }
 
-void StepIslands::find(std::span<const Range> batches, std::span<Constraint> constraints) {
-  if (std::any_of(constraints.begin(), constraints.end(),
-                  [this](const Constraint& constraint) { return joins_components(constraint); })) {
-    return join(batches, constraints);
-  }
+void StepIslands::find(std::span<const Range> batches) {
   if (apart_ != batches.data() || islands_.size() != batches.size()) part(batches);
+}
+
+void StepIslands::take(std::span<Constraint> constraints) {
   const auto& components = assembly_->components();
   std::size_t next = 0;
-  for (StepIsland& island : islands_) {
-    const Index end = components[island.batches.front().end - 1].bodies.end;
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
     const std::size_t first = next;
-    while (next < constraints.size() && constraints[next].body() < end) ++next;
-    island.constraints = constraints.subspan(first, next - first);
+    if (apart_ == nullptr) {
+      next = constraints_[i].end;
+    } else {
+      const Index end = components[islands_[i].batches.front().end - 1].bodies.end;
+      while (next < constraints.size() && constraints[next].body() < end) ++next;
+    }
+    islands_[i].constraints = constraints.subspan(first, next - first);
   }
 }
 
@@ -37,45 +40,50 @@ void StepIslands::part(std::span<const Range> batches) {
   apart_ = batches.data();
 }
 
-bool StepIslands::joins_components(const Constraint& constraint) const {
-  if (constraint.bodies == 1) return false;
-  const Component& first = assembly_->components()[assembly_->component_of(constraint.body())];
-  for (int b = 1; b < constraint.bodies; ++b) {
-    const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-    if (body < first.bodies.begin || body >= first.bodies.end) return true;
-  }
-  return false;
+std::span<const Index> StepIslands::find(std::span<const Range> batches,
+                                         std::span<const JoinedNodes> joined) {
+  partition_.arrange(joined, static_cast<Index>(alone_.size()));
+  order_components();
+  add_islands(batches, joined);
+  return partition_.order();
+}
+
+/// Components island by island, each in their order: by counting.
+void StepIslands::order_components() {
+  names_.resize(alone_.size());
+  next_.assign(alone_.size(), 0);
+  for (const Index component : alone_) ++next_[names_[component] = partition_.island_of(component)];
+  Index place = 0;
+  for (Index& next : next_) place += std::exchange(next, place);
+  joined_.resize(alone_.size());
+  for (const Index component : alone_) joined_[next_[names_[component]]++] = component;
 }
 
 /// Some islands have several components. What is left of a batch between them stays together.
-void StepIslands::join(std::span<const Range> batches, std::span<Constraint> constraints) {
-  const auto component_of = [this](Index body) { return assembly_->component_of(body); };
-  const auto island = [this](Index component) { return partition_.island_of(component); };
-  partition_.arrange(constraints, static_cast<Index>(alone_.size()), component_of);
+void StepIslands::add_islands(std::span<const Range> batches, std::span<const JoinedNodes> joined) {
+  const std::span<const Index> order = partition_.order();
+  const auto name = [this](std::size_t i) { return names_[joined_[i]]; };
   const auto is_alone = [&](std::size_t i) {
-    const bool last = i + 1 == joined_.size() || island(joined_[i + 1]) != island(joined_[i]);
-    return last && island(joined_[i]) == joined_[i];
+    return name(i) == joined_[i] && (i + 1 == joined_.size() || name(i + 1) != name(i));
   };
-  joined_ = alone_;
-  std::stable_sort(joined_.begin(), joined_.end(), [&](Index a, Index b) { return island(a) < island(b); });
   islands_.clear();
+  constraints_.clear();
   apart_ = nullptr;
   ranges_.clear();
   ranges_.reserve(alone_.size());  // they stay where they are
-  std::size_t next = 0, batch = 0;
+  Index next = 0;
+  std::size_t batch = 0;
   for (std::size_t first = 0, last = 0; first < joined_.size(); first = last) {
-    const Index name = island(joined_[first]);
-    while (last < joined_.size() && island(joined_[last]) == name) ++last;
+    while (last < joined_.size() && name(last) == name(first)) ++last;
     while (joined_[first] >= batches[batch].end) ++batch;
     // Others that stand alone in the batch.
     const bool alone = last == first + 1;
     while (alone && last < joined_.size() && joined_[last] < batches[batch].end && is_alone(last)) ++last;
-    const std::size_t begin = next;
-    const Index behind = last < joined_.size() ? island(joined_[last]) : none;
-    while (next < constraints.size() && island(component_of(constraints[next].body())) < behind) ++next;
+    const Index begin = next, behind = last < joined_.size() ? name(last) : none;
+    while (next < order.size() && names_[joined[order[next]].first] < behind) ++next;
     const std::span<const Index> components(joined_.data() + first, last - first);
-    islands_.push_back({components, constraints.subspan(begin, next - begin),
-                        add_ranges(components, batches.subspan(batch))});
+    islands_.push_back({components, {}, add_ranges(components, batches.subspan(batch)), !alone});
+    constraints_.push_back({begin, next});
   }
 }
 

@@ -19,6 +19,7 @@ struct StepIsland {
   std::span<const Index> components;    ///< ascending
   std::span<Constraint> constraints;    ///< that act on them
   std::span<const Range> batches = {};  ///< its components again: those of one batch that follow one another
+  bool joined = false;                  ///< constraints join its components, directly or by way of others
 };
 
 /// Finds islands. Keeps memory.
@@ -27,28 +28,34 @@ public:
   /// \param assembly must outlive it
   explicit StepIslands(const Assembly& assembly);
 
-  /// Finds the islands: every component belongs to one.
+  /// Finds the islands where no constraint joins components: every batch is one.
   /// \param batches ranges of components, in their order, that stay where and as they are as long as this is
-  /// used; what constraints join leaves its batch
-  /// \param constraints in the order of the components of their first bodies; those of an island are brought
-  /// together, as they came
-  void find(std::span<const Range> batches, std::span<Constraint> constraints);
+  /// used
+  void find(std::span<const Range> batches);
+  /// Likewise where some do: what they join leaves its batch. Every component belongs to an island. Returns
+  /// the order in which the constraints have to stand, those of an island together, as they came.
+  /// \param joined components of each constraint, in the order of the first ones
+  std::span<const Index> find(std::span<const Range> batches, std::span<const JoinedNodes> joined);
+  /// Shares the constraints out, which stand in the order of their islands.
+  void take(std::span<Constraint> constraints);
   /// The islands, in the order of their first components. Valid until the next find(), as long as the
   /// constraints stay where they are.
   [[nodiscard]] std::span<const StepIsland> list() const { return islands_; }
 
 private:
-  [[nodiscard]] bool joins_components(const Constraint& constraint) const;
   void part(std::span<const Range> batches);
-  void join(std::span<const Range> batches, std::span<Constraint> constraints);
+  void order_components();
+  void add_islands(std::span<const Range> batches, std::span<const JoinedNodes> joined);
   [[nodiscard]] std::span<const Range> add_ranges(std::span<const Index> components,
                                                   std::span<const Range> batches);
 
   const Assembly* assembly_;
   std::vector<Index> alone_, joined_;  // components in their order; island by island
+  std::vector<Index> names_, next_;    // of the islands, by component; the next places in joined_, by name
   std::vector<Range> ranges_;          // of joined_
   std::vector<StepIsland> islands_;
-  const Range* apart_ = nullptr;  // the batches that are the islands; null where constraints join some
+  std::vector<Range> constraints_;  // of each island; empty where batches are the islands
+  const Range* apart_ = nullptr;    // the batches that are the islands; null where constraints join some
   IslandPartition partition_;
 };
 

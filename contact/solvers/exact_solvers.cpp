@@ -1,0 +1,160 @@
+// Problem: get an answer of rounding, or a proof that there is none, from the first solver that has one.
+
+#include <carom/contact/solvers/exact_solvers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+namespace carom {
+
+namespace {
+
+// Answers of a larger residual are polished before they are judged. Below, nothing is left to gain.
+constexpr double polish_from = 1e-16;
+constexpr int polish_steps = 3;
+// Steps where these leave the answer unacceptable: far from rounding, modes still change.
+constexpr int rescue_steps = 30;
+
+constexpr std::string_view not_applicable = "not applicable";
+
+// A proof about numbers that are none is no proof.
+bool finite(const ContactProblem& problem) {
+  const auto good = [](double value) { return std::isfinite(value); };
+  return std::ranges::all_of(problem.matrix(), good) && std::ranges::all_of(problem.vector(), good);
+}
+
+}  // namespace
+
+/// Null of what is none of the solvers of an answer.
+ContactSolver* ExactSolvers::solver(SolverId id) {
+  switch (id) {
+    case SolverId::single_contact:
+      return &single_;
+    case SolverId::principal_pivoting:
+      return &pivoting_;
+    case SolverId::lemke:
+      return &lemke_;
+    case SolverId::projection:
+      return &projection_;
+    case SolverId::nonlinear_cg:
+    case SolverId::enumeration:
+      break;
+  }
+  return nullptr;
+}
+
+void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state) {
+  const SolverId first =
+      problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
+  const bool done = attempt(problem, first, state) || attempt(problem, SolverId::lemke, state) ||
+                    attempt(problem, SolverId::projection, state);
+  if (!done && !(state.report.residual <= tolerated_residual)) {
+    attempt(problem, SolverId::enumeration, state);
+  }
+  conclude(problem, modes, state);
+}
+
+// Takes the trial as the best answer so far if it is.
+void ExactSolvers::keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate,
+                        ExactAttempt& state) {
+  ContactReport& report = state.report;
+  if (found.value < report.residual || report.worst_group < 0) {
+    report.residual = found.value;
+    report.worst_group = found.group;
+    report.degenerate = degenerate;
+    // Whether a solver was sure of itself is not asked: the residual judges.
+    const bool named = outcome == Outcome::several_solutions || outcome == Outcome::forces_not_unique;
+    report.outcome = named ? outcome : Outcome::solved;
+    report.solver = to_string(id);
+    state.best = id;
+    std::copy(trial_.begin(), trial_.end(), state.impulse.begin());
+    std::copy(trial_xi_.begin(), trial_xi_.end(), state.xi.begin());
+  }
+}
+
+bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAttempt& state) {
+  state.last = id;
+  trial_.resize(state.impulse.size());
+  trial_xi_.resize(state.impulse.size());
+  if (id == SolverId::enumeration) return enumerate(problem, state);
+  ContactReport& report = state.report;
+  ContactSolver* const asked = solver(id);
+  if (asked == nullptr) {
+    report.reason = not_applicable;
+    return false;
+  }
+  const SolverAnswer answer = asked->solve(problem, trial_);
+  report.iterations += answer.iterations;
+  if (answer.outcome == Outcome::not_solved) {
+    report.reason = answer.reason;
+    if (answer.reason == not_applicable) return false;
+  }
+  ++state.applicable;
+  report.tried = static_cast<std::uint8_t>(report.tried | 1u << static_cast<unsigned>(id));
+  if (answer.outcome == Outcome::no_solution) {
+    report.reason = answer.reason;
+    state.proved_unsolvable = finite(problem);
+    return true;
+  }
+  // Where the scan gives up it has no point to offer; the others end near one, and polishing may reach it.
+  if (answer.outcome == Outcome::not_solved && id == SolverId::principal_pivoting) return false;
+  problem.velocities(trial_, trial_xi_);
+  Residual found = residual(problem, trial_, trial_xi_);
+  bool degenerate = answer.degenerate;
+  if (id != SolverId::single_contact) {
+    if (found.value > polish_from) {
+      found = polish_.improve(problem, trial_, polish_steps);
+      if (found.value > accepted_residual) found = polish_.improve(problem, trial_, rescue_steps);
+      problem.velocities(trial_, trial_xi_);
+    }
+    degenerate = degenerate || at_mode_boundary(problem, trial_, trial_xi_);
+  }
+  keep(found, id, answer.outcome, degenerate, state);
+  return report.residual <= accepted_residual;
+}
+
+bool ExactSolvers::enumerate(const ContactProblem& problem, ExactAttempt& state) {
+  const Outcome outcome = list_.enumerate(problem);
+  if (!list_.applicable()) {
+    if (state.report.reason.empty()) state.report.reason = not_applicable;
+    return false;
+  }
+  state.report.tried =
+      static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(SolverId::enumeration));
+  state.proved_unsolvable = outcome == Outcome::no_solution && finite(problem);
+  if (list_.size() > 0) {
+    std::copy(list_.impulse(0).begin(), list_.impulse(0).end(), trial_.begin());
+    problem.velocities(trial_, trial_xi_);
+    keep(residual(problem, trial_, trial_xi_), SolverId::enumeration, outcome,
+         at_mode_boundary(problem, trial_, trial_xi_), state);
+  }
+  return state.proved_unsolvable || state.report.residual <= accepted_residual;
+}
+
+void ExactSolvers::conclude(const ContactProblem& problem, std::span<ContactMode> modes,
+                            ExactAttempt& state) {
+  ContactReport& report = state.report;
+  if (report.residual <= tolerated_residual) {
+    report.reason = {};
+  } else {
+    report.outcome = state.proved_unsolvable ? Outcome::no_solution : Outcome::not_solved;
+    if (report.reason.empty()) report.reason = "residual too large";
+    if (state.proved_unsolvable) report.reason = "no mode is possible";
+    if (state.proved_unsolvable || report.worst_group < 0) {
+      // A proof, or nobody had anything to offer: nothing acts.
+      std::fill(state.impulse.begin(), state.impulse.end(), 0.0);
+      problem.velocities(state.impulse, state.xi);
+      const Residual found = residual(problem, state.impulse, state.xi);
+      report.residual = found.value;
+      report.worst_group = found.group;
+      report.solver = to_string(state.last);
+    }
+  }
+  for (std::size_t g = 0; g < modes.size(); ++g) {
+    modes[g] = contact_mode(problem, problem.groups()[g], state.impulse, state.xi);
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,57 @@
+#pragma once
+
+/// \file
+/// The exact solvers of a dense contact problem, tried in turn, each answer judged before it is used.
+
+#include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/contact_report.h>
+#include <carom/contact/solvers/contact_solver.h>
+#include <carom/contact/solvers/newton_polish.h>
+#include <carom/contact/solvers/pivoting_solvers.h>
+#include <carom/contact/solvers/projection_solver.h>
+#include <carom/contact/solvers/residual.h>
+#include <carom/contact/solvers/single_contact.h>
+#include <carom/contact/solvers/solution_list.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Answer under way: where the best one so far is written, and who has been asked.
+struct ExactAttempt {
+  std::span<double> impulse, xi;  ///< of the best answer [N s], [m/s]
+  ContactReport& report;          ///< likewise
+  SolverId best = SolverId::single_contact;
+  SolverId last = SolverId::single_contact;  ///< asked last
+  bool proved_unsolvable = false;            ///< by the last one
+  int applicable = 0;                        ///< solvers that could be tried
+};
+
+/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; up to three by
+/// enumeration of the modes when all else failed. Reuse it: its memory is kept.
+class ExactSolvers {
+public:
+  /// Tries solvers until an answer is accepted, and concludes.
+  void solve(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state);
+  /// Tries one solver; returns whether the search is over: an accepted answer, or a proof that there is none.
+  bool attempt(const ContactProblem& problem, SolverId id, ExactAttempt& state);
+  /// Judges what was found, and reads the modes off it.
+  static void conclude(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state);
+
+private:
+  [[nodiscard]] ContactSolver* solver(SolverId id);
+  bool enumerate(const ContactProblem& problem, ExactAttempt& state);
+  void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, ExactAttempt& state);
+
+  SingleContactSolver single_;
+  PrincipalPivotingSolver pivoting_;
+  LemkeSolver lemke_;
+  ProjectionSolver projection_;
+  SolutionList list_;
+  NewtonPolish polish_;
+  std::vector<double> trial_, trial_xi_;
+};
+
+}  // namespace carom
