@@ -15,6 +15,7 @@ set(carom_public_headers
     bodies/shape_segment.h
     contact/detection/half_space.h
     contact/detection/prescribed_motion.h
+    contact/solvers/impact_order.h
     contact/solvers/chain_statistics.h
     contact/solvers/contact_mode.h
     contact/solvers/contact_problem.h
@@ -80,6 +81,7 @@ set(carom_public_headers
     integrators/flow/flow_method.h
     integrators/run/event_driven.h
     integrators/run/event_log.h
+    integrators/run/impact_note.h
     integrators/run/step_report.h
     integrators/run/stop_request.h
     integrators/run/time_stepping.h

@@ -24,6 +24,16 @@ bool is_one_planar_contact(const ContactProblem& problem) {
   return std::abs(number) <= rounding * constraint.speed(row, velocity_free) + least ? 0.0 : number;
 }
 
+/// Whether the constraints are many and share several bodies in the plane.
+bool may_be_factored(std::span<const Constraint> constraints, std::size_t from) {
+  if (constraints.size() < from || constraints.empty()) return false;
+  const Index first = constraints.front().body();
+  const auto planar = [](const Constraint& at) { return at.rows <= 2; };
+  const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
+  return std::all_of(constraints.begin(), constraints.end(), planar) &&
+         std::any_of(constraints.begin(), constraints.end(), other);
+}
+
 }  // namespace
 
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
@@ -46,7 +56,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   }
   const auto count = static_cast<std::size_t>(rows);
   // A large W is not to be made before it is known whether anybody needs it.
-  const bool factored = may_be_factored();
+  const bool factored = may_be_factored(constraints, factors_from_);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
@@ -94,16 +104,6 @@ void IslandProblem::set_row(std::size_t constraint, int row) {
   set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
   set.bound = first_row_[constraint];
   set.coefficient = at.friction;
-}
-
-/// Whether the constraints are many and share several bodies in the plane.
-bool IslandProblem::may_be_factored() const {
-  if (constraints_.size() < factors_from_ || constraints_.empty()) return false;
-  const Index first = constraints_.front().body();
-  const auto planar = [](const Constraint& at) { return at.rows <= 2; };
-  const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
-  return std::all_of(constraints_.begin(), constraints_.end(), planar) &&
-         std::any_of(constraints_.begin(), constraints_.end(), other);
 }
 
 void IslandProblem::respond(BodyResponse& response) {
@@ -204,6 +204,10 @@ void IslandProblem::set_velocity(const double* velocity) {
 }
 
 const ContactReport& IslandProblem::solve(SolverChain& chain) {
+  if (impact_.solver != nullptr) {
+    impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
+    return answer_.report;
+  }
   chain.solve(problem_, answer_);
   return answer_.report;
 }

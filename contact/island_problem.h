@@ -10,6 +10,7 @@
 #include <carom/contact/delassus.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -44,6 +45,8 @@ public:
   void update_bound(std::size_t constraint);
   /// Makes a planar contact, or friction in a joint, slip whatever its tangential velocity: P_t = ratio P_n.
   void slide(std::size_t constraint, double ratio);
+  /// Solves by a law of impact other than Newton's from now on: b is that of an impact. Null: by Newton's.
+  void use(ImpactSolver* solver, ImpactLaw law) { impact_ = {solver, law}; }
   /// Makes b from the velocities that the step would end with if no constraint acted, against those of the
   /// surfaces then (Constraint::velocity_after).
   void set_free_velocity(const double* velocity_free);
@@ -104,16 +107,21 @@ private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
   void set_row(std::size_t constraint, int row);
-  [[nodiscard]] bool may_be_factored() const;
   void make_dense();
   void set_free_velocity_of_slots(const double* velocity_free);
 
+  // Solver of impacts by another law.
+  struct ImpactChoice {
+    ImpactSolver* solver = nullptr;
+    ImpactLaw law = ImpactLaw::newton;
+  };
   std::size_t factors_from_ = std::numeric_limits<std::size_t>::max();
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
   Delassus delassus_;
   ContactProblem problem_;
   ContactSolution answer_;
+  ImpactChoice impact_;
   std::vector<int> first_row_;
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
   std::vector<double> before_, restitution_, xi_, slot_velocity_;

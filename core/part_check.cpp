@@ -104,6 +104,19 @@ void PartCheck::surface(const Surface& surface) const {
   non_negative(surface.friction, "friction", "");
   between(surface.normal_restitution, 0.0, 1.0, "normal_restitution");
   between(surface.tangential_restitution, 0.0, 1.0, "tangential_restitution");
+  if (surface.impact_law > ImpactLaw::energetic) {
+    refuse("impact_law", std::to_string(static_cast<int>(surface.impact_law)),
+           "newton, poisson or energetic");
+  }
+  if (surface.impact_law == ImpactLaw::energetic && surface.tangential_restitution != 0.0) {
+    refuse("tangential_restitution", to_text(surface.tangential_restitution),
+           "0 where impact_law is energetic");
+  }
+  non_negative(surface.rolling_resistance, "rolling_resistance", "m");
+  between(surface.rolling_restitution, 0.0, 1.0, "rolling_restitution");
+  if (surface.rolling_restitution > 0.0 && surface.rolling_resistance == 0.0) {
+    refuse("rolling_restitution", to_text(surface.rolling_restitution), "0 where rolling_resistance is 0");
+  }
   non_negative(surface.stribeck_speed, "stribeck_speed", "m/s");
   if (std::isnan(surface.static_friction)) {
     if (surface.stribeck_speed == 0.0) return;

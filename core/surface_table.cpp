@@ -11,6 +11,13 @@ void add(const Surface& law, Fingerprint& print) {
   print.add(law.friction);
   print.add(law.normal_restitution);
   print.add(law.tangential_restitution);
+  // Nothing of what is not used: models without keep the fingerprints of earlier versions.
+  if (law.impact_law != ImpactLaw::newton) print.add(to_string(law.impact_law));
+  if (law.rolling_resistance > 0.0) {
+    print.add("rolling resistance");
+    print.add(law.rolling_resistance);
+    print.add(law.rolling_restitution);
+  }
   if (!law.has_static_friction()) return;
   print.add(law.static_friction);
   print.add(law.stribeck_speed);

@@ -50,6 +50,8 @@ public:
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
   /// True if some law takes more to slip than to slide.
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
+  /// True if some law of impact is not Newton's.
+  [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
   /// The outlines.
@@ -87,6 +89,7 @@ private:
   PairFilter filter_;
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
   bool has_static_friction_ = false;
+  bool has_other_impact_law_ = false;
 };
 
 }  // namespace carom

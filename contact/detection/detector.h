@@ -99,6 +99,10 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
+  /// True if some law of impact is not Newton's.
+  [[nodiscard]] bool has_other_impact_law() const {
+    return ground_.has_other_impact_law() || bodies_.has_other_impact_law();
+  }
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
     return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();

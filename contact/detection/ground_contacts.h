@@ -27,6 +27,8 @@ public:
   [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
   /// True if some law takes more to slip than to slide.
   [[nodiscard]] bool has_static_friction() const { return laws_.has_static_friction(); }
+  /// True if some law of impact is not Newton's.
+  [[nodiscard]] bool has_other_impact_law() const { return laws_.has_other_impact_law(); }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return features_.any_off_centre(); }
 

@@ -23,9 +23,16 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
                          ": law is not given; allowed: a Surface on the obstacle, between the two materials "
                          "or as default law");
       }
+      if (system.dimension() == 3 && (law->has_other_impact_law() || law->resists_rolling())) {
+        const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};
+        throw ModelError("contact of " + contact_name(system, key) + ": impact_law is " +
+                         std::string(to_string(law->impact_law)) + " and rolling_resistance " +
+                         to_text(law->rolling_resistance) + " m; allowed in space: newton and 0");
+      }
       touched_.push_back(shape);
       laws_.push_back(*law);
       has_static_friction_ = has_static_friction_ || law->has_static_friction();
+      has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();
     }
     begin_.push_back(static_cast<Index>(touched_.size()));
   }

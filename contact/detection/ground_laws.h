@@ -33,6 +33,8 @@ public:
   }
   /// True if some law takes more to slip than to slide.
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
+  /// True if some law of impact is not Newton's.
+  [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
 
 private:
   Index shapes_;               // number of shapes
@@ -40,6 +42,7 @@ private:
   std::vector<Index> begin_;   // of each material: its first in `touched_`
   std::vector<Index> touched_;
   bool has_static_friction_ = false;
+  bool has_other_impact_law_ = false;
 };
 
 }  // namespace carom

@@ -123,6 +123,7 @@ void EventBalance::note_before(const IslandProblem& problem, const StateView& st
 double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) {
   const IslandProblem& problem = impact.problem;
   ImpulseWork work;
+  const std::size_t first = events.size();
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     if (contact.has_dry_friction()) {
@@ -132,6 +133,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
       continue;
     }
     EventRecord& event = record(impact.kind, impact.time, contact, assembly);
+    static_cast<ImpactNote&>(event) = impact.note;
     for (int row = 0; row < contact.rows; ++row) {
       const auto at = static_cast<std::size_t>(row);
       const auto place = static_cast<std::size_t>(problem.first_row(c) + row);
@@ -140,7 +142,9 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
       event.velocity_before[at] = before;
       event.velocity_after[at] = after;
       event.impulse[at] = impulse;
-      flows[line_of(impact.kind, row)] -= work.add(impulse, before, after);
+      const double of_row = work.add(impulse, before, after);
+      event.contact_work += of_row;
+      flows[line_of(impact.kind, row)] -= of_row;
       flows[EnergyFlow::external] += impulse * contact.surface_velocity[at];
     }
     if (keeping.records) {
@@ -155,7 +159,10 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
     event.solver = problem.report().solver;
     event.accumulation_time = impact.accumulation_time;
   }
+  if (impact.note.cut_sequence) ++tally.cut_sequences;
+  if (impact.note.restitution_factor < 1.0) ++tally.scaled_impacts;
   if (!work.is_gain()) return 0.0;
+  for (std::size_t i = first; i < events.size(); ++i) events[i].energy_gain = work.gain;
   energy_gain += work.gain;
   return work.gain;
 }

@@ -28,6 +28,7 @@ struct SolvedImpact {
   double time = 0.0;                                                    ///< [s]
   const IslandProblem& problem;                                         ///< the problem and its answer
   const double* velocity;                                               ///< of the model, after
+  ImpactNote note{};                                                    ///< without its works
   double energy_before = 0.0;                                           ///< kinetic energy of the island [J],
   double energy_after = 0.0;                                            ///< and after
   double accumulation_time = std::numeric_limits<double>::quiet_NaN();  ///< EventRecord::accumulation_time
@@ -45,6 +46,8 @@ struct EventTally {
   std::int64_t impacts = 0;  ///< of contacts with an impulse
   std::int64_t several_solutions = 0;
   std::int64_t forces_not_unique = 0;
+  std::int64_t cut_sequences = 0;
+  std::int64_t scaled_impacts = 0;
   double worst_residual = 0.0;
 };
 

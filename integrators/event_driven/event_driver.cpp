@@ -3,6 +3,7 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
+#include <carom/integrators/run/impact_options.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,7 @@ void check_options(const EventDriven& options) {
     throw ModelError("event-driven mode: method is " + std::to_string(static_cast<int>(options.method)) +
                      "; allowed: one of FlowMethod, explicit_runge_kutta (0) to one_step (3)");
   }
+  check_options(impact_options(options), "event-driven mode");
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 
@@ -204,6 +206,7 @@ void EventDriver::report_contacts(StepReport& report) const {
     entry.other = event.other;
     const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = limit ? 1 : assembly_->layout()->dimension();
+    static_cast<ImpactNote&>(entry) = event;
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;
@@ -224,6 +227,8 @@ void EventDriver::count(Companion& companion) {
   for (std::size_t kind = 0; kind < event_kind_count; ++kind)
     statistics.events[kind] += balance_.counts[kind];
   statistics.impacts += balance_.tally.impacts;
+  statistics.cut_sequences += balance_.tally.cut_sequences;
+  statistics.scaled_impacts += balance_.tally.scaled_impacts;
   statistics.several_solutions += balance_.tally.several_solutions;
   statistics.forces_not_unique += balance_.tally.forces_not_unique;
   statistics.worst_residual = std::max(statistics.worst_residual, balance_.tally.worst_residual);

@@ -1,6 +1,7 @@
 // Problem: impacts at one instant, where they come from and where they lead to.
 
 #include <carom/contact/impact_restitution.h>
+#include <carom/contact/impact_rules.h>
 #include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 
@@ -19,13 +20,16 @@ constexpr int most_impacts_at_once = 10000;
 
 bool ImpactStage::resolve(EventInstant& at) {
   bool struck = false;
+  // An island that has begun a sequence goes on with it, however slow.
+  std::vector<int>& sequence = memory_->sequence;
+  sequence.assign(at.islands.size(), 0);
   for (int round = 0; round < most_impacts_at_once; ++round) {
     bool any = false;
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
       const std::span<const Index> pairs = at.islands.pairs(island);
       const double fastest = fastest_approach(pairs, at);
       if (!(fastest > at.scales.speed_noise)) continue;
-      resolve_island(pairs, fastest, at);
+      resolve_island(pairs, fastest, sequence[island], at);
       any = struck = true;
     }
     if (!any) return struck;
@@ -48,23 +52,62 @@ double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventIn
   return fastest;
 }
 
-void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, EventInstant& at) {
+/// \param sequence impacts of the island at this instant before, counted where they are sequential
+void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, int& sequence,
+                                 EventInstant& at) {
   list_touching(pairs, at);
   std::vector<Constraint>& touching = memory_->touching;
+  const bool sequential = options_->impact_order == ImpactOrder::sequential;
+  // The first impact of a sequence tells whether it is slow.
+  const bool captured = fastest <= options_->capture_speed && sequence == 0;
+  memory_->note = {};
+  memory_->note.cut_sequence = sequential && !captured && sequence >= options_->sequence_limit;
+  if (sequential && !captured && !memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
+  if (sequential && !captured) ++sequence;
   share_impact_restitution(touching, at.velocities(), 0.0);
-  const bool captured = fastest <= options_->capture_speed;
   if (captured) add_captured(pairs, at);
+  if (captured || memory_->note.cut_sequence) remove_restitution();
   IslandProblem& problem = memory_->problem;
-  JointReactions& joints = at.motion.joints();
-  joints.build(problem, touching, at.velocities());
-  problem.set_free_velocity(at.velocities());
-  if (!joints.solve(problem, touching, at.now, *chain_)) {
+  problem.use(nullptr, ImpactLaw::newton);
+  if (!captured && !memory_->note.cut_sequence) choose_law(problem);
+  if (!solve(problem, at)) {
     if (!captured) fail_unsolved(at);
     // Slower than the capture speed all that touches closes anyway.
     problem.forget_impulses();
+  } else if (options_->limit_energy_gain && !captured) {
+    const auto again = [&] { return solve(problem, at); };
+    memory_->note.restitution_factor = limit_gain(problem, touching, again);
+    if (!problem.report().usable()) fail_unsolved(at);
   }
-  apply(captured ? EventKind::accumulation : EventKind::impact, problem, at);
+  const bool closes = captured || memory_->note.cut_sequence;
+  apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
   if (captured) close_captured(at);
+}
+
+bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
+  JointReactions& joints = at.motion.joints();
+  joints.build(problem, memory_->touching, at.velocities());
+  problem.set_free_velocity(at.velocities());
+  return joints.solve(problem, memory_->touching, at.now, *chain_);
+}
+
+/// Has the problem solved by the law of its contacts. Fails where they have different ones.
+void ImpactStage::choose_law(IslandProblem& problem) const {
+  const std::optional<ImpactLaw> law = law_of_impact(memory_->touching);
+  if (!law) {
+    failure_->fail(
+        "contacts of one impact have different laws of impact; allowed: one law for all that touch at an "
+        "instant, or impact_order sequential",
+        failure_->names(memory_->touching));
+  }
+  if (*law != ImpactLaw::newton) problem.use(&memory_->by_law, *law);
+}
+
+void ImpactStage::remove_restitution() {
+  for (Constraint& contact : memory_->touching) {
+    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    contact.law.rolling_restitution = 0.0;
+  }
 }
 
 /// Lists the contacts of an impact, with the friction of their present sliding.
@@ -108,6 +151,7 @@ std::string ImpactStage::fastest_of(const std::vector<Constraint>& contacts, con
 void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInstant& at) {
   const GroupModel& model = at.motion.model();
   SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
+  impact.note = kind == EventKind::impact_without_collision ? ImpactNote{} : memory_->note;
   impact.energy_before = model.kinetic_energy_of(problem.constraints(), at.velocities());
   at.balance.note_before(problem, at.now.view(), *model.assembly);
   problem.map().add_velocities(at.velocities());
@@ -128,7 +172,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
 
-/// Adds contacts that are about to close too, and takes the restitution out of all.
+/// Adds contacts that are about to close too.
 void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant& at) {
   const double limit = options_->capture_speed * options_->capture_speed;
   for (const Index i : pairs) {
@@ -139,9 +183,6 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
     const double speed = contact.normal_velocity(at.velocities());
     const double fall = contact.normal_acceleration(at.now.acceleration.data());
     if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) memory_->touching.push_back(contact);
-  }
-  for (Constraint& contact : memory_->touching) {
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
   }
 }
 

@@ -6,12 +6,14 @@
 
 #include <carom/contact/active_set.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/accumulation.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/group_failure.h>
+#include <carom/integrators/run/impact_note.h>
 
 #include <span>
 #include <string>
@@ -24,6 +26,9 @@ struct ImpactMemory {
   IslandProblem problem;
   std::vector<Constraint> touching;  ///< constraints of the problem
   std::vector<ActiveContact> captured;
+  std::vector<int> sequence;  ///< by island: impacts of the instant
+  ImpactSolver by_law;
+  ImpactNote note;  ///< of the impact at hand
 };
 
 /// The impacts of one clock group.
@@ -46,7 +51,10 @@ public:
 
 private:
   [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
-  void resolve_island(std::span<const Index> pairs, double fastest, EventInstant& at);
+  void resolve_island(std::span<const Index> pairs, double fastest, int& sequence, EventInstant& at);
+  [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
+  void choose_law(IslandProblem& problem) const;
+  void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(EventInstant& at);

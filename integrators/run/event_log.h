@@ -8,6 +8,7 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
+#include <carom/integrators/run/impact_note.h>
 
 #include <array>
 #include <cstddef>
@@ -69,7 +70,7 @@ struct EventMotion {
 
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
 /// driver or shape on ground. Simulation::name() names the part. Directions: normal first, then tangential.
-struct EventRecord : EventParts, EventSolution {
+struct EventRecord : EventParts, EventSolution, ImpactNote {
   double time = 0.0;  ///< [s]
   /// Number of the instant: records of one group of bodies at one time, with what follows there from one
   /// event, have the same. Ascends along the list by 0 or 1, from 0 where none were cleared.

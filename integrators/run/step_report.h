@@ -10,6 +10,7 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/model_finding.h>
 #include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/impact_note.h>
 #include <carom/integrators/run/time_stepping.h>
 
 #include <array>
@@ -33,7 +34,7 @@ struct ContactPlace {
 };
 
 /// One contact that took part in a step. The impulse acts on `body`, its opposite on what that touches.
-struct ContactRecord : ContactPlace {
+struct ContactRecord : ContactPlace, ImpactNote {
   double time = 0.0;                        ///< end of the step; of an impact within it when that was [s]
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
@@ -121,6 +122,8 @@ struct ContactCounts {
   double energy_gained = 0.0;          ///< sum of those gains [J]
   std::int64_t lasting_gains = 0;      ///< steps in which lasting contact added energy
   double lasting_gained = 0.0;         ///< sum of those gains [J]
+  std::int64_t cut_sequences = 0;      ///< sequential impacts that sequence_limit ended
+  std::int64_t scaled_impacts = 0;     ///< impacts whose restitution limit_energy_gain scaled
   double deepest_gap = 0.0;            ///< the most negative gap found [m]
   double worst_residual = 0.0;         ///< the largest certificate of a contact problem
 };

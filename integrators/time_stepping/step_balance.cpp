@@ -13,6 +13,7 @@ void StepBalance::begin(const StepInput& in) {
   result_.stored = {};
   result_.joint_friction_modes.clear();
   result_.contacts.start(in.step);
+  result_.cut_sequences = result_.scaled_impacts = 0;
   StepReport& report = result_.report;
   static_cast<StepNumbers&>(report) = {};
   report.contacts.clear();
@@ -105,6 +106,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
                                   const StepInput& in, const StepTrial& trial) {
   ImpulseWork work;
   bool impact = false;
+  const std::size_t first = result_.report.contacts.size();
   for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
     if (problem.constraints()[contact].has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work);
@@ -113,7 +115,38 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     }
   }
   if (problem.problem().is_factored()) keep_impulses(problem);
-  return work.gain > 0.0 ? book_gain(problem, work, impact, trial) : 0.0;
+  if (!(work.gain > 0.0)) return 0.0;
+  const double gain = book_gain(problem, work, impact, trial);
+  if (gain > 0.0) {
+    for (std::size_t i = first; i < result_.report.contacts.size(); ++i)
+      result_.report.contacts[i].energy_gain = gain;
+  }
+  return gain;
+}
+
+double StepBalance::book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
+                                const StepInput& in, const StepTrial& trial) {
+  const std::size_t first = result_.report.contacts.size();
+  const double gain = book_contacts(problem, after, in.start.time, in, trial);
+  if (note.cut_sequence) ++result_.cut_sequences;
+  if (note.restitution_factor < 1.0) ++result_.scaled_impacts;
+  for (std::size_t i = first; i < result_.report.contacts.size(); ++i) {
+    ContactRecord& entry = result_.report.contacts[i];
+    entry.impact = true;
+    entry.restitution_factor = note.restitution_factor;
+    entry.cut_sequence = note.cut_sequence;
+  }
+  return gain;
+}
+
+void StepBalance::add(const StepResult& impacts) {
+  for (std::size_t i = 0; i < energy_flow_count; ++i) result_.flows.values[i] += impacts.flows.values[i];
+  result_.cut_sequences += impacts.cut_sequences;
+  result_.scaled_impacts += impacts.scaled_impacts;
+  result_.report.energy_gain += impacts.report.energy_gain;
+  result_.report.lasting_gain += impacts.report.lasting_gain;
+  result_.report.contacts.insert(result_.report.contacts.end(), impacts.report.contacts.begin(),
+                                 impacts.report.contacts.end());
 }
 
 void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
@@ -136,6 +169,7 @@ void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact
     entry.velocity_after[i] = with;
     entry.impulse[i] = impulse;
     entry.work[i] = work;
+    entry.contact_work += work;
     const EnergyFlow line = entry.impact
                                 ? (row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
                                 : (row == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
@@ -330,6 +364,8 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
     companion.modes.emplace_back(contact.key, contact.mode);
   }
   add_to(companion.statistics, result.report);
+  companion.statistics.cut_sequences += result.cut_sequences;
+  companion.statistics.scaled_impacts += result.scaled_impacts;
   hand_over(result.report, report);
 }
 

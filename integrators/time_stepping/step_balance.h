@@ -31,6 +31,8 @@ struct StepResult {
   StoredEnergies stored;    ///< at the end [J]
   StepReport report;        ///< of the step
   ContactHistory contacts;  ///< of large islands
+  int cut_sequences = 0;    ///< of impacts at the start of the step, that their limit ended
+  int scaled_impacts = 0;   ///< likewise whose restitution was scaled
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
 };
 
@@ -51,6 +53,13 @@ public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   double book_contacts(const IslandProblem& problem, const double* after, double time, const StepInput& in,
                        const StepTrial& trial);
+  /// Likewise those of an impact at the start of the step.
+  double book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
+                     const StepInput& in, const StepTrial& trial);
+  /// Adds what impacts at the start of the step did.
+  void add(const StepResult& impacts);
+  /// Result so far.
+  [[nodiscard]] StepResult& result() { return result_; }
   /// Books work of contacts that is an error of the step: it was booked as work of moving ground. \param work
   /// [J]
   void book_turning(double work);

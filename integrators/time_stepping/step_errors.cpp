@@ -3,6 +3,7 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/integrators/run/failure_file.h>
+#include <carom/integrators/run/impact_options.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -82,6 +83,13 @@ void check_options(const TimeStepping& options) {
   if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
   if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
     refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
+  }
+  check_options(impact_options(options), "time stepping");
+  if (options.impacts == ImpactTimes::located &&
+      (options.impact_order != ImpactOrder::simultaneous || options.limit_energy_gain)) {
+    throw ModelError(
+        "time stepping: impacts is located; allowed where impact_order is sequential or "
+        "limit_energy_gain is true: at_step_start");
   }
   check_failure_directory(options.failure_directory, "time stepping");
 }
@@ -267,6 +275,12 @@ void StepErrors::fail_projection(const Constraint& left) const {
   failure.parts.push_back(detector_.name(left.key));
   const std::string message = place(in_) + "project_gaps: no displacement brings " + failure.parts.front() +
                               " out, gap " + to_text(left.gap) + " m";
+  throw SolverError(message, std::move(failure));
+}
+
+void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) const {
+  SolverFailure failure = failure_of(problem);
+  const std::string message = place(in_) + what + "; of " + listed(failure.parts);
   throw SolverError(message, std::move(failure));
 }
 

@@ -51,6 +51,8 @@ public:
   [[noreturn]] void fail_linearisation() const;
   /// A gap cannot be opened.
   [[noreturn]] void fail_projection(const Constraint& left) const;
+  /// Impacts at the start of the step that cannot be resolved. \param what why
+  [[noreturn]] void fail_impacts(const IslandProblem& problem, const char* what) const;
   /// An impact adds energy [J], which is refused.
   [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
 

@@ -28,6 +28,7 @@ void demand_options_for_bodies(const Detector& detector, const TimeStepping& opt
 
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : parts_(assembly, (check_options(options), options)),
+      impacts_(parts_),
       prescribed_(assembly),
       iteration_(parts_, stop),
       balance_(assembly, options),
@@ -41,6 +42,36 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
+  if (!impacts_.on()) return step_from(in, state, companion, report);
+  try {
+    if (!strike(in)) return step_from(in, state, companion, report);
+  } catch (const SolverError& error) {
+    throw with_file(error, parts_.options);
+  }
+  std::swap(companion.loads, loads_before_);
+  companion.loads.valid = false;
+  try {
+    evaluate_start(impacts_.start(), companion);
+    step_from({*parts_.assembly, impacts_.start(), companion, step, end_time, in.last_step}, state, companion,
+              report);
+  } catch (...) {
+    std::swap(companion.loads, loads_before_);
+    throw;
+  }
+  companion.contact_statistics += impacts_.chain().statistics();
+  impacts_.chain().reset_statistics();
+}
+
+/// Impacts at the start of the step. True if there were any.
+bool TimeStepper::strike(const StepInput& in) {
+  prepare(in);
+  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
+  struck_ = impacts_.resolve(in);
+  return struck_;
+}
+
+/// \param in the step, whose start is the state, or that after impacts
+void TimeStepper::step_from(const StepInput& in, State& state, Companion& companion, StepReport& report) {
   if (memory_.guesses) {
     parts_.trial.begin(in, companion.history);
   } else {
@@ -72,6 +103,10 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
   // gaps <= 0, joint limits, dry friction, at t_j
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
+  if (impacts_.on()) {
+    StepImpacts::remove_restitution(parts_.constraints.islands());
+    if (struck_) balance_.add(impacts_.result());
+  }
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
   return balance_.finish(in);  // works of what acted, records
 }
@@ -128,7 +163,10 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   for (std::size_t tried = 0; tried < iteration_count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
     iteration_.use(iteration);
-    if (tried > 0) parts_.constraints.restore(in, island, parts_.trial);
+    if (tried > 0) {
+      parts_.constraints.restore(in, island, parts_.trial);
+      if (impacts_.on()) StepImpacts::remove_restitution({&island, 1});
+    }
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;
     try {

@@ -26,6 +26,7 @@
 #include <carom/integrators/time_stepping/gap_projection.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
+#include <carom/integrators/time_stepping/step_impacts.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 
 #include <span>
@@ -49,6 +50,8 @@ public:
 
 private:
   [[nodiscard]] StepResult& make_step(const StepInput& in);
+  void step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
+  [[nodiscard]] bool strike(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);
   void advance(const StepIsland& island, const StepInput& in);
@@ -65,6 +68,9 @@ private:
   void evaluate_start(const State& state, Companion& companion);
 
   StepParts parts_;
+  StepImpacts impacts_;
+  bool struck_ = false;        // there were impacts at the start of the step at hand
+  PresentLoads loads_before_;  // these
   PrescribedJoints prescribed_;
   IslandIteration iteration_;
   StepBalance balance_;

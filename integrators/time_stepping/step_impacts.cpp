@@ -1,0 +1,195 @@
+// Problem: impacts at the start of a step by the laws that the step itself does not know.
+
+#include <carom/integrators/time_stepping/step_impacts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// Speeds below this part of the largest are rounding: answers of contact problems are certified to 1e-12.
+constexpr double speed_rounding = 1e-12;
+// Impacts of one island in one step: more do not happen but by e = 1 in a corner.
+constexpr int most_impacts_at_once = 10000;
+
+}  // namespace
+
+StepImpacts::StepImpacts(StepParts& parts)
+    : parts_(&parts),
+      on_(parts.options.impact_order == ImpactOrder::sequential || parts.options.limit_energy_gain ||
+          parts.constraints.detector().has_other_impact_law()),
+      balance_(*parts.assembly, parts.options),
+      response_(*parts.assembly) {
+  if (!on_) return;
+  if (parts.options.impacts == ImpactTimes::located) {
+    throw ModelError(
+        "time stepping: impacts is located; allowed where a law of impact is poisson or energetic: "
+        "at_step_start");
+  }
+  const Assembly& assembly = *parts.assembly;
+  joints_.reserve(assembly.components().size());
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    if (!assembly.has_joints(component)) continue;
+    JointConstraints of_component(assembly, component);
+    if (of_component.empty()) continue;
+    joints_.push_back(std::move(of_component));
+    joints_.back().factors().reveal_rank(true);
+  }
+  response_.bind(joints_);
+}
+
+bool StepImpacts::resolve(const StepInput& in) {
+  bool struck = false;
+  const auto bodies = static_cast<Index>(in.assembly.layout()->bodies().size());
+  for (const StepIsland& island : parts_->constraints.islands()) {
+    contacts_.clear();
+    for (const Constraint& constraint : island.constraints) {
+      if (constraint.has_dry_friction()) continue;
+      Constraint& contact = contacts_.emplace_back(constraint);
+      contact.surface_velocity_after = contact.surface_velocity;
+      contact.allowed_approach = 0.0;
+    }
+    const double* const v = struck ? start_.v.data() : in.start.v.data();
+    const auto approaches = [&](const Constraint& contact) {
+      return contact.normal_velocity(v) < -parts_->options.capture_speed;
+    };
+    if (std::none_of(contacts_.begin(), contacts_.end(), approaches)) continue;
+    if (!struck) {
+      start_ = in.start;
+      balance_.begin(in);
+      place_joints(in);
+    }
+    struck = true;
+    const auto mechanism = [&](Index body) { return in.assembly.mechanism(body); };
+    for (const Range part : partition_.arrange(std::span(contacts_), bodies, mechanism)) {
+      static_cast<void>(resolve_island(in, std::span(contacts_).subspan(part.begin, part.size())));
+    }
+  }
+  return struck;
+}
+
+void StepImpacts::place_joints(const StepInput& in) {
+  if (joints_.empty()) return;
+  evaluate_positions(in.assembly, in.start.view(), parts_->trial.at_start);
+  for (JointConstraints& joints : joints_) {
+    joints.update_and_factor({in.start.view(), parts_->trial.at_start.rotation.data()});
+  }
+}
+
+double StepImpacts::fastest(std::span<const Constraint> contacts) const {
+  double speed = 0.0;
+  for (const Constraint& contact : contacts) {
+    speed = std::max(speed, -contact.normal_velocity(start_.v.data()));
+  }
+  return speed;
+}
+
+/// Impacts of contacts that share bodies, until none closes faster than the capture speed; a sequence, until
+/// none closes at all.
+bool StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
+  const TimeStepping& options = parts_->options;
+  const bool sequential = options.impact_order == ImpactOrder::sequential;
+  double noise = 0.0;
+  for (const Constraint& contact : contacts) {
+    noise = std::max(noise, speed_rounding * contact.speed(0, start_.v.data()));
+  }
+  for (int round = 0; round < most_impacts_at_once; ++round) {
+    const double least = sequential && round > 0 ? noise : std::max(noise, options.capture_speed);
+    if (!(fastest(contacts) > least)) return round > 0;
+    touching_.assign(contacts.begin(), contacts.end());
+    for (Constraint& contact : touching_) {
+      contact.friction = contact.law.friction_at(contact.sliding_speed(start_.v.data()));
+    }
+    ImpactNote note;
+    note.cut_sequence = sequential && round >= options.sequence_limit;
+    if (sequential && !note.cut_sequence) keep_fastest(touching_, start_.v.data());
+    if (note.cut_sequence) {
+      for (Constraint& contact : touching_) {
+        contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+      }
+    }
+    solve_by_law(in, note);
+    apply(in, note);
+    if (note.cut_sequence) return true;
+  }
+  parts_->errors(in, in.assembly.component_of(contacts.front().body()))
+      .fail_impacts(problem_, "impacts do not come to an end");
+}
+
+/// States and solves the impact of the contacts listed.
+bool StepImpacts::solve() {
+  problem_.build(touching_, start_.v.data());
+  problem_.respond(response_);
+  problem_.set_free_velocity(start_.v.data());
+  return problem_.solve(chain_).usable();
+}
+
+void StepImpacts::solve_by_law(const StepInput& in, ImpactNote& note) {
+  const auto errors = [&] { return parts_->errors(in, in.assembly.component_of(touching_.front().body())); };
+  const std::optional<ImpactLaw> law = law_of_impact(touching_);
+  problem_.use(nullptr, ImpactLaw::newton);
+  if (!law && !note.cut_sequence) {
+    static_cast<void>(solve());
+    errors().fail_impacts(problem_,
+                          "contacts of one impact have different laws of impact; allowed: one law for all "
+                          "that touch at an instant, or impact_order sequential");
+  }
+  if (law && *law != ImpactLaw::newton && !note.cut_sequence) problem_.use(&by_law_, *law);
+  if (!solve()) errors().fail_contact(problem_);
+  if (!parts_->options.limit_energy_gain) return;
+  const auto again = [&] { return solve(); };
+  note.restitution_factor = limit_gain(problem_, touching_, again);
+  if (!problem_.report().usable()) errors().fail_contact(problem_);
+}
+
+double StepImpacts::kinetic_energy(const StepInput& in) const {
+  double sum = 0.0;
+  for (Index component = 0; component < in.assembly.components().size(); ++component) {
+    in.assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      sum += kind.kinetic_energy(slots, start_.v.data() + v);
+    });
+  }
+  return sum;
+}
+
+/// Books the impact. Joints whose rate is prescribed do work on it, which is the rest of the change.
+void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
+  const bool driven = std::any_of(joints_.begin(), joints_.end(),
+                                  [](const JointConstraints& joints) { return joints.depends_on_time(); });
+  const double before = driven ? kinetic_energy(in) : 0.0;
+  problem_.map().add_velocities(start_.v.data());
+  const EnergyFlows known = balance_.result().flows;
+  const double gain = balance_.book_impact(problem_, start_.v.data(), note, in, parts_->trial);
+  EnergyFlows& flows = balance_.result().flows;
+  if (driven) {
+    double booked = 0.0;
+    for (std::size_t i = 0; i < energy_flow_count; ++i) {
+      const double change = flows.values[i] - known.values[i];
+      booked += is_gain(static_cast<EnergyFlow>(i)) ? change : -change;
+    }
+    flows[EnergyFlow::external] += kinetic_energy(in) - before - booked;
+  }
+  if (note.cut_sequence) {
+    for (const EnergyFlow line : {EnergyFlow::impact_normal, EnergyFlow::impact_tangential,
+                                  EnergyFlow::contact_normal, EnergyFlow::sliding}) {
+      flows[EnergyFlow::accumulation] += flows[line] - known[line];
+      flows[line] = known[line];
+    }
+  }
+  if (gain > 0.0 && parts_->options.refuse_energy_gain) {
+    parts_->errors(in, in.assembly.component_of(touching_.front().body())).refuse_gain(problem_, gain);
+  }
+}
+
+void StepImpacts::remove_restitution(std::span<const StepIsland> islands) {
+  for (const StepIsland& island : islands) {
+    for (Constraint& constraint : island.constraints) {
+      constraint.law.normal_restitution = constraint.law.tangential_restitution = 0.0;
+      constraint.law.rolling_restitution = 0.0;
+    }
+  }
+}
+
+}  // namespace carom

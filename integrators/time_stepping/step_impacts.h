@@ -1,0 +1,70 @@
+#pragma once
+
+/// \file
+/// Impacts at the start of a step, where not every contact follows Newton's law, or impacts are sequential,
+/// or their energy is limited: what closes faster than the capture speed is resolved at the velocities v_j,
+/// as in the event-driven mode; the step follows from the velocities after it, and its contacts have e = 0.
+/// A contact that closes more slowly does not rebound. Friction in joints takes no part in these impacts.
+
+#include <carom/contact/impact_rules.h>
+#include <carom/contact/island_partition.h>
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_solver.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/dynamics/components_response.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/export.h>
+#include <carom/integrators/run/impact_note.h>
+#include <carom/integrators/time_stepping/step_balance.h>
+#include <carom/integrators/time_stepping/step_input.h>
+#include <carom/integrators/time_stepping/step_islands.h>
+#include <carom/integrators/time_stepping/step_parts.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Resolves such impacts. Keeps memory, and statistics of its solvers.
+class CAROM_API StepImpacts {
+public:
+  /// Throws ModelError where impacts are located and a law is not Newton's. \param parts must outlive it
+  explicit StepImpacts(StepParts& parts);
+
+  /// True if impacts are resolved at the start of steps.
+  [[nodiscard]] bool on() const { return on_; }
+  /// Resolves the impacts of a step whose constraints are found. True if there were any: start() is the state
+  /// after them, result() what they did. Throws SolverError where one is not solved, or is refused.
+  [[nodiscard]] bool resolve(const StepInput& in);
+  /// State after the impacts.
+  [[nodiscard]] const State& start() const { return start_; }
+  /// Works and records of the impacts.
+  [[nodiscard]] const StepResult& result() { return balance_.result(); }
+  /// Takes the restitution from the constraints of a step.
+  static void remove_restitution(std::span<const StepIsland> islands);
+  /// Solvers.
+  [[nodiscard]] SolverChain& chain() { return chain_; }
+
+private:
+  [[nodiscard]] bool resolve_island(const StepInput& in, std::span<const Constraint> contacts);
+  [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
+  [[nodiscard]] bool solve();
+  void place_joints(const StepInput& in);
+  void solve_by_law(const StepInput& in, ImpactNote& note);
+  void apply(const StepInput& in, const ImpactNote& note);
+  [[nodiscard]] double kinetic_energy(const StepInput& in) const;
+
+  StepParts* parts_;
+  bool on_;
+  State start_;
+  StepBalance balance_;
+  IslandProblem problem_;
+  IslandPartition partition_;
+  ImpactSolver by_law_;
+  SolverChain chain_;
+  std::vector<JointConstraints> joints_;
+  ComponentsResponse response_;
+  std::vector<Constraint> contacts_, touching_;
+};
+
+}  // namespace carom
