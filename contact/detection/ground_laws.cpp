@@ -23,7 +23,7 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
                          ": law is not given; allowed: a Surface on the obstacle, between the two materials "
                          "or as default law");
       }
-      touched_.push_back(shape);
+      if (!shapes.has_pieces(shape)) touched_.push_back(shape);
       laws_.push_back(*law);
       has_static_friction_ = has_static_friction_ || law->has_static_friction();
     }

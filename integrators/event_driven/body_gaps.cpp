@@ -33,7 +33,10 @@ StepPolynomial::End smooth_of(const StepPolynomial::End& gap, double rho) {
 double fastest_in(const SearchedStep& step, std::size_t bound) {
   const StepEnd &start = step.ends.start, &end = step.ends.end;
   const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
-  if (step.motion.flies_freely()) return speed;
+  const GroupModel& model = step.motion.model();
+  // The flow does not know the motion of shapes on ground.
+  if (step.motion.flies_freely() && !model.detector->moves(model.pairs[model.bounds[bound].pair]))
+    return speed;
   // Loads within the step are as at its ends, but for what steps may be wrong by.
   constexpr double unseen = 2.0;
   return speed + unseen * (step.end() - step.begin()) *
@@ -95,12 +98,14 @@ private:
 double first_closing(SearchedStep& step, std::size_t pair, double fastest, double until) {
   constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
   const SmoothMotion& motion = step.motion;
-  const std::size_t place = pair - motion.model().body_pairs;
+  const Index place = motion.model().bound_of[pair];
   const BodyPairBound& bound = motion.model().bounds[place];
   FallRule rule;
   rule.raise = step.scales.gap_noise - step.ends.gap_level(pair);
   rule.fine = fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
+  constexpr int least_of_moving = 2;
+  if (motion.model().detector->moves(motion.model().pairs[pair])) rule.least_depth = least_of_moving;
   if (!bound.round) {
     rule.fastest = fastest;
     return KinkedSearch(step, pair, rule, until).first();
@@ -122,7 +127,7 @@ double first_closing(SearchedStep& step, std::size_t pair, double fastest, doubl
 }  // namespace
 
 StepPolynomial::End body_gap(const SmoothMotion& motion, std::size_t pair, const MotionSample& at) {
-  const BodyPairBound& bound = motion.model().bounds[pair - motion.model().body_pairs];
+  const BodyPairBound& bound = motion.model().bounds[motion.model().bound_of[pair]];
   if (bound.central) return gap_of_discs(bound, at);
   Constraint contact;
   motion.contact(pair, at, contact);
@@ -139,12 +144,14 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
   out.gap_known.resize(model.bounds.size());
   bool finite = true;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
-    const std::size_t pair = model.body_pairs + place;
-    if (is_active[pair] != 0) continue;
     const BodyPairBound& bound = model.bounds[place];
-    const double least = bound.least_gap(at.view()), speed = bound.most_speed(at.state.v.data());
+    const std::size_t pair = bound.pair;
+    if (is_active[pair] != 0) continue;
+    const GroundMotion* const of_ground = model.detector->motion(model.pairs[pair], at.places);
+    const double least = bound.least_gap(at.view(), of_ground),
+                 speed = bound.most_speed(at.state.v.data(), of_ground);
     out.gap_speeds[place] = speed;
-    out.gap_accelerations[place] = bound.most_speed(at.acceleration.data());
+    out.gap_accelerations[place] = bound.most_acceleration(at.acceleration.data(), of_ground);
     const bool known = bound.central || least <= soon * speed;
     out.gap_known[place] = known ? 1 : 0;
     out.gaps[pair] = known ? body_gap(motion, pair, at) : StepPolynomial::End{least, -speed, 0.0};
@@ -159,7 +166,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
   const double length = step.end() - step.begin();
   Event found = before;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
-    const std::size_t pair = model.body_pairs + place;
+    const std::size_t pair = model.bounds[place].pair;
     if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
     const double fastest = fastest_in(step, place);
     if (start.gaps[pair].value + end.gaps[pair].value - fastest * length > 2.0 * step.scales.gap_noise)

@@ -3,6 +3,7 @@
 /// \file
 /// Facts of one clock group that its motion from event to event does not change.
 
+#include <carom/contact/detection/box.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
@@ -30,8 +31,10 @@ struct LoadTraits {
   bool only_fields = true;         ///< nothing but uniform fields acts
 };
 
-/// Bounds of the gap of a pair of two bodies, from the places and velocities of their centres of mass.
+/// Bounds of the gap of a pair of two bodies, from the places and velocities of their centres of mass; or of
+/// a body `a` and an outline, or a vertex of one, on ground.
 struct BodyPairBound {
+  std::size_t pair = 0;   ///< its place in GroupModel::pairs
   BodySlot a, b;          ///< body of the vertex, and of the outline
   double lever = 0.0;     ///< of the vertex from the centre of mass of `a` [m]
   double reach = 0.0;     ///< of the outline from that of `b`, with its rounding [m]
@@ -40,10 +43,17 @@ struct BodyPairBound {
   bool round = false;     ///< the outline has one vertex: the gap is a distance of two points less a constant
   bool central = false;   ///< likewise, and these are the centres of mass
 
-  /// Not more than the gap, and equal to it of discs around their centres of mass [m].
-  [[nodiscard]] double least_gap(const StateView& state) const;
+  Box<2> box;              ///< around what is on ground, in its frame; `reach` is from the origin of that
+  double hollow = 0.0;     ///< radius of a circle on ground that the body is inside of; 0: there is none [m]
+  bool on_ground = false;  ///< there is no body `b`
+
+  /// Not more than the gap, and equal to it of discs around their centres of mass [m]. \param motion of the
+  /// shape on ground, null if there is none or it is at rest
+  [[nodiscard]] double least_gap(const StateView& state, const GroundMotion* motion) const;
   /// Not less than the speed at which the gap may change, wherever the bodies are, at these velocities [m/s].
-  [[nodiscard]] double most_speed(const double* velocities) const;
+  [[nodiscard]] double most_speed(const double* velocities, const GroundMotion* motion) const;
+  /// Not less than the change of that speed at these accelerations [m/s^2].
+  [[nodiscard]] double most_acceleration(const double* accelerations, const GroundMotion* motion) const;
 };
 
 /// Components that share one time.
@@ -66,8 +76,8 @@ struct CAROM_API GroupModel {
   /// Everything that might touch, and friction in joints, which always does. First what touches the ground
   /// and what belongs to joints, that of one mechanism together; then pairs of two bodies.
   std::vector<ContactPair> pairs;
-  std::size_t body_pairs = 0;         ///< place of the first pair of two bodies
-  std::vector<BodyPairBound> bounds;  ///< of the pairs of two bodies, from that on
+  std::vector<BodyPairBound> bounds;  ///< of the pairs with an outline, in their order
+  std::vector<Index> bound_of;        ///< by pair: its place in `bounds`; `none`: a point and a flat boundary
   /// Times at which laws of the group's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;
   std::vector<double> tolerances;  ///< absolute, of each unknown
