@@ -13,6 +13,9 @@ set(carom_public_headers
     bodies/shape_point.h
     bodies/shape_polygon.h
     bodies/shape_segment.h
+    contact/detection/ground_builders.h
+    contact/detection/ground_parts.h
+    contact/detection/ground_piece_shapes.h
     contact/detection/half_space.h
     contact/detection/prescribed_motion.h
     contact/solvers/impact_order.h

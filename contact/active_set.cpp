@@ -1,7 +1,6 @@
 // Problem: forces and corrections of contacts that are constraints.
 
 #include <carom/contact/active_set.h>
-#include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +29,7 @@ void ActiveSet::update(const Detector& detector, const StateView& state, const E
                        const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
     if (contact.feature != none) {
-      follow_feature(*assembly_, detector.bodies().outlines(), contact.pair, contact.feature, state,
-                     evaluation, contact.at);
+      detector.follow(contact.pair, contact.feature, state, evaluation, places, contact.at);
     } else {
       detector.contact(contact.pair, state, evaluation, places, contact.at);
     }

@@ -62,7 +62,7 @@ public:
   /// Appends the pieces that the outlines of bodies touch, in a fixed order. None: rounded points of bodies
   /// touch the shape, as gap() says. A shape that has pieces is infinitely far for gap().
   virtual void pieces(Index /*slot*/, std::vector<GroundPiece>& /*out*/) const {}
-  /// Velocity of the surface of a shape with pieces along itself, beside that of its motion: of a conveyor.
+  /// Velocity of the surface of a shape in the plane along itself, beside that of its motion: of a conveyor.
   /// Positive to the right of someone who stands on it [m/s].
   [[nodiscard]] virtual double surface_speed(Index /*slot*/) const { return 0.0; }
 

@@ -57,24 +57,6 @@ Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
   return box;
 }
 
-/// Where the frame of a body is.
-struct BodyFrame {
-  BodyFrame(const BodySlot& body, const StateView& state, const Evaluation& evaluation)
-      : centre(state.q[body.q], state.q[body.q + 1]) {
-    if (body.rotation == none) return;
-    rotation = {evaluation.rotation[body.rotation], evaluation.rotation[body.rotation + 1]};
-  }
-  [[nodiscard]] Vec<2> turned(const Vec<2>& local) const { return Space<2>::rotate(rotation.data(), local); }
-  [[nodiscard]] Vec<2> outside(const Vec<2>& local) const { return centre + turned(local); }
-  [[nodiscard]] Vec<2> inside(const Vec<2>& point) const {
-    const std::array<double, 2> back{rotation[0], -rotation[1]};
-    return Space<2>::rotate(back.data(), Vec<2>(point - centre));
-  }
-
-  Vec<2> centre;
-  std::array<double, 2> rotation{1.0, 0.0};  // cosine, sine
-};
-
 ConvexOutline view(const BodyOutline& outline, const Vec<2>* vertices) {
   return {{vertices, outline.vertices.size()}, outline.radius};
 }
@@ -225,13 +207,13 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
                     &b = outlines_.list()[pair.outline];
   // In the frame of the second body its vertices are at hand as described.
   const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
-  const BodyFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
+  const PlaneFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
   const Vec<2> vertex = frame_b.inside(frame_a.outside(outlines_.vertices()[pair.feature]));
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
-  if (a.radius + b.radius == 0.0 && std::abs(gap.gap) <= FeatureRegions::corner_follows) {
-    const Index nearest = FeatureRegions(*assembly_, outlines_, pair, state, evaluation).nearest();
+  if (a.radius + b.radius == 0.0 && std::abs(gap.gap) <= FeatureMargin::corner_follows) {
+    const Index nearest = FeatureRegions(outline_pair(pair, state, evaluation)).nearest();
     gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
   }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
@@ -245,6 +227,18 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   } else {
     fill({vertex_key, b.surface()}, a, b, gap, state, out);
   }
+}
+
+OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView& state,
+                                       const Evaluation& evaluation) const {
+  const BodySlots& bodies = assembly_->layout()->bodies();
+  OutlinePair out;
+  out.vertex_frame = {bodies[pair.body], state, evaluation};
+  out.outline_frame = {bodies[pair.other], state, evaluation};
+  out.vertex = outlines_.vertices()[pair.feature];
+  out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
+  out.outline = outlines_.described(outlines_.list()[pair.outline]);
+  return out;
 }
 
 void BodyContacts::append_pairs(std::vector<ContactPair>& out) const {

@@ -10,6 +10,7 @@
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
@@ -71,6 +72,10 @@ public:
   /// Writes the contact of such a pair, whatever its gap.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;
+
+  /// The vertex and the outline of such a pair.
+  [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
+                                         const Evaluation& evaluation) const;
 
 private:
   [[nodiscard]] const Surface* law(const BodyOutline& a, const BodyOutline& b) const;

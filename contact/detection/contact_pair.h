@@ -7,17 +7,27 @@
 
 namespace carom {
 
-/// A feature of a body and a shape on ground; a vertex of a body and an outline of another one; or a limit of
-/// a joint, or friction in one. Numbers are those of one Detector.
+/// A feature of a body and a shape on ground; a vertex of a body and an outline of another one or of a shape
+/// on ground; a vertex of such a shape and an outline of a body; or a limit of a joint, or friction in one.
+/// Numbers are those of one Detector.
 struct ContactPair {
-  Index body = none;          ///< in the order of assembly; of a joint the first one that it binds
-  Index feature = none;       ///< `none` where the body touches at its centre, and of joints
-  Index material = none;      ///< of the feature; `none` of joints
-  Index ground_shape = none;  ///< `none` of joints
-  Index joint_row = none;     ///< limit of a joint or friction in one; `none` of shapes on ground
-  Index other = none;         ///< the second body, where two bodies touch, else `none`
-  Index outline = none;       ///< its outline in BodyOutlines; the vertex is the `feature` in
-                              ///< BodyOutlines::vertices()
+  Index body = none;            ///< in the order of assembly; of a joint the first one that it binds
+  Index feature = none;         ///< `none` where the body touches at its centre, and of joints
+  Index material = none;        ///< of the feature; `none` of joints
+  Index ground_shape = none;    ///< `none` of joints
+  Index joint_row = none;       ///< limit of a joint or friction in one; `none` of shapes on ground
+  Index other = none;           ///< the second body, where two bodies touch, else `none`
+  Index outline = none;         ///< its outline in BodyOutlines; the vertex is the `feature` in
+                                ///< BodyOutlines::vertices()
+  Index ground_outline = none;  ///< in GroundPieces, which the vertex touches
+  Index ground_vertex = none;   ///< in GroundPieces, which touches the `outline` of the body
+
+  /// True if one side is an outline, of a body or on ground.
+  [[nodiscard]] bool has_outline() const {
+    return other != none || ground_outline != none || ground_vertex != none;
+  }
+  /// True if the body touches a piece of a shape on ground.
+  [[nodiscard]] bool is_of_pieces() const { return ground_outline != none || ground_vertex != none; }
   friend bool operator==(const ContactPair&, const ContactPair&) = default;
 };
 

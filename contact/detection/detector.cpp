@@ -1,6 +1,8 @@
 #include <carom/contact/detection/contact_name.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/tracked_contact.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace carom {
@@ -14,6 +16,14 @@ void Detector::find(Index component, const StateView& state, const Evaluation& e
 
 void Detector::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
   assert(!has_moving_ground() || query.places.time() == query.state.time);
+  if (!pieces_.empty()) {
+    for (Index component = components.begin; component < components.end; ++component) {
+      ground_.find({component, component + 1}, query, out);
+      pieces_.find(component, query, out);
+      if (!joints_.empty()) joints_.find_limits(component, query, out);
+    }
+    return;
+  }
   ground_.find(components, query, out);
   if (joints_.empty()) return;
   for (Index component = components.begin; component < components.end; ++component) {
@@ -33,9 +43,14 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
       out.add(key);
       continue;
     }
-    // A centre of mass has no arm: but for slack only a shape that turns can open such a contact.
-    if (slack == 0.0 && !shapes.any_moves()) continue;
+    // A centre of mass has no arm: but for slack only a shape that turns, or is curved, can open such a
+    // contact.
+    if (slack == 0.0 && !shapes.any_moves() && pieces_.empty()) continue;
     const Index shape = shapes.find(key.b.serial);
+    if (shape != none && shapes.has_pieces(shape)) {
+      out.add(key);
+      continue;
+    }
     const BodyId body{key.a.serial, layout.token()};
     if (shape == none || !layout.contains(body)) continue;
     if (slack == 0.0 && !shapes.moves(shape)) continue;
@@ -47,6 +62,11 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
 std::vector<ContactPair> Detector::pairs(Index component) const {
   std::vector<ContactPair> out;
   ground_.append_pairs(component, out);
+  if (!pieces_.empty()) {
+    pieces_.append_pairs(component, out);
+    std::stable_sort(out.begin(), out.end(),
+                     [](const ContactPair& a, const ContactPair& b) { return a.body < b.body; });
+  }
   joints_.append_limits(component, out);
   return out;
 }
@@ -67,9 +87,11 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
                        Constraint& out) const {
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
-  if (!moves(pair)) return ground_.contact(pair, state, evaluation, nullptr, out);
-  const GroundMotion now = ground_.shapes().motion(pair.ground_shape, state.time);
-  ground_.contact(pair, state, evaluation, &now, out);
+  GroundMotion now;
+  if (moves(pair)) now = ground_.shapes().motion(pair.ground_shape, state.time);
+  const GroundMotion* const motion = moves(pair) ? &now : nullptr;
+  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, motion, out);
+  ground_.contact(pair, state, evaluation, motion, out);
 }
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
@@ -77,7 +99,25 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   assert(!has_moving_ground() || places.time() == state.time);
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
-  ground_.contact(pair, state, evaluation, ground_.shapes().motion(pair.ground_shape, places), out);
+  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
+  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, motion, out);
+  ground_.contact(pair, state, evaluation, motion, out);
+}
+
+void Detector::follow(const ContactPair& pair, Index feature, const StateView& state,
+                      const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) const {
+  if (!pair.is_of_pieces()) {
+    return follow_feature(*assembly_, bodies_.outlines(), pair, feature, state, evaluation, contact);
+  }
+  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
+  pieces_.follow(pair, feature, state, evaluation, motion, contact);
+}
+
+OutlinePair Detector::outline_pair(const ContactPair& pair, const StateView& state,
+                                   const Evaluation& evaluation, const GroundPlaces& places) const {
+  if (!pair.is_of_pieces()) return bodies_.outline_pair(pair, state, evaluation);
+  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
+  return pieces_.outline_pair(pair, state, evaluation, motion);
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }

@@ -9,6 +9,7 @@
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/ground_contacts.h>
 #include <carom/contact/detection/joint_rows.h>
+#include <carom/contact/detection/piece_contacts.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/discontinuity.h>
@@ -26,7 +27,7 @@ class CAROM_API Detector {
 public:
   /// Throws ModelError where a feature and a shape on ground have no contact law. \param assembly outlives it
   explicit Detector(const Assembly& assembly)
-      : assembly_(&assembly), ground_(assembly), bodies_(assembly), joints_(assembly) {}
+      : assembly_(&assembly), ground_(assembly), pieces_(assembly), bodies_(assembly), joints_(assembly) {}
 
   /// True if a shape on ground moves.
   [[nodiscard]] bool has_moving_ground() const { return ground_.shapes().any_moves(); }
@@ -64,7 +65,10 @@ public:
   /// Likewise the contacts of one body with shapes on ground.
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
     ground_.find_of(body, query, out);
+    if (!pieces_.empty()) pieces_.find_of(body, query, out);
   }
+  /// Contacts of bodies with pieces of shapes on ground.
+  [[nodiscard]] const PieceContacts& pieces() const { return pieces_; }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
   /// \param slack opening of any contact that is none [m]
@@ -103,9 +107,22 @@ public:
   [[nodiscard]] bool has_other_impact_law() const {
     return ground_.has_other_impact_law() || bodies_.has_other_impact_law();
   }
+  /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one
+  /// feature of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key
+  /// and law stay.
+  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
+              const GroundPlaces& places, Constraint& contact) const;
+  /// The vertex and the outline of a pair that has one (ContactPair::has_outline()).
+  [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
+                                         const Evaluation& evaluation, const GroundPlaces& places) const;
+
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
     return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();
+  }
+  /// Motion of the shape on ground of a pair; null if it is at rest.
+  [[nodiscard]] const GroundMotion* motion(const ContactPair& pair, const GroundPlaces& places) const {
+    return moves(pair) ? ground_.shapes().motion(pair.ground_shape, places) : nullptr;
   }
   /// True if the shape on ground of a pair moves.
   [[nodiscard]] bool moves(const ContactPair& pair) const {
@@ -123,6 +140,7 @@ public:
 private:
   const Assembly* assembly_;
   GroundContacts ground_;
+  PieceContacts pieces_;
   BodyContacts bodies_;
   JointRows joints_;
 };

@@ -12,40 +12,10 @@
 
 namespace carom {
 
-namespace {
-
-struct Frame {
-  Frame(const BodySlot& body, const StateView& state, const Evaluation& evaluation)
-      : centre(state.q[body.q], state.q[body.q + 1]), velocity(state.v[body.v], state.v[body.v + 1]) {
-    if (body.v_size > 2) spin = state.v[body.v + 2];
-    if (body.rotation == none) return;
-    cosine = evaluation.rotation[body.rotation];
-    sine = evaluation.rotation[body.rotation + 1];
-  }
-  [[nodiscard]] Vec<2> turned(const Vec<2>& at) const {
-    return {cosine * at[0] - sine * at[1], sine * at[0] + cosine * at[1]};
-  }
-  [[nodiscard]] Vec<2> turned_back(const Vec<2>& at) const {
-    return {cosine * at[0] + sine * at[1], cosine * at[1] - sine * at[0]};
-  }
-  [[nodiscard]] Vec<2> velocity_at(const Vec<2>& arm) const {
-    return {velocity[0] - spin * arm[1], velocity[1] + spin * arm[0]};
-  }
-
-  Vec<2> centre, velocity;
-  double spin = 0.0, cosine = 1.0, sine = 0.0;
-};
-
-}  // namespace
-
-FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& outlines,
-                               const ContactPair& pair, const StateView& state, const Evaluation& evaluation)
-    : outline_(outlines.described(outlines.list()[pair.outline])),
-      of_vertex_(outlines.described(outlines.list()[outlines.outline_of(pair.feature)])),
-      sharp_(outline_.radius + of_vertex_.radius == 0.0) {
-  const BodySlots& bodies = assembly.layout()->bodies();
-  const Frame of_vertex(bodies[pair.body], state, evaluation), frame(bodies[pair.other], state, evaluation);
-  const Vec<2> arm = of_vertex.turned(outlines.vertices()[pair.feature]);
+FeatureRegions::FeatureRegions(const OutlinePair& pair)
+    : outline_(pair.outline), chain_(pair.chain), of_vertex_(pair.around), sharp_(pair.is_sharp()) {
+  const PlaneFrame &of_vertex = pair.vertex_frame, &frame = pair.outline_frame;
+  const Vec<2> arm = of_vertex.turned(pair.vertex);
   const Vec<2> from_centre = of_vertex.centre + arm - frame.centre;
   place_ = frame.turned_back(from_centre);
   shift_ = frame.turned_back(Vec<2>(of_vertex.centre - frame.centre));
@@ -55,21 +25,38 @@ FeatureRegions::FeatureRegions(const Assembly& assembly, const BodyOutlines& out
 }
 
 Index FeatureRegions::nearest() const {
-  std::array<GapPoint, 2> found;
-  static_cast<void>(find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
-  const GapPoint& at = found[0];
-  if (!sharp_ || !has_several() || std::abs(at.gap) > corner_follows) return at.feature_b;
+  Index feature = none;
+  double distance = 0.0;
+  if (chain_) {
+    const FaceChain::Nearest found = chain_->nearest(place_);
+    feature = found.feature;
+    distance = found.distance;
+  } else {
+    std::array<GapPoint, 2> found;
+    static_cast<void>(
+        find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
+    feature = found[0].feature_b;
+    distance = found[0].gap;
+  }
+  if (!sharp_ || !has_several() || std::abs(distance) > FeatureMargin::corner_follows) return feature;
   // In the place of a corner rounding decides which feature is nearest.
   for (Index corner = 0; corner < outline_.size(); ++corner) {
     const Vec<2> off = place_ - outline_.vertices[corner];
-    if (std::max(std::abs(off[0]), std::abs(off[1])) <= corner_follows) return edge_at(corner);
+    if (std::max(std::abs(off[0]), std::abs(off[1])) <= FeatureMargin::corner_follows)
+      return edge_at(corner, feature);
   }
-  return at.feature_b;
+  return feature;
 }
 
 /// Of the two edges at a corner the one along which the outlines are separated, or overlap least.
-Index FeatureRegions::edge_at(Index corner) const {
+/// \param found the nearest feature by numbers, which is right at flat corners
+Index FeatureRegions::edge_at(Index corner, Index found) const {
   const Index n = outline_.size(), before = outline_.before(corner);
+  if (chain_) {
+    if (chain_->corners[corner] == ChainCorner::flat) return found;
+    if (chain_->face_before(corner) == none) return n + corner;
+    if (chain_->face_behind(corner) == none) return n + before;
+  }
   const double behind_corner = separation_along(OutlineEdge(outline_, corner));
   return separation_along(OutlineEdge(outline_, before)) > behind_corner ? n + before : n + corner;
 }
@@ -86,13 +73,11 @@ double FeatureRegions::separation_along(const OutlineEdge& edge) const {
 bool FeatureRegions::may_touch() const {
   if (!sharp_ || !has_several()) return true;
   const Index feature = nearest();
-  return outline_.is_edge(feature) && margin(feature).value >= -corner_touches;
+  return outline_.is_edge(feature) && margin(feature).value >= -FeatureMargin::corner_touches;
 }
 
 FeatureMargin FeatureRegions::margin(Index feature) const {
-  const auto nearer = [](const FeatureMargin& a, const FeatureMargin& b) {
-    return b.value < a.value || (b.value == a.value && b.rate < a.rate) ? b : a;
-  };
+  if (chain_) return chain_->margin(feature, place_, rate_);
   const Index n = outline_.size();
   if (outline_.is_edge(feature)) {
     const OutlineEdge edge(outline_, feature - n);

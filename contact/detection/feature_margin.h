@@ -11,55 +11,44 @@
 /// stands at the end of an edge to rounding, or has left it by a little, stands before that edge; else its
 /// normal would be that between two places that are the same.
 
-#include <carom/contact/detection/body_outlines.h>
-#include <carom/contact/detection/contact_pair.h>
-#include <carom/core/assembly.h>
-#include <carom/core/evaluation.h>
+#include <carom/contact/detection/feature_region.h>
+#include <carom/contact/detection/outline_pair.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
-#include <carom/core/state.h>
+
+#include <optional>
 
 namespace carom {
-
-/// Distance of a vertex from the border of the region in which a feature is the nearest one.
-struct FeatureMargin {
-  double value = 0.0;   ///< positive inside [m]
-  double rate = 0.0;    ///< its rate [m/s]
-  Index beyond = none;  ///< the feature beyond the border
-};
 
 /// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.
 class CAROM_API FeatureRegions {
 public:
-  /// How far beyond the end of an edge a sharp corner may stand and still touch it, is taken to leave it when
-  /// it slides, and still has its normal [m].
-  static constexpr double corner_touches = 1e-9, corner_leaves = 2e-9, corner_follows = 4e-9;
   /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and
   /// its normal has not turned by more than rounding [m].
   static constexpr double past_border = 2e-14;
 
-  /// All must outlive it. \param pair of two bodies \param evaluation position group up to date
-  FeatureRegions(const Assembly& assembly, const BodyOutlines& outlines, const ContactPair& pair,
-                 const StateView& state, const Evaluation& evaluation);
+  /// \param pair what it is a view of must outlive it
+  explicit FeatureRegions(const OutlinePair& pair);
 
   /// True if there is more than one feature.
   [[nodiscard]] bool has_several() const { return outline_.size() > 1; }
   /// True if neither vertex nor outline are rounded.
   [[nodiscard]] bool is_sharp() const { return sharp_; }
-  /// The nearest feature; of sharp corners at most `corner_follows` beyond an edge that edge.
+  /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows beyond an edge that edge.
   [[nodiscard]] Index nearest() const;
-  /// False of sharp corners that stand beyond the edges by more than `corner_touches`.
+  /// False of sharp corners that stand beyond the edges by more than FeatureMargin::corner_touches.
   [[nodiscard]] bool may_touch() const;
   /// Distance beyond the border of a feature at which it is taken to be left [m].
-  [[nodiscard]] double border() const { return sharp_ ? corner_leaves : past_border; }
+  [[nodiscard]] double border() const { return sharp_ ? FeatureMargin::corner_leaves : past_border; }
   /// Margin of a feature.
   [[nodiscard]] FeatureMargin margin(Index feature) const;
 
 private:
-  [[nodiscard]] Index edge_at(Index corner) const;
+  [[nodiscard]] Index edge_at(Index corner, Index found) const;
   [[nodiscard]] double separation_along(const OutlineEdge& edge) const;
 
-  ConvexOutline outline_;             // in the frame of its body,
+  ConvexOutline outline_;  // in the frame of its body,
+  std::optional<FaceChain> chain_;
   Vec<2> place_, rate_;               // as the vertex and its velocity,
   ConvexOutline of_vertex_;           // in the frame of the other body, which
   Vec<2> shift_;                      // stands here in the frame of the first,

@@ -2,7 +2,6 @@
 #include <carom/contact/detection/gap_face.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -21,8 +20,7 @@ Vec<2> normal_of(const Vec<2>& along) { return {along[1], -along[0]}; }
 
 /// Where the face joins a neighbour.
 struct Corner {
-  enum class Turn : std::uint8_t { convex, flat, concave };
-  Turn turn;
+  CornerTurn turn;
   bool is_free;
   Vec<2> at;
   Vec<2> along;   // unit direction of the neighbour, in the same sense as that of the face
@@ -30,15 +28,6 @@ struct Corner {
 
   [[nodiscard]] double height(const Vec<2>& point) const { return normal_of(along).dot(point - at); }
 };
-
-/// \param out direction from one of the two to the next \param sine of the turn to the left, which is convex
-Corner::Turn turn_of(const Vec<2>& in, const Vec<2>& out) {
-  constexpr double flat = 1e-9;  // a corner that nothing can feel [rad]
-  const double sine = cross(in, out);
-  if (sine > flat) return Corner::Turn::convex;
-  if (sine < -flat) return Corner::Turn::concave;
-  return Corner::Turn::flat;
-}
 
 class Face {
 public:
@@ -88,16 +77,16 @@ public:
 
 private:
   Corner corner_at_tail(const GroundFace& face) const {
-    if (face.tail_is_free) return {Corner::Turn::convex, true, face.tail, edge_.normal(), 0.0};
+    if (face.tail_is_free) return {CornerTurn::convex, true, face.tail, edge_.normal(), 0.0};
     const std::array<Vec<2>, 2> ends{face.before, face.tail};
     const OutlineEdge neighbour({ends, 0.0}, 0);
-    return {turn_of(neighbour.along, edge_.along), false, face.tail, neighbour.along, neighbour.length};
+    return {corner_turn(neighbour.along, edge_.along), false, face.tail, neighbour.along, neighbour.length};
   }
   Corner corner_at_head(const GroundFace& face) const {
-    if (face.head_is_free) return {Corner::Turn::convex, true, face.head, -edge_.normal(), 0.0};
+    if (face.head_is_free) return {CornerTurn::convex, true, face.head, -edge_.normal(), 0.0};
     const std::array<Vec<2>, 2> ends{face.head, face.behind};
     const OutlineEdge neighbour({ends, 0.0}, 0);
-    return {turn_of(edge_.along, neighbour.along), false, face.head, neighbour.along, neighbour.length};
+    return {corner_turn(edge_.along, neighbour.along), false, face.head, neighbour.along, neighbour.length};
   }
   // The ends of the neighbour, from the corner on. \param sense 1 at the head, -1 at the tail
   static std::array<Vec<2>, 2> neighbour_at(const Corner& corner, double sense) {
@@ -105,16 +94,16 @@ private:
   }
   // The face goes on beyond a corner that touches nothing itself; belongs_here() says how far.
   static double opening(const Corner& corner) {
-    return corner.turn == Corner::Turn::convex ? 0.0 : std::numeric_limits<double>::infinity();
+    return corner.turn == CornerTurn::convex ? 0.0 : std::numeric_limits<double>::infinity();
   }
   // True for a direction between the normal of the face and that of a neighbour at a convex corner.
   [[nodiscard]] bool is_between_faces(const Vec<2>& direction) const {
     constexpr double slack = 1e-9;
     const double turned = cross(edge_.normal(), direction);
     if (turned >= 0.0) {
-      return head_.turn == Corner::Turn::convex && cross(direction, normal_of(head_.along)) >= -slack;
+      return head_.turn == CornerTurn::convex && cross(direction, normal_of(head_.along)) >= -slack;
     }
-    return tail_.turn == Corner::Turn::convex && cross(normal_of(tail_.along), direction) >= -slack;
+    return tail_.turn == CornerTurn::convex && cross(normal_of(tail_.along), direction) >= -slack;
   }
   // \param best edge of the outline that separates most
   [[nodiscard]] bool belongs_here(const GapPoint& at, const OutlineEdge& best) const {
@@ -123,7 +112,7 @@ private:
     }
     const bool is_head = at.feature_b == 1;
     const Corner& corner = is_head ? head_ : tail_;
-    if (corner.turn != Corner::Turn::convex) return false;
+    if (corner.turn != CornerTurn::convex) return false;
     if (at.kind == GapKind::vertices) return (is_head || corner.is_free) && is_between_faces(at.normal);
     if (!takes_edge(at.normal, corner, is_head)) return false;
     const double height = at.gap + a_.radius;
@@ -187,13 +176,13 @@ private:
     const double beyond = sense * edge_.along.dot(from_corner);
     const double beyond_neighbour = sense * corner.along.dot(from_corner), height = corner.height(vertex);
     switch (corner.turn) {
-      case Corner::Turn::flat: {
+      case CornerTurn::flat: {
         const double across = Vec<2>(edge_.along + corner.along).dot(from_corner);
         return sense > 0.0 ? across <= 0.0 : across > 0.0;
       }
-      case Corner::Turn::concave:  // beyond it only what is inside the neighbour, and so behind both
+      case CornerTurn::concave:  // beyond it only what is inside the neighbour, and so behind both
         return beyond <= 0.0 || (height <= 0.0 && height >= -depth_ && beyond_neighbour <= corner.length);
-      case Corner::Turn::convex:
+      case CornerTurn::convex:
         break;
     }
     const double own = edge_.normal().dot(from_corner);

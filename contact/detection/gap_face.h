@@ -9,9 +9,21 @@
 #include <carom/core/export.h>
 
 #include <array>
+#include <cstdint>
 #include <limits>
 
 namespace carom {
+
+/// Corner in which two faces join.
+enum class CornerTurn : std::uint8_t { convex, flat, concave };
+/// Turn from one unit direction to the next; to the left it is convex.
+[[nodiscard]] inline CornerTurn corner_turn(const Vec<2>& in, const Vec<2>& out) {
+  constexpr double flat = 1e-9;  // a corner that nothing can feel [rad]
+  const double sine = in[0] * out[1] - in[1] * out[0];
+  if (sine > flat) return CornerTurn::convex;
+  if (sine < -flat) return CornerTurn::concave;
+  return CornerTurn::flat;
+}
 
 /// A face from `tail` to `head`: free space is on its right, solid on its left. Its features are the vertices
 /// 0 (tail) and 1 (head), and the edge 2. Where two faces join in a convex corner, that belongs to the face

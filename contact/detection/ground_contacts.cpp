@@ -199,6 +199,10 @@ void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& ga
   fill_rows(at, gap, state, out);
   if constexpr (D == 2) {
     if (motion != nullptr) add_ground_motion(at, state, *motion, after, out);
+    if (const double speed = shapes_.surface_speed(shape); speed != 0.0) {
+      out.surface_velocity[1] += speed;
+      out.surface_velocity_after[1] += speed;
+    }
   }
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
 }

@@ -29,7 +29,7 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
                          std::string(to_string(law->impact_law)) + " and rolling_resistance " +
                          to_text(law->rolling_resistance) + " m; allowed in space: newton and 0");
       }
-      touched_.push_back(shape);
+      if (!shapes.has_pieces(shape)) touched_.push_back(shape);
       laws_.push_back(*law);
       has_static_friction_ = has_static_friction_ || law->has_static_friction();
       has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();

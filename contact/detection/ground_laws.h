@@ -22,7 +22,7 @@ public:
   /// Throws ModelError, naming a contact, where a pair that may touch has no law.
   GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes);
 
-  /// Shapes on ground that features of a material may touch, ascending.
+  /// Shapes on ground that features of a material may touch, ascending; without those that outlines touch.
   /// \param material number in BodyFeatures::materials()
   [[nodiscard]] std::span<const Index> touched_by(Index material) const {
     return {touched_.data() + begin_[material], touched_.data() + begin_[material + 1]};

@@ -18,7 +18,7 @@
 
 namespace carom::generic {
 
-/// All shapes of one description. `P` has label, pivot, motion, surface_speed, material, and
+/// All shapes of one description. `P` has label, pivot, motion, surface_speed, material, filter, and
 /// std::vector<GroundPiece> pieces(PartCheck), which checks the rest and has places as described.
 template <class P>
 class PieceShapeKind final : public GroundShapeKind {
@@ -47,6 +47,7 @@ public:
   [[nodiscard]] int dimension() const override { return 2; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].part.material; }
+  [[nodiscard]] ContactFilter filter(Index slot) const override { return parts_[slot].part.filter; }
   [[nodiscard]] bool moves(Index slot) const override { return !parts_[slot].part.motion.empty(); }
   [[nodiscard]] GroundMotion place(Index slot, double time) const override {
     return parts_[slot].part.motion.at(time, parts_[slot].part.pivot);

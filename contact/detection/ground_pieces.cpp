@@ -1,136 +1,229 @@
+// Problem: which of the many pieces of the ground belong together, so that a contact that slides from one to
+// the next stays the same contact.
+
 #include <carom/contact/detection/gap_convex.h>
-#include <carom/contact/detection/gap_face.h>
 #include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_pieces.h>
 #include <carom/core/system.h>
 
 #include <algorithm>
-#include <limits>
-#include <span>
+#include <cmath>
+#include <utility>
 
 namespace carom {
 
 namespace {
 
-constexpr Index features_of_face = 3;  // tail, head, and what is between
-
-Index features_of(const GroundPiece& piece) {
-  const auto points = static_cast<Index>(piece.points.size());
-  switch (piece.form) {
-    case GroundPiece::Form::face:
-      return features_of_face;
-    case GroundPiece::Form::hollow:
-      return 1;
-    case GroundPiece::Form::solid:
-      break;
-  }
-  return points == 1 ? 1 : 2 * points;
-}
+using Form = GroundPiece::Form;
 
 Vec<2> placed_at(const GroundMotion& motion, const Vec<2>& point) {
   const std::array<double, 2> rotation{motion.cosine, motion.sine};
   return Vec<2>(motion.point[0], motion.point[1]) + Space<2>::rotate(rotation.data(), point);
 }
 
-GroundFace face_of(const GroundPiece& piece, const Vec<2>* points) {
-  return {points[0], points[1], points[2], points[3], piece.tail_is_free, piece.head_is_free, piece.depth};
+GroundFace face_of(const GroundPiece& piece) {
+  return {piece.points[0],    piece.points[1],    piece.points[2], piece.points[3],
+          piece.tail_is_free, piece.head_is_free, piece.depth};
 }
 
-ConvexOutline outline_of(const GroundPiece& piece, const Vec<2>* points) {
-  return {{points, piece.points.size()}, piece.radius};
+Vec<2> direction(const Vec<2>& from, const Vec<2>& to) {
+  const std::array<Vec<2>, 2> ends{from, to};
+  return OutlineEdge({ends, 0.0}, 0).along;
+}
+
+/// True if a face is followed by another one in a corner that is not concave.
+bool goes_on(const GroundPiece& face, const GroundPiece& next) {
+  if (face.head_is_free || next.tail_is_free || face.points[2] != next.points[1]) return false;
+  return corner_turn(direction(face.points[1], face.points[2]), direction(next.points[1], next.points[2])) !=
+         CornerTurn::concave;
 }
 
 }  // namespace
 
 GroundPieces::GroundPieces(const System& system, const GroundShapes& shapes) {
   const auto& registry = system.ground_shape_kinds();
-  std::vector<GroundPiece> pieces;
+  std::vector<GroundPiece> pieces, faces;
   for (Index shape = 0; shape < shapes.size(); ++shape) {
     const auto place = registry.place(shapes.key(shape).serial);
     const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
     pieces.clear();
+    faces.clear();
     kind.pieces(place.slot, pieces);
     if (pieces.empty()) continue;
+    const auto first = static_cast<Index>(outlines_.size());
+    const double speed = kind.surface_speed(place.slot);
     const GroundMotion at_rest = shapes.moves(shape) ? GroundMotion{} : kind.place(place.slot, 0.0);
-    Index feature = 0;
     for (GroundPiece& piece : pieces) {
-      const Index first_point = static_cast<Index>(resting_.size()), features = features_of(piece);
-      for (const Vec<2>& point : piece.points) resting_.push_back(placed_at(at_rest, point));
-      pieces_.push_back({std::move(piece), shape, first_point, feature, kind.surface_speed(place.slot)});
-      feature += features;
+      for (Vec<2>& point : piece.points) point = placed_at(at_rest, point);
+      if (piece.form == Form::face) {
+        faces.push_back(std::move(piece));
+      } else {
+        add_solid(std::move(piece), shape, speed);
+      }
+    }
+    if (!faces.empty()) add_chains(faces, shape, speed);
+    Index feature = 0;
+    for (Index i = first; i < outlines_.size(); ++i) {
+      outlines_[i].key = shapes.key(shape);
+      outlines_[i].key.feature = feature;
+      feature += outlines_[i].vertices.size() + 1;
     }
   }
 }
 
-FeatureKey GroundPieces::key(const GroundShapes& shapes, Index piece, Index feature) const {
-  FeatureKey key = shapes.key(pieces_[piece].shape);
-  key.feature = pieces_[piece].first_feature + feature;
-  return key;
+void GroundPieces::add_solid(GroundPiece piece, Index shape, double surface_speed) {
+  GroundOutline outline;
+  outline.form = piece.form;
+  outline.shape = shape;
+  outline.radius = piece.radius;
+  outline.surface_speed = surface_speed;
+  outline.is_closed = true;
+  outline.vertices.begin = static_cast<Index>(vertices_.size());
+  vertices_.insert(vertices_.end(), piece.points.begin(), piece.points.end());
+  corners_.resize(vertices_.size(), ChainCorner::convex);
+  ends_.push_back({Vec<2>::Zero(), Vec<2>::Zero()});
+  pieces_.push_back({std::move(piece), static_cast<Index>(outlines_.size()), 0});
+  finish(outline);
 }
 
-void GroundPieces::place(const GroundShapes& shapes, const GroundPlaces& places, PlacedPieces& out) const {
-  out.points_ = resting_;
-  for (const Piece& piece : pieces_) {
-    const GroundMotion* motion = shapes.motion(piece.shape, places);
-    if (motion == nullptr) continue;
-    for (Index i = 0; i < piece.as_described.points.size(); ++i) {
-      out.points_[piece.first_point + i] = placed_at(*motion, piece.as_described.points[i]);
-    }
+/// Faces of one shape, in which some follow others.
+void GroundPieces::add_chains(std::vector<GroundPiece>& faces, Index shape, double surface_speed) {
+  const std::size_t n = faces.size();
+  const auto is_joined = [&](std::size_t i) { return goes_on(faces[i], faces[(i + 1) % n]); };
+  // A chain may go around the end of the list: it begins behind a corner that ends one.
+  std::size_t start = 0;
+  while (start < n && is_joined((start + n - 1) % n)) ++start;
+  if (start < n) std::rotate(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(start), faces.end());
+  for (std::size_t first = 0; first < n;) {
+    std::size_t count = 1;
+    while (first + count < n && is_joined(first + count - 1)) ++count;
+    add_chain(faces, first, count, shape, surface_speed);
+    first += count;
   }
 }
 
-Bounds GroundPieces::bounds(Index piece, const PlacedPieces& placed) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const GroundPiece& of = pieces_[piece].as_described;
-  const Vec<2>* const at = points(pieces_[piece], placed);
-  if (of.form == GroundPiece::Form::hollow) return {Vec<2>::Constant(-infinity), Vec<2>::Constant(infinity)};
-  const bool is_face = of.form == GroundPiece::Form::face;
-  const auto first = at + (is_face ? 1 : 0), last = is_face ? at + 3 : at + of.points.size();
-  Bounds bounds{*first, *first};
-  for (auto point = first; point != last; ++point) {
-    bounds.lower = bounds.lower.cwiseMin(*point);
-    bounds.upper = bounds.upper.cwiseMax(*point);
+void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count,
+                             Index shape, double surface_speed) {
+  const GroundPiece &tail = faces[first], &head = faces[first + count - 1];
+  GroundOutline outline;
+  outline.form = Form::face;
+  outline.shape = shape;
+  outline.depth = tail.depth;
+  outline.surface_speed = surface_speed;
+  outline.is_closed = goes_on(head, tail);
+  outline.vertices.begin = static_cast<Index>(vertices_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const GroundPiece& face = faces[first + i];
+    vertices_.push_back(face.points[1]);
+    const Vec<2> in = direction(face.points[0], face.points[1]),
+                 out = direction(face.points[1], face.points[2]);
+    const bool is_flat = !face.tail_is_free && corner_turn(in, out) == CornerTurn::flat;
+    corners_.push_back(is_flat ? ChainCorner::flat : ChainCorner::convex);
+    pieces_.push_back({face, static_cast<Index>(outlines_.size()), static_cast<Index>(i)});
   }
-  bounds.lower.array() -= of.radius;
-  bounds.upper.array() += of.radius;
-  return bounds;
+  if (!outline.is_closed) {
+    corners_[outline.vertices.begin] = tail.tail_is_free ? ChainCorner::free : ChainCorner::concave;
+    vertices_.push_back(head.points[2]);
+    corners_.push_back(head.head_is_free ? ChainCorner::free : ChainCorner::concave);
+  }
+  ends_.push_back({tail.points[0], head.points[3]});
+  finish(outline);
 }
 
-int GroundPieces::find(Index piece, const PlacedPieces& placed, const ConvexOutline& a, double margin,
+/// Takes an outline whose vertices are the last ones.
+void GroundPieces::finish(GroundOutline outline) {
+  outline.vertices.end = static_cast<Index>(vertices_.size());
+  outline_of_.resize(vertices_.size(), static_cast<Index>(outlines_.size()));
+  outline.box = {vertices_[outline.vertices.begin], vertices_[outline.vertices.begin]};
+  for (Index i = outline.vertices.begin; i < outline.vertices.end; ++i) {
+    outline.box.min = outline.box.min.cwiseMin(vertices_[i]);
+    outline.box.max = outline.box.max.cwiseMax(vertices_[i]);
+    outline.reach = std::max(outline.reach, vertices_[i].norm() + outline.radius);
+  }
+  const Index first = outline.vertices.begin, last = outline.vertices.end - 1;
+  for (Index i = first; i <= last; ++i) {
+    const Index before = i > first ? i - 1 : outline.is_closed ? last : i;
+    const Index behind = i < last ? i + 1 : outline.is_closed ? first : i;
+    around_.push_back({vertices_[i], vertices_[behind], vertices_[before]});
+  }
+  outline.box.min.array() -= outline.radius;
+  outline.box.max.array() += outline.radius;
+  outlines_.push_back(outline);
+}
+
+bool GroundPieces::is_bounded(Index piece) const {
+  const GroundPiece& of = pieces_[piece].at;
+  return of.form == Form::solid || (of.form == Form::face && std::isfinite(of.depth));
+}
+
+Box<2> GroundPieces::box(Index piece) const {
+  const GroundPiece& of = pieces_[piece].at;
+  const bool is_face = of.form == Form::face;
+  const auto first = of.points.begin() + (is_face ? 1 : 0), last = is_face ? first + 2 : of.points.end();
+  Box<2> box{*first, *first};
+  const auto hold = [&](const Vec<2>& point) {
+    box.min = box.min.cwiseMin(point);
+    box.max = box.max.cwiseMax(point);
+  };
+  for (auto point = first; point != last; ++point) hold(*point);
+  if (is_face) {
+    const Vec<2> along = direction(first[0], first[1]), inwards(-along[1], along[0]);
+    hold(first[0] + of.depth * inwards);
+    hold(first[1] + of.depth * inwards);
+  }
+  box.min.array() -= of.radius;
+  box.max.array() += of.radius;
+  return box;
+}
+
+int GroundPieces::find(Index piece, const ConvexOutline& a, double margin,
                        std::array<GapPoint, 2>& out) const {
-  const GroundPiece& of = pieces_[piece].as_described;
-  const Vec<2>* const at = points(pieces_[piece], placed);
-  switch (of.form) {
-    case GroundPiece::Form::face:
-      return find_face_gaps(a, face_of(of, at), margin, out);
-    case GroundPiece::Form::hollow:
-      return find_gaps_inside_circle(a, at[0], of.radius, margin, out);
-    case GroundPiece::Form::solid:
-      break;
-  }
-  return find_gaps(a, outline_of(of, at), margin, out);
-}
-
-GapPoint GroundPieces::tracked(Index piece, const PlacedPieces& placed, const ConvexOutline& a,
-                               Index feature_a, Index feature_b) const {
-  const GroundPiece& of = pieces_[piece].as_described;
-  const Vec<2>* const at = points(pieces_[piece], placed);
-  switch (of.form) {
-    case GroundPiece::Form::face:
-      return tracked_gap(a, feature_a, {{at + 1, 2}, 0.0}, feature_b);
-    case GroundPiece::Form::hollow:
-      return gap_inside_circle(a, feature_a, at[0], of.radius);
-    case GroundPiece::Form::solid:
-      break;
-  }
-  return tracked_gap(a, feature_a, outline_of(of, at), feature_b);
-}
-
-void GroundPieces::fill_rows(Index piece, const PairSide& body, const GapPoint& at,
-                             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const {
   const Piece& of = pieces_[piece];
-  const bool is_hollow = of.as_described.form == GroundPiece::Form::hollow;
-  const double radius = is_hollow ? -of.as_described.radius : of.as_described.radius;
+  switch (of.at.form) {
+    case Form::hollow:
+      return find_gaps_inside_circle(a, of.at.points[0], of.at.radius, margin, out);
+    case Form::solid:
+      return find_gaps(a, {of.at.points, of.at.radius}, margin, out);
+    case Form::face:
+      break;
+  }
+  const int count = find_face_gaps(a, face_of(of.at), margin, out);
+  const Index n = outlines_[of.outline].vertices.size();
+  for (int i = 0; i < count; ++i) {
+    Index& feature = out[static_cast<std::size_t>(i)].feature_b;  // tail, head, face
+    feature = feature == 2 ? n + of.edge : feature == 0 ? of.edge : (of.edge + 1) % n;
+  }
+  return count;
+}
+
+bool GroundPieces::is_corner(Index vertex) const {
+  return corners_[vertex] == ChainCorner::convex || corners_[vertex] == ChainCorner::free;
+}
+
+ConvexOutline GroundPieces::view(Index outline) const {
+  const GroundOutline& of = outlines_[outline];
+  return {vertices().subspan(of.vertices.begin, of.vertices.size()), of.is_hollow() ? 0.0 : of.radius};
+}
+
+FaceChain GroundPieces::chain(Index outline) const {
+  const GroundOutline& of = outlines_[outline];
+  const std::span<const ChainCorner> corners(corners_);
+  return {view(outline),     corners.subspan(of.vertices.begin, of.vertices.size()),
+          ends_[outline][0], ends_[outline][1],
+          of.is_closed,      of.depth};
+}
+
+GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feature_a,
+                               Index feature_b) const {
+  const GroundOutline& of = outlines_[outline];
+  if (of.is_hollow()) return gap_inside_circle(a, feature_a, vertices_[of.vertices.begin], of.radius);
+  return tracked_gap(a, feature_a, view(outline), feature_b);
+}
+
+void GroundPieces::fill_rows(Index outline, const PairSide& body, const GapPoint& at,
+                             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const {
+  const GroundOutline& of = outlines_[outline];
+  const double radius = of.is_hollow() ? -of.radius : of.radius;
   fill_pair_rows(body, motion == nullptr ? PairSide::at_rest(radius) : PairSide::of_motion(*motion, radius),
                  at, out);
   if (motion != nullptr && after != nullptr) add_motion_after(at, *motion, *after, out);

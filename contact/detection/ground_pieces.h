@@ -1,10 +1,16 @@
 #pragma once
 
 /// \file
-/// Pieces of the shapes on ground of a model, which the outlines of bodies touch: where they are, and the
-/// contacts with them.
+/// Pieces of the shapes on ground of a model, which the outlines of bodies touch, and what they make
+/// together: outlines on ground, each of which a vertex of a body touches in one place at a time.
+///
+/// Places are in the frames of shapes that move, from the points about which they turn; of shapes at rest
+/// they are where these stand.
 
+#include <carom/contact/detection/box.h>
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/face_chain.h>
+#include <carom/contact/detection/gap_face.h>
 #include <carom/contact/detection/gap_point.h>
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/pair_rows.h>
@@ -14,20 +20,32 @@
 #include <carom/core/space.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace carom {
 
-/// Places of the points of all pieces at one time. A workspace that GroundPieces::place() fills.
-class PlacedPieces {
-private:
-  friend class GroundPieces;
-  std::vector<Vec<2>> points_;
-};
+/// A solid, a chain of faces between two concave corners, or the inside of a circle.
+struct GroundOutline {
+  GroundPiece::Form form = GroundPiece::Form::solid;  ///< what it is made of
+  Index shape = none;                                 ///< number in GroundShapes
+  FeatureKey key;          ///< of its vertex 0; vertex i has the feature number i more, the whole that behind
+  Range vertices;          ///< among those of all
+  double radius = 0.0;     ///< of a solid's outline, or of the circle [m]
+  double depth = 0.0;      ///< of a chain: what is deeper does not touch it [m]
+  bool is_closed = false;  ///< a chain whose last vertex is joined to the first
+  double surface_speed = 0.0;  ///< of a conveyor [m/s]
+  double reach = 0.0;          ///< radius of a circle around the shape's point o that holds it [m]
+  Box<2> box;                  ///< around it; of the inside of a circle around that
 
-/// Box with sides along the axes.
-struct Bounds {
-  Vec<2> lower = Vec<2>::Zero(), upper = Vec<2>::Zero();  ///< corners; infinite where nothing bounds it [m]
+  /// Identity of a vertex.
+  [[nodiscard]] FeatureKey vertex(Index i) const { return {key.owner, key.serial, key.feature + i}; }
+  /// Identity of the outline as a whole.
+  [[nodiscard]] FeatureKey surface() const { return vertex(vertices.size()); }
+  /// True if bodies are inside of it.
+  [[nodiscard]] bool is_hollow() const { return form == GroundPiece::Form::hollow; }
+  /// True if it is a chain.
+  [[nodiscard]] bool is_chain() const { return form == GroundPiece::Form::face; }
 };
 
 /// Pieces of all shapes that have any, by number: shape after shape, in the order of GroundShapes.
@@ -38,43 +56,61 @@ public:
 
   /// Number of pieces.
   [[nodiscard]] Index size() const { return static_cast<Index>(pieces_.size()); }
-  /// Number of a piece's shape.
-  [[nodiscard]] Index shape(Index piece) const { return pieces_[piece].shape; }
-  /// A feature of a piece, as find() numbers it, as feature of its shape.
-  [[nodiscard]] FeatureKey key(const GroundShapes& shapes, Index piece, Index feature) const;
-
-  /// Says where the pieces are. \param places from GroundShapes::place()
-  void place(const GroundShapes& shapes, const GroundPlaces& places, PlacedPieces& out) const;
-  /// Bounds of what is solid of a piece and can be touched first: of a solid the whole, of a face the line,
-  /// of a hollow everything.
-  [[nodiscard]] Bounds bounds(Index piece, const PlacedPieces& placed) const;
+  /// Outline that a piece is part of.
+  [[nodiscard]] Index outline(Index piece) const { return pieces_[piece].outline; }
+  /// Shape that a piece is part of.
+  [[nodiscard]] Index shape(Index piece) const { return outlines_[pieces_[piece].outline].shape; }
+  /// False of a hollow and of a face of any depth, which may be touched everywhere.
+  [[nodiscard]] bool is_bounded(Index piece) const;
+  /// Box around all that touches where it overlaps a piece that is bounded: of a face down to its depth.
+  [[nodiscard]] Box<2> box(Index piece) const;
   /// Contacts of a body's outline (a) with a piece (b), with gap <= `margin` [m], the one with the least gap
-  /// first. \returns how many
-  [[nodiscard]] int find(Index piece, const PlacedPieces& placed, const ConvexOutline& a, double margin,
+  /// first. Features of b are those of the outline on ground, numbered as in ConvexOutline. \returns how many
+  [[nodiscard]] int find(Index piece, const ConvexOutline& a, double margin,
                          std::array<GapPoint, 2>& out) const;
+
+  /// All outlines.
+  [[nodiscard]] const std::vector<GroundOutline>& outlines() const { return outlines_; }
+  /// Vertices of all outlines [m].
+  [[nodiscard]] std::span<const Vec<2>> vertices() const { return vertices_; }
+  /// Outline of a vertex.
+  [[nodiscard]] Index outline_of(Index vertex) const { return outline_of_[vertex]; }
+  /// True if a vertex is a corner that an edge of a body may touch.
+  [[nodiscard]] bool is_corner(Index vertex) const;
+  /// An outline as a set; of a chain its vertices, of a circle its centre.
+  [[nodiscard]] ConvexOutline view(Index outline) const;
+  /// A chain.
+  [[nodiscard]] FaceChain chain(Index outline) const;
+  /// The part of an outline around a vertex, which is the first of its vertices.
+  [[nodiscard]] std::span<const Vec<2>> around(Index vertex) const { return around_[vertex]; }
   /// The gap of given features, as tracked_gap() (gap_convex.h).
-  [[nodiscard]] GapPoint tracked(Index piece, const PlacedPieces& placed, const ConvexOutline& a,
-                                 Index feature_a, Index feature_b) const;
-  /// Writes the rows of a contact with a piece, as fill_pair_rows(), the velocity of a conveyor's surface
-  /// with them. \param motion of its shape, null at rest \param after likewise at the end of the step; null
-  /// where no time passes
-  void fill_rows(Index piece, const PairSide& body, const GapPoint& at, const GroundMotion* motion,
+  [[nodiscard]] GapPoint tracked(Index outline, const ConvexOutline& a, Index feature_a,
+                                 Index feature_b) const;
+  /// Writes the rows of a contact with an outline, as fill_pair_rows(), the velocity of a conveyor's surface
+  /// with them. \param at where the shape is now \param motion of its shape, null at rest \param after
+  /// likewise at the end of the step; null where no time passes
+  void fill_rows(Index outline, const PairSide& body, const GapPoint& at, const GroundMotion* motion,
                  const GroundMotion* after, Constraint& out) const;
 
 private:
   struct Piece {
-    GroundPiece as_described;
-    Index shape;          // number in GroundShapes
-    Index first_point;    // in PlacedPieces
-    Index first_feature;  // within its shape
-    double surface_speed;
+    GroundPiece at;  // placed
+    Index outline;
+    Index edge;  // its number in the outline: of a face
   };
-  [[nodiscard]] const Vec<2>* points(const Piece& piece, const PlacedPieces& placed) const {
-    return placed.points_.data() + piece.first_point;
-  }
+  void add_solid(GroundPiece piece, Index shape, double surface_speed);
+  void add_chains(std::vector<GroundPiece>& faces, Index shape, double surface_speed);
+  void add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count, Index shape,
+                 double surface_speed);
+  void finish(GroundOutline outline);
 
   std::vector<Piece> pieces_;
-  std::vector<Vec<2>> resting_;  // points of all pieces where they are at rest, or described
+  std::vector<GroundOutline> outlines_;
+  std::vector<Vec<2>> vertices_;
+  std::vector<std::array<Vec<2>, 3>> around_;
+  std::vector<ChainCorner> corners_;         // by vertex; of others than chains convex
+  std::vector<Index> outline_of_;            // by vertex
+  std::vector<std::array<Vec<2>, 2>> ends_;  // by outline: before and behind a chain
 };
 
 }  // namespace carom

@@ -11,11 +11,15 @@ namespace carom {
 
 GroundShapes::GroundShapes(const System& system) : system_(&system) {
   const auto& registry = system.ground_shape_kinds();
+  std::vector<GroundPiece> pieces;
   for (const Index serial : registry.serials()) {
     const auto place = registry.place(serial);
     const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
     const Index moving = kind.moves(place.slot) ? moving_++ : none;
-    shapes_.push_back({&kind, place.slot, serial, moving});
+    pieces.clear();
+    kind.pieces(place.slot, pieces);
+    shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty()});
+    any_has_pieces_ = any_has_pieces_ || !pieces.empty();
   }
 }
 

@@ -51,6 +51,12 @@ public:
   [[nodiscard]] FeatureKey key(Index shape) const {
     return {FeatureKey::Owner::obstacle, shapes_[shape].serial, 0};
   }
+  /// True if outlines of bodies touch a shape (GroundShapeKind::pieces).
+  [[nodiscard]] bool has_pieces(Index shape) const { return shapes_[shape].has_pieces; }
+  /// True if any shape is one of these.
+  [[nodiscard]] bool any_has_pieces() const { return any_has_pieces_; }
+  /// Velocity of a conveyor's surface along itself [m/s].
+  [[nodiscard]] double surface_speed(Index shape) const { return shapes_[shape].surface_speed; }
   /// True if a shape moves.
   [[nodiscard]] bool moves(Index shape) const { return shapes_[shape].moving != none; }
   /// True if any does.
@@ -91,11 +97,14 @@ private:
     Index slot;
     Index serial;
     Index moving;  // its number among those that move; `none`: at rest
+    double surface_speed;
+    bool has_pieces;
   };
 
   const System* system_;
   std::vector<Shape> shapes_;
   Index moving_ = 0;  // shapes that move
+  bool any_has_pieces_ = false;
 };
 
 }  // namespace carom

@@ -28,7 +28,10 @@ void HalfSpaceKind<D>::add(const HalfSpace<D>& part, const PartCheck& check) {
   check.material(part.material);
   const double length = part.normal.stableNorm();
   if (!(length > 0.0)) check.refuse("normal", "zero", "a direction of any length > 0");
-  if constexpr (D == 2) part.motion.check(check);
+  if constexpr (D == 2) {
+    part.motion.check(check);
+    check.finite(part.surface_speed, "surface_speed", "m/s");
+  }
   HalfSpace<D> stored = part;
   stored.normal = part.normal / length;
   // Once more: the first division leaves an error of the size of the rounding of the length.
@@ -47,6 +50,15 @@ bool HalfSpaceKind<D>::moves(Index slot) const {
     return !parts_[slot].motion.empty();
   } else {
     return GroundShapeKind::moves(slot);
+  }
+}
+
+template <int D>
+double HalfSpaceKind<D>::surface_speed(Index slot) const {
+  if constexpr (D == 2) {
+    return parts_[slot].surface_speed;
+  } else {
+    return GroundShapeKind::surface_speed(slot);
   }
 }
 
@@ -99,6 +111,7 @@ void HalfSpaceKind<D>::fingerprint(Fingerprint& print) const {
     print.add({part.normal.data(), static_cast<std::size_t>(D)});
     print.add(std::uint64_t{part.material.serial});
     if constexpr (D == 2) {
+      if (part.surface_speed != 0.0) print.add(part.surface_speed);
       // Functions cannot be hashed; that there is a motion, and its breaks, can.
       if (part.motion.empty()) continue;
       print.add("motion");

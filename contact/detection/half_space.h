@@ -45,7 +45,9 @@ struct HalfSpace<2> {
       Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< into free space, any length > 0
   MaterialId material{};                                           ///< for laws between materials
   planar::PrescribedMotion motion{};  ///< of `point`, and about it; empty: at rest
-  ContactFilter filter{};             ///< what it may touch
+  double surface_speed =
+      0.0;                 ///< of a conveyor along itself; positive to the right of who stands on it [m/s]
+  ContactFilter filter{};  ///< what it may touch
 };
 
 /// All half-spaces of a system.
@@ -66,6 +68,7 @@ public:
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
   [[nodiscard]] ContactFilter filter(Index slot) const override { return parts_[slot].filter; }
   [[nodiscard]] bool moves(Index slot) const override;
+  [[nodiscard]] double surface_speed(Index slot) const override;
   [[nodiscard]] GroundMotion place(Index slot, double time) const override;
   void discontinuity_times(Index slot, std::vector<double>& out) const override;
   [[nodiscard]] Gap gap(Index slot, const double* point) const override;

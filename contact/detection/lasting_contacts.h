@@ -54,6 +54,8 @@ public:
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
   [[nodiscard]] double step() const { return step_; }
+  /// Opening that counts as none [m].
+  [[nodiscard]] double slack() const { return slack_; }
   /// True if a contact is among them and turning explains its gap. \param turning bound on |d| [m/s^2]
   [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
     return gap <= reach(turning) + slack_ && contains(key);

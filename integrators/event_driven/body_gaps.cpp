@@ -22,14 +22,17 @@ private:
 };
 
 PairGap gap_of(const GroupModel& model, std::size_t place) {
-  return {*model.assembly, *model.detector, model.pairs[model.body_pairs + place], model.bounds[place]};
+  return {*model.assembly, *model.detector, model.pairs[model.bounds[place].pair], model.bounds[place]};
 }
 
 /// The largest speed of a gap in a step.
 double fastest_in(const SearchedStep& step, std::size_t bound) {
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
-  if (step.motion.flies_freely()) return speed;
+  const GroupModel& model = step.motion.model();
+  // The flow does not know the motion of shapes on ground.
+  if (step.motion.flies_freely() && !model.detector->moves(model.pairs[model.bounds[bound].pair]))
+    return speed;
   // Loads within the step are as at its ends, but for what steps may be wrong by.
   constexpr double unseen = 2.0;
   return speed + unseen * (step.end() - step.begin()) *
@@ -47,12 +50,14 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
   out.gap_known.resize(model.bounds.size());
   bool finite = true;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
-    const std::size_t pair = model.body_pairs + place;
-    if (is_active[pair] != 0) continue;
     const BodyPairBound& bound = model.bounds[place];
-    const double least = bound.least_gap(at.view()), speed = bound.most_speed(at.state.v.data());
+    const std::size_t pair = bound.pair;
+    if (is_active[pair] != 0) continue;
+    const GroundMotion* const of_ground = model.detector->motion(model.pairs[pair], at.places);
+    const double least = bound.least_gap(at.view(), of_ground),
+                 speed = bound.most_speed(at.state.v.data(), of_ground);
     out.gap_speeds[place] = speed;
-    out.gap_accelerations[place] = bound.most_speed(at.acceleration.data());
+    out.gap_accelerations[place] = bound.most_acceleration(at.acceleration.data(), of_ground);
     const bool known = bound.central || least <= soon * speed;
     out.gap_known[place] = known ? 1 : 0;
     out.gaps[pair] = known ? gap_in(gap_of(model, place), at) : StepPolynomial::End{least, -speed, 0.0};
@@ -68,7 +73,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
   StepPath path(step);
   Event found = before;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
-    const std::size_t pair = model.body_pairs + place;
+    const std::size_t pair = model.bounds[place].pair;
     if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
     ClosingRule rule;
     rule.noise = step.scales.gap_noise;

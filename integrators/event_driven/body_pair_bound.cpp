@@ -7,8 +7,16 @@
 
 namespace carom {
 
-BodyPairBound bound_of(const Assembly& assembly, const Detector& detector, const ContactPair& pair) {
-  const BodyOutlines& outlines = detector.bodies().outlines();
+namespace {
+
+double farthest_of(const ConvexOutline& outline) {
+  double farthest = 0.0;
+  for (const Vec<2>& vertex : outline.vertices) farthest = std::max(farthest, vertex.norm());
+  return farthest;
+}
+
+BodyPairBound bound_of_bodies(const Assembly& assembly, const BodyOutlines& outlines,
+                              const ContactPair& pair) {
   const BodyOutline& of_vertex = outlines.list()[outlines.outline_of(pair.feature)];
   const BodyOutline& outline = outlines.list()[pair.outline];
   BodyPairBound bound;
@@ -17,27 +25,86 @@ BodyPairBound bound_of(const Assembly& assembly, const Detector& detector, const
   bound.lever = outlines.vertices()[pair.feature].norm();
   bound.radius = of_vertex.radius;
   bound.rounding = of_vertex.radius + outline.radius;
-  double farthest = 0.0;
-  for (const Vec<2>& vertex : outlines.described(outline).vertices) {
-    farthest = std::max(farthest, vertex.norm());
-  }
+  const double farthest = farthest_of(outlines.described(outline));
   bound.reach = farthest + outline.radius;
   bound.round = outline.vertices.size() == 1;
   bound.central = bound.round && bound.lever == 0.0 && farthest == 0.0;
   return bound;
 }
 
-double BodyPairBound::least_gap(const StateView& state) const {
-  const double x = state.q[a.q] - state.q[b.q], y = state.q[a.q + 1] - state.q[b.q + 1];
-  return std::sqrt(x * x + y * y) - (lever + radius + reach);
+BodyPairBound bound_on_ground(const Assembly& assembly, const PieceContacts& contacts,
+                              const ContactPair& pair) {
+  const BodyOutlines& outlines = contacts.outlines();
+  const GroundPieces& pieces = contacts.pieces();
+  BodyPairBound bound;
+  bound.a = assembly.layout()->bodies()[pair.body];
+  bound.on_ground = true;
+  if (pair.ground_outline != none) {
+    const GroundOutline& touched = pieces.outlines()[pair.ground_outline];
+    bound.lever = outlines.vertices()[pair.feature].norm();
+    bound.radius = outlines.list()[outlines.outline_of(pair.feature)].radius;
+    bound.box = touched.box;
+    bound.reach = touched.reach;
+    bound.round = touched.vertices.size() == 1;
+    if (touched.is_hollow()) {
+      bound.hollow = touched.radius;
+    } else {
+      bound.rounding = bound.radius + touched.radius;
+    }
+    return bound;
+  }
+  const BodyOutline& outline = outlines.list()[pair.outline];
+  const Vec<2>& vertex = pieces.vertices()[pair.ground_vertex];
+  const double radius = pieces.outlines()[pieces.outline_of(pair.ground_vertex)].radius;
+  bound.lever = farthest_of(outlines.described(outline));
+  bound.radius = outline.radius;
+  bound.rounding = outline.radius + radius;
+  bound.box = {vertex.array() - radius, vertex.array() + radius};
+  bound.reach = vertex.norm() + radius;
+  return bound;
 }
 
-double BodyPairBound::most_speed(const double* velocities) const {
+}  // namespace
+
+BodyPairBound bound_of_pair(const Assembly& assembly, const Detector& detector, const ContactPair& pair) {
+  return pair.is_of_pieces() ? bound_on_ground(assembly, detector.pieces(), pair)
+                             : bound_of_bodies(assembly, detector.bodies().outlines(), pair);
+}
+
+double BodyPairBound::least_gap(const StateView& state, const GroundMotion* motion) const {
+  if (!on_ground) {
+    const double x = state.q[a.q] - state.q[b.q], y = state.q[a.q + 1] - state.q[b.q + 1];
+    return std::sqrt(x * x + y * y) - (lever + radius + reach);
+  }
+  const Vec<2> at = PlaneFrame(motion).inside(Vec<2>(state.q[a.q], state.q[a.q + 1]));
+  if (hollow > 0.0) {
+    const Vec<2> centre = 0.5 * (box.min + box.max);
+    return hollow - (at - centre).norm() - (lever + radius);
+  }
+  const Vec<2> outside = (box.min - at).cwiseMax(at - box.max).cwiseMax(0.0);
+  return outside.norm() - (lever + radius);
+}
+
+double BodyPairBound::most_speed(const double* velocities, const GroundMotion* motion) const {
+  if (on_ground) {
+    const double x = velocities[a.v], y = velocities[a.v + 1];
+    double speed = std::sqrt(x * x + y * y);
+    if (a.v_size > 2) speed += std::abs(velocities[a.v + 2]) * lever;
+    if (motion == nullptr) return speed;
+    return speed + std::hypot(motion->velocity[0], motion->velocity[1]) + std::abs(motion->spin) * reach;
+  }
   const double x = velocities[a.v] - velocities[b.v], y = velocities[a.v + 1] - velocities[b.v + 1];
   double speed = std::sqrt(x * x + y * y);
   if (a.v_size > 2) speed += std::abs(velocities[a.v + 2]) * lever;
   if (b.v_size > 2) speed += std::abs(velocities[b.v + 2]) * reach;
   return speed;
+}
+
+double BodyPairBound::most_acceleration(const double* accelerations, const GroundMotion* motion) const {
+  const double of_bodies = most_speed(accelerations, nullptr);
+  if (motion == nullptr) return of_bodies;
+  return of_bodies + std::hypot(motion->acceleration[0], motion->acceleration[1]) +
+         (std::abs(motion->angular_acceleration) + motion->spin * motion->spin) * reach;
 }
 
 }  // namespace carom

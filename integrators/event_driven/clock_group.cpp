@@ -157,6 +157,10 @@ bool ClockGroup::is_at_rest(MotionSample& now) {
   constexpr double no_speed = 1e-14, no_acceleration = 1e-12;
   const GroupModel& model = motion_.model();
   if (model.loads.depends_on_time || model.unknowns.z_size() != 0) return false;
+  // The surface of a conveyor does work on what stands.
+  for (const ActiveContact& contact : motion_.active().list()) {
+    if (contact.at.surface_velocity[1] != 0.0) return false;
+  }
   const auto largest = [&](const std::vector<double>& numbers) {
     double size = 0.0;
     model.unknowns.for_velocities([&](Range v, std::size_t) {

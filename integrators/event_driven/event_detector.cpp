@@ -55,7 +55,7 @@ void EventDetector::take_features(double time, const double* y) {
   bool sampled = false;
   for (ActiveContact& closed : motion_->active().list()) {
     closed.feature = none;
-    if (closed.pair.other == none) continue;
+    if (!closed.pair.has_outline()) continue;
     if (!sampled) motion_->sample(time, y, Forces::without_contact, memory_->within);
     sampled = true;
     const FeatureRegions regions = motion_->regions(closed.pair, memory_->within);
@@ -147,8 +147,8 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
   if (predicted.guard == Guard::force && !(located.time > step.begin()) && !finds_unbounded_force(step.flow))
     return true;
   if (predicted.guard != Guard::gap) return false;
-  // A gap of two bodies may open and close again where the nearest feature changes.
-  if (predicted.which >= motion_->model().body_pairs) return !(located.time > step.begin());
+  // A gap with an outline may open and close again where the nearest feature changes.
+  if (motion_->model().bound_of[predicted.which] != none) return !(located.time > step.begin());
   // A gap that opens: in steps of low order there would be one after each restart.
   const StepPolynomial::End &start = ends_.start().gaps[predicted.which],
                             &end = ends_.end().gaps[predicted.which];

@@ -23,12 +23,12 @@ void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
   const GroupModel& model = motion.model();
-  for (std::size_t i = 0; i < model.body_pairs; ++i) motion.contact(i, now, contacts[i]);
   // Whatever touches or is captured is nearer.
   const double near = 16.0 * model.options->gap_tolerance;
-  for (std::size_t i = model.body_pairs; i < contacts.size(); ++i) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     motion.contact_if_near(i, now, near, contacts[i]);
-    if (contacts[i].gap > near || model.bounds[i - model.body_pairs].rounding > 0.0) continue;
+    const Index bound = model.bound_of[i];
+    if (bound == none || contacts[i].gap > near || model.bounds[bound].rounding > 0.0) continue;
     if (!motion.regions(model.pairs[i], now).may_touch()) {
       contacts[i].gap = std::numeric_limits<double>::infinity();
     }

@@ -12,8 +12,10 @@ void EventIslands::find(const GroupModel& model, FunctionRef<bool(std::size_t)> 
   islands_.clear();
   sets_.start(static_cast<Index>(assembly.layout()->bodies().size()));
   for (Index i = 0; i < model.pairs.size(); ++i) {
-    if (i >= model.body_pairs) {
+    if (model.pairs[i].has_outline()) {
       if (!is_near(i)) continue;
+    }
+    if (model.pairs[i].other != none) {
       sets_.join(assembly.mechanism(model.pairs[i].body), assembly.mechanism(model.pairs[i].other));
     }
     pairs_.push_back(i);

@@ -137,8 +137,9 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
   constexpr int least_of_moving = 2;
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   Event found = before;
-  for (std::size_t i = 0; i < step.motion.model().body_pairs; ++i) {
-    if (step.is_active[i] != 0 || passed_over.gaps[i] != 0) continue;
+  for (std::size_t i = 0; i < step.motion.model().pairs.size(); ++i) {
+    if (step.is_active[i] != 0 || passed_over.gaps[i] != 0 || step.motion.model().bound_of[i] != none)
+      continue;
     // The flow does not know the motion of shapes on ground.
     const bool moving = step.motion.model().detector->moves(step.motion.model().pairs[i]);
     FallRule rule;

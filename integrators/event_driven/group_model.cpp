@@ -31,10 +31,13 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
 }
 
 std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& detector,
-                                     const std::vector<ContactPair>& body_pairs) {
+                                     const std::vector<ContactPair>& pairs) {
   std::vector<BodyPairBound> bounds;
-  bounds.reserve(body_pairs.size());
-  for (const ContactPair& pair : body_pairs) bounds.push_back(bound_of(assembly, detector, pair));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!pairs[i].has_outline()) continue;
+    bounds.push_back(bound_of_pair(assembly, detector, pairs[i]));
+    bounds.back().pair = i;
+  }
   return bounds;
 }
 
@@ -128,9 +131,10 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
       unknowns(assembly_in, group.components,
                has_dry_friction(detector_in, group) ? work_lines : work_lines - 1),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
-      body_pairs(pairs.size() - group.body_pairs.size()),
-      bounds(bounds_of(assembly_in, detector_in, group.body_pairs)),
+      bounds(bounds_of(assembly_in, detector_in, pairs)),
+      bound_of(pairs.size(), none),
       tolerances(tolerances_of(*this, options->absolute_tolerance)) {
+  for (Index i = 0; i < bounds.size(); ++i) bound_of[bounds[i].pair] = i;
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
   loads.depends_on_time = joints.depends_on_time() || ground_moves;
   for (const Index component : group.components) add_load_traits(*assembly, component, loads);

@@ -51,8 +51,8 @@ struct CAROM_API GroupModel {
   /// Everything that might touch, and friction in joints, which always does. First what touches the ground
   /// and what belongs to joints, that of one mechanism together; then pairs of two bodies.
   std::vector<ContactPair> pairs;
-  std::size_t body_pairs = 0;         ///< place of the first pair of two bodies
-  std::vector<BodyPairBound> bounds;  ///< of the pairs of two bodies, from that on
+  std::vector<BodyPairBound> bounds;  ///< of the pairs with an outline, in their order
+  std::vector<Index> bound_of;        ///< by pair: its place in `bounds`; `none`: a point and a flat boundary
   /// Times at which laws of the group's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;
   std::vector<double> tolerances;  ///< absolute, of each unknown

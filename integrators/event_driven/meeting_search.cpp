@@ -107,7 +107,7 @@ double MeetingSearch::noise(const Bodies& bodies) const {
 }
 
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
-  const BodyPairBound bound = bound_of(*assembly_, *detector_, pair);
+  const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
   const PairGap gap{*assembly_, *detector_, pair, bound};
   ClosingRule rule;
   rule.noise = noise(bodies);
@@ -125,8 +125,8 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
   double speed = 0.0, pull = 0.0;
   const auto look = [&](double time) -> GapLook {
     const MotionSample& at = path.sample(time);
-    speed = std::max(speed, bound.most_speed(at.state.v.data()));
-    pull = std::max(pull, bound.most_speed(at.acceleration.data()));
+    speed = std::max(speed, bound.most_speed(at.state.v.data(), nullptr));
+    pull = std::max(pull, bound.most_speed(at.acceleration.data(), nullptr));
     return {time, true, gap_in(gap, at)};
   };
   const GapLook from = look(begin), to = look(end);
@@ -177,7 +177,7 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
   groups_->pairs().append(numbers, pairs_);
   double least = never;
   for (const ContactPair& pair : pairs_) {
-    const BodyPairBound bound = bound_of(*assembly_, *detector_, pair);
+    const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
     const PairGap gap{*assembly_, *detector_, pair, bound};
     if (bodies.a.is_free && bodies.b.is_free && bound.central) {
       const Vec<2> apart = bodies.a.place_at(time) - bodies.b.place_at(time);

@@ -5,7 +5,6 @@
 // with the multipliers l of joints and p of contacts are differentiated as they stand: nothing is eliminated,
 // so that the result is as sparse as the model.
 
-#include <carom/contact/detection/tracked_contact.h>
 #include <carom/core/difference_derivatives.h>
 #include <carom/integrators/event_driven/motion_jacobian.h>
 
@@ -177,8 +176,8 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
   const auto sample_at = [&](OfContact& load, std::array<double, 2>& rows) {
     if (contact.feature != none) {
       moved = contact.at;
-      follow_feature(*model_->assembly, model_->detector->bodies().outlines(), contact.pair, contact.feature,
-                     sample.view(), sample.evaluation, moved);
+      model_->detector->follow(contact.pair, contact.feature, sample.view(), sample.evaluation, sample.places,
+                               moved);
     } else {
       model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
     }

@@ -24,8 +24,9 @@ void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint&
 
 void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, double near,
                                    Constraint& out) const {
-  if (pair >= model_.body_pairs) {
-    const double least = model_.bounds[pair - model_.body_pairs].least_gap(at.view());
+  if (const Index bound = model_.bound_of[pair]; bound != none) {
+    const GroundMotion* const motion = model_.detector->motion(model_.pairs[pair], at.places);
+    const double least = model_.bounds[bound].least_gap(at.view(), motion);
     if (least > near) {
       out.clear_bodies();
       out.rows = 0;

@@ -51,12 +51,12 @@ public:
   void sample(double time, const double* y, Forces forces, MotionSample& out);
   /// The contact of a pair in a sample.
   void contact(std::size_t pair, const MotionSample& at, Constraint& out) const;
-  /// Likewise; of two bodies farther from each other than `near` [m] only a lower bound of the gap, and no
-  /// bodies.
+  /// Likewise; of a pair with an outline that is farther away than `near` [m] only a lower bound of the gap,
+  /// and no bodies.
   void contact_if_near(std::size_t pair, const MotionSample& at, double near, Constraint& out) const;
-  /// Regions of the features of the outline of a pair of two bodies in a sample.
+  /// Regions of the features of the outline of a pair in a sample.
   [[nodiscard]] FeatureRegions regions(const ContactPair& pair, const MotionSample& at) const {
-    return {*model_.assembly, model_.detector->bodies().outlines(), pair, at.view(), at.evaluation};
+    return FeatureRegions(model_.detector->outline_pair(pair, at.view(), at.evaluation, at.places));
   }
   /// Writes the guards of the group's elements in a sample, with derivatives.
   void read_guards(const MotionSample& at, std::vector<GuardMotion>& out);

@@ -26,8 +26,8 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
   const StateView state = at.view();
   bool finite = true;
   Constraint contact;
-  for (std::size_t i = 0; i < motion.model().body_pairs; ++i) {
-    if (is_active[i] != 0) continue;
+  for (std::size_t i = 0; i < motion.model().pairs.size(); ++i) {
+    if (is_active[i] != 0 || motion.model().bound_of[i] != none) continue;
     motion.contact(i, at, contact);
     const Constraint::Block& body = contact.blocks[0];
     const double spin = body.columns > 2 ? state.v[body.v + 2] : 0.0;

@@ -40,6 +40,19 @@ System curling() {
   return system;
 }
 
+System mill() {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law(Surface{.friction = 0.4, .normal_restitution = 0.1});
+  for (const Wall& wall : hopper({0.0, 1.2}, 0.3, 1.0, 0.5, 0.02)) system.add(wall);
+  system.add(stairs({-1.2, 0.8}, 3, 0.4, -0.2), "stairs");
+  system.add(Peg{.centre = {0.4, 0.7}, .radius = 0.05}, "peg");
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .surface_speed = 0.5}, "belt");
+  const BodyId grain = system.add(RigidBody{.mass = disc(0.1, 0.05), .position = {0.1, 1.6}}, "grain");
+  system.add(Disc{.body = grain, .radius = 0.05});
+  return system;
+}
+
 System bar_on_steps() {
   constexpr ContactFilter lower{.groups = 1, .touches = 1}, upper{.groups = 2, .touches = 2};
   System system;
@@ -127,7 +140,7 @@ TEST(ConceptPages, ShowWhatIsTestedHere) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 9U);
+  EXPECT_EQ(count, 10U);
 }
 
 // docs/modelling.md
@@ -155,6 +168,17 @@ TEST(ModellingPage, FindsTheLawOfRubber) {
        {"law_without_effect", "contact_without_law", "touches_nothing", "untouched_obstacle",
         "body_without_shape", "keep_without_joint", "hidden_by_filter"}) {
     EXPECT_NE(page.find("| `" + std::string(name) + "` |"), std::string::npos) << name;
+  }
+}
+
+// It rolls out of the hopper and leaves with the belt.
+TEST(ModellingPage, TheGrainComesToTheBelt) {
+  const System system = mill();
+  for (const Mode& mode : {Mode(TimeStepping{}), Mode(EventDriven{})}) {
+    Simulation simulation(system, mode);
+    simulation.run_until(6.0);
+    EXPECT_NEAR(simulation.state().position(system.body("grain"))[1], 0.05, 1e-3);
+    EXPECT_GT(simulation.energy().flow(EnergyFlow::external), 0.0);
   }
 }
 
@@ -188,9 +212,12 @@ TEST(ModellingPage, TheHammerIsWhereItWasDescribed) {
 TEST(ModellingPage, NamesEveryShapeAndObstacle) {
   const std::string page = text_of("docs/modelling.md");
   for (const char* name :
-       {"Particle", "RigidBody", "Point",        "Disc",       "Segment",    "Polygon",      "HalfPlane",
-        "disc",     "ring",      "solid_sphere", "thin_shell", "rod",        "box",          "polygon",
-        "compose",  "shifted",   "centred",      "to_dot",     "keep_place", "ContactFilter"}) {
+       {"Particle",     "RigidBody", "Point",        "Disc",       "Segment",  "Polygon",
+        "HalfPlane",    "Wall",      "Block",        "Peg",        "Terrain",  "BoxInside",
+        "CircleInside", "stairs",    "hopper",       "drum",       "open_box", "surface_speed",
+        "disc",         "ring",      "solid_sphere", "thin_shell", "rod",      "box",
+        "polygon",      "compose",   "shifted",      "centred",    "to_dot",   "keep_place",
+        "ContactFilter"}) {
     EXPECT_NE(page.find("`" + std::string(name) + "`"), std::string::npos) << name;
   }
 }

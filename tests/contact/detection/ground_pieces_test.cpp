@@ -1,9 +1,8 @@
 // Shapes on ground that outlines touch: their pieces, where they move, and the rows of contacts with them.
 
 #include <carom/bodies/rigid_body.h>
-#include <carom/contact/detection/ground_lines.h>
+#include <carom/contact/detection/ground_parts.h>
 #include <carom/contact/detection/ground_pieces.h>
-#include <carom/contact/detection/ground_solids.h>
 #include <carom/core/system.h>
 
 #include "tests/contact/detection/convex_reference.h"
@@ -34,20 +33,25 @@ struct Ground {
   explicit Ground(const System& system, double time = 0.0) : shapes(system), pieces(system, shapes) {
     place(time);
   }
-  void place(double time) {
-    shapes.place(time, places);
-    pieces.place(shapes, places, placed);
-  }
+  void place(double time) { shapes.place(time, places); }
+  // Gaps in space.
   std::vector<GapPoint> find(const OwnedOutline& a, double margin) const {
     std::vector<GapPoint> out;
     for (Index piece = 0; piece < pieces.size(); ++piece) {
+      const PlaneFrame frame(shapes.motion(pieces.shape(piece), places));
+      OwnedOutline local = a;
+      for (Vec<2>& vertex : local.vertices) vertex = frame.inside(vertex);
       Gaps found;
-      const int count = pieces.find(piece, placed, a.view(), margin, found);
+      const int count = pieces.find(piece, local.view(), margin, found);
       for (int k = 0; k < count; ++k) {
-        const GapPoint& at = found[static_cast<std::size_t>(k)];
-        const GapPoint again = pieces.tracked(piece, placed, a.view(), at.feature_a, at.feature_b);
+        GapPoint at = found[static_cast<std::size_t>(k)];
+        const GapPoint again =
+            pieces.tracked(pieces.outline(piece), local.view(), at.feature_a, at.feature_b);
         EXPECT_EQ(again.gap, at.gap);
         EXPECT_EQ(again.normal, at.normal);
+        at.normal = frame.turned(at.normal);
+        at.point_a = frame.outside(at.point_a);
+        at.point_b = frame.outside(at.point_b);
         out.push_back(at);
       }
     }
@@ -57,7 +61,6 @@ struct Ground {
   GroundShapes shapes;
   GroundPieces pieces;
   GroundPlaces places;
-  PlacedPieces placed;
 };
 
 OwnedOutline disc(double x, double y, double radius) { return {{{x, y}}, radius}; }
@@ -136,6 +139,7 @@ TEST(GroundPieces, MoveAsPrescribed) {
   System system;
   system.add(Wall{.from = {1, 0},
                   .to = {3, 0},
+                  .radius = 0.25,
                   .pivot = {1, 0},
                   .motion = {.displacement = [](double t) { return Vec<2>(t, 2.0 * t); },
                              .angle = [](double t) { return t; }}},
@@ -143,7 +147,7 @@ TEST(GroundPieces, MoveAsPrescribed) {
   system.add(Peg{.centre = {0, -5}, .radius = 1}, law);
   const double time = 0.75;
   const Ground ground(system, time);
-  // In the middle of the wall, 0.5 before its left side.
+  // In the middle of the wall, 0.25 before its left side.
   const Vec<2> along(std::cos(time), std::sin(time)), normal(-along[1], along[0]);
   const Vec<2> at = Vec<2>(1.0 + time, 2.0 * time) + along + 0.5 * normal;
   const auto found = ground.find(disc(at[0], at[1], 0.25), 0.5);
@@ -151,9 +155,9 @@ TEST(GroundPieces, MoveAsPrescribed) {
   EXPECT_NEAR(found[0].gap, 0.25, 1e-15);
   EXPECT_LE((found[0].normal - normal).norm(), 1e-15);
   EXPECT_EQ(ground.find(disc(0, -3.75, 0.25), 0.0).size(), 1U);
-  const Bounds bounds = ground.pieces.bounds(0, ground.placed);
-  EXPECT_LE((bounds.lower - Vec<2>(1.0 + time, 2.0 * time)).norm(), 1e-15);
-  EXPECT_LE((bounds.upper - bounds.lower - 2.0 * along).norm(), 1e-15);
+  const Box<2> box = ground.pieces.box(0);  // in the frame of the wall
+  EXPECT_LE((box.min - Vec<2>(-0.25, -0.25)).norm(), 1e-15);
+  EXPECT_LE((box.max - Vec<2>(2.25, 0.25)).norm(), 1e-15);
 }
 
 // Central difference of order 6; what it leaves is rounding, some 1e-15/h.
@@ -189,7 +193,14 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
   const auto gap_at = [&](double t) {
     ground.place(t);
     const auto now = q_at(t);
-    return ground.pieces.tracked(0, ground.placed, local.moved(now[2], {now[0], now[1]}).view(), 1, 0);
+    OwnedOutline moved = local.moved(now[2], {now[0], now[1]});
+    const PlaneFrame frame(ground.shapes.motion(0, ground.places));
+    for (Vec<2>& vertex : moved.vertices) vertex = frame.inside(vertex);
+    GapPoint at = ground.pieces.tracked(0, moved.view(), 1, 0);
+    at.normal = frame.turned(at.normal);
+    at.point_a = frame.outside(at.point_a);
+    at.point_b = frame.outside(at.point_b);
+    return at;
   };
   const auto rows_at = [&](double t) {
     const GapPoint at = gap_at(t);
@@ -216,25 +227,33 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
   EXPECT_EQ(rows.surface_velocity[0], still.surface_velocity[0]);
 }
 
-TEST(GroundPieces, FeaturesOfAShapeHaveDifferentNumbers) {
+TEST(GroundPieces, FacesWithoutAnInnerCornerAreOneOutline) {
   System system;
   system.add(Peg{.radius = 1}, law);
   system.add(BoxInside{.lower = {0, 0}, .upper = {4, 3}}, law);
+  system.add(Terrain{.vertices = {{0, 0}, {1, 0}, {2, 0}, {3, -1}, {4, 1}}, .depth = 1}, law);
+  system.add(Terrain{.vertices = {{0, 0}, {1, 1}, {2, 0}}, .depth = 0.1, .is_closed = true}, law);
   const Ground ground(system);
-  ASSERT_EQ(ground.pieces.size(), 5U);
-  EXPECT_EQ(ground.pieces.key(ground.shapes, 0, 0), ground.shapes.key(0));
-  for (Index face = 0; face < 4; ++face) {
-    for (Index feature = 0; feature < 3; ++feature) {
-      const FeatureKey key = ground.pieces.key(ground.shapes, 1 + face, feature);
-      EXPECT_EQ(key.serial, ground.shapes.key(1).serial);
-      EXPECT_EQ(key.feature, 3 * face + feature);
-    }
-  }
+  const std::vector<GroundOutline>& outlines = ground.pieces.outlines();
+  ASSERT_EQ(ground.pieces.size(), 1U + 4U + 4U + 3U);
+  ASSERT_EQ(outlines.size(), 1U + 4U + 2U + 1U);
+  EXPECT_EQ(outlines[0].key, ground.shapes.key(0));
+  for (Index face = 0; face < 4; ++face) EXPECT_EQ(outlines[1 + face].key.feature, 3 * face);
+  EXPECT_EQ(outlines[5].vertices.size(), 2U);  // from right to left
+  EXPECT_EQ(outlines[6].vertices.size(), 4U);
+  EXPECT_EQ(outlines[6].key.feature, 3U);
+  const FaceChain chain = ground.pieces.chain(6);
+  EXPECT_EQ(chain.corners[0], ChainCorner::concave);
+  EXPECT_EQ(chain.corners[1], ChainCorner::convex);
+  EXPECT_EQ(chain.corners[2], ChainCorner::flat);
+  EXPECT_EQ(chain.corners[3], ChainCorner::free);
+  EXPECT_TRUE(outlines[7].is_closed);
+  EXPECT_EQ(outlines[7].vertices.size(), 3U);
 }
 
 TEST(GroundPieces, PointsDoNotTouchThem) {
   System system;
-  system.add(Wall{.from = {-1, 0}, .to = {1, 0}}, law);
+  system.add(Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.25}, law);
   const Ground ground(system);
   const std::array<double, 2> point{0, 0};
   EXPECT_EQ(ground.shapes.gap(0, nullptr, point.data()).distance, infinity);
@@ -246,6 +265,7 @@ TEST(GroundPieces, ImpossibleShapesAreRefused) {
   EXPECT_MODEL_ERROR(system.add(Wall{}, law), "wall #0", "from is nan m");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {1, 1}}, law), "to is the same point as from");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}, .radius = -1}, law), "radius is -1 m");
+  EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}}, law), "radius is nan m");
   EXPECT_MODEL_ERROR(system.add(Block{.vertices = {{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}}, law), "not convex");
   EXPECT_MODEL_ERROR(system.add(Peg{}, law), "peg #0", "radius is nan m");
   EXPECT_MODEL_ERROR(system.add(Peg{.radius = 1, .surface_speed = nan}, law), "surface_speed is nan m/s");
@@ -262,6 +282,11 @@ TEST(GroundPieces, ImpossibleShapesAreRefused) {
                      "going back at (2, 0)");
   EXPECT_MODEL_ERROR(system.add(Terrain{.vertices = {{0, 0}, {2, 0}}, .depth = 1, .is_closed = true}, law),
                      "at least 3");
+  EXPECT_MODEL_ERROR(
+      system.add(Terrain{.vertices = {{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, -1}}, .depth = 1}, law, "loop"),
+      "terrain 'loop'", "crossing themselves: faces 0 and 3", "meet at their corners only");
+  EXPECT_MODEL_ERROR(system.add(HalfPlane{.normal = {0, 1}, .surface_speed = nan}, law),
+                     "surface_speed is nan m/s");
 }
 
 TEST(GroundPieces, FingerprintsTellThemApart) {
@@ -277,11 +302,12 @@ TEST(GroundPieces, FingerprintsTellThemApart) {
     for (const std::uint64_t known : prints) EXPECT_NE(another, known);
     prints.push_back(another);
   };
-  expect_new(Wall{.from = {-1, 0}, .to = {1, 0.5}});
+  expect_new(Wall{.from = {-1, 0}, .to = {1, 0.5}, .radius = 0.25});
   expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.5});
-  expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .surface_speed = 0.5});
-  expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .pivot = {0, 1}});
-  expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .motion = {.angle = [](double t) { return t; }}});
+  expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.25, .surface_speed = 0.5});
+  expect_new(Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.25, .pivot = {0, 1}});
+  expect_new(
+      Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.25, .motion = {.angle = [](double t) { return t; }}});
   expect_new(Terrain{.vertices = {{-1, 0}, {1, 0}}, .depth = 1});
   expect_new(Terrain{.vertices = {{-1, 0}, {1, 0}}, .depth = 2});
   EXPECT_EQ(print(wall), prints[0]);

@@ -1,4 +1,6 @@
-#include <carom/contact/detection/ground_lines.h>
+#include <carom/bodies/shape_polygon.h>
+#include <carom/contact/detection/box_grid.h>
+#include <carom/contact/detection/ground_parts.h>
 
 #include <cmath>
 #include <cstddef>
@@ -10,11 +12,11 @@ namespace carom::planar {
 namespace {
 
 /// Faces with free space on the left of who walks along the vertices: a face runs from the later one to the
-/// earlier.
+/// earlier, and so do the faces: each begins where the one before ends.
 std::vector<GroundPiece> faces_along(const std::vector<Vec<2>>& vertices, bool is_closed, double depth) {
   const std::size_t n = vertices.size(), count = is_closed ? n : n - 1;
   std::vector<GroundPiece> faces;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = count; i-- > 0;) {
     GroundPiece face{
         .form = GroundPiece::Form::face,
         .points = {vertices[(i + 2) % n], vertices[(i + 1) % n], vertices[i], vertices[(i + n - 1) % n]},
@@ -43,6 +45,39 @@ void check_faces(const std::vector<Vec<2>>& vertices, bool is_closed, const Part
   }
 }
 
+double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// True if two segments have a point in common.
+bool meet(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
+  const auto parts = [](const Vec<2>& from, const Vec<2>& to, const Vec<2>& one, const Vec<2>& other) {
+    const double first = cross(to - from, one - from), second = cross(to - from, other - from);
+    return (first > 0.0 && second > 0.0) || (first < 0.0 && second < 0.0);
+  };
+  return !parts(a, b, c, d) && !parts(c, d, a, b);
+}
+
+/// Refuses faces that meet beside their common corners.
+void check_crossing(const std::vector<Vec<2>>& vertices, bool is_closed, const PartCheck& check) {
+  const auto n = static_cast<Index>(vertices.size()), count = is_closed ? n : n - 1;
+  std::vector<OwnedBox<2>> boxes;
+  for (Index i = 0; i < count; ++i) {
+    const Vec<2>&from = vertices[i], &to = vertices[(i + 1) % n];
+    boxes.push_back({{from.cwiseMin(to), from.cwiseMax(to)}, i, none});
+  }
+  BoxGrid<2> grid;
+  grid.build(boxes);
+  for (Index i = 0; i < count; ++i) {
+    grid.for_overlapping(boxes[i].box, [&](const OwnedBox<2>& other) {
+      const Index j = other.number;
+      if (j <= i + 1 || (is_closed && i == 0 && j + 1 == count)) return;
+      if (!meet(vertices[i], vertices[i + 1], vertices[j], vertices[(j + 1) % n])) return;
+      check.refuse("vertices",
+                   "crossing themselves: faces " + std::to_string(i) + " and " + std::to_string(j),
+                   "a line whose faces meet at their corners only");
+    });
+  }
+}
+
 }  // namespace
 
 std::vector<GroundPiece> Terrain::pieces(const PartCheck& check) const {
@@ -53,6 +88,7 @@ std::vector<GroundPiece> Terrain::pieces(const PartCheck& check) const {
   for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
   check.positive(depth, "depth", "m");
   check_faces(vertices, is_closed, check);
+  check_crossing(vertices, is_closed, check);
   return faces_along(vertices, is_closed, depth);
 }
 
@@ -69,6 +105,26 @@ std::vector<GroundPiece> CircleInside::pieces(const PartCheck& check) const {
   check.finite({centre.data(), 2}, "centre", "m");
   check.positive(radius, "radius", "m");
   return {{.form = GroundPiece::Form::hollow, .points = {centre}, .radius = radius}};
+}
+
+std::vector<GroundPiece> Wall::pieces(const PartCheck& check) const {
+  check.finite({from.data(), 2}, "from", "m");
+  check.finite({to.data(), 2}, "to", "m");
+  check.positive(radius, "radius", "m");
+  if (from == to) check.refuse("to", "the same point as from", "another point");
+  return {{.form = GroundPiece::Form::solid, .points = {from, to}, .radius = radius}};
+}
+
+std::vector<GroundPiece> Block::pieces(const PartCheck& check) const {
+  const Polygon polygon{.vertices = vertices, .radius = radius};
+  polygon.check(check);
+  return {{.form = GroundPiece::Form::solid, .points = polygon.outline(check).vertices, .radius = radius}};
+}
+
+std::vector<GroundPiece> Peg::pieces(const PartCheck& check) const {
+  check.finite({centre.data(), 2}, "centre", "m");
+  check.positive(radius, "radius", "m");
+  return {{.form = GroundPiece::Form::solid, .points = {centre}, .radius = radius}};
 }
 
 }  // namespace carom::planar

@@ -1,0 +1,63 @@
+#pragma once
+
+/// \file
+/// A chain of faces on ground between two concave corners, as a vertex of a body sees it: which of its
+/// features is the nearest, and how far the vertex is from where that changes.
+///
+/// At concave corners the chain ends: there a vertex touches two chains. At flat corners one face follows
+/// another without a feature between them.
+
+#include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/feature_region.h>
+#include <carom/core/export.h>
+#include <carom/core/space.h>
+
+#include <cstdint>
+#include <span>
+
+namespace carom {
+
+/// Places of a chain where one face ends.
+enum class ChainCorner : std::uint8_t {
+  convex,  ///< the next face turns to the left
+  flat,    ///< it goes on
+  free,    ///< an end of the chain, where the solid ends at a right angle
+  concave  ///< an end of the chain, where another one begins
+};
+
+/// A view of a chain. Features are numbered as those of ConvexOutline.
+struct CAROM_API FaceChain {
+  /// Feature nearest to a point.
+  struct Nearest {
+    Index feature = none;
+    double distance = 0.0;  ///< negative in the solid [m]
+  };
+
+  ConvexOutline outline;                 ///< its vertices; radius 0
+  std::span<const ChainCorner> corners;  ///< by vertex
+  Vec<2> before, behind;   ///< of an open chain: other ends of the faces at its concave ends [m]
+  bool is_closed = false;  ///< the last vertex is joined to the first
+  double depth = 0.0;      ///< what is deeper does not touch it [m]
+
+  /// Number of faces.
+  [[nodiscard]] Index faces() const { return outline.size() - (is_closed ? 0U : 1U); }
+  /// The feature nearest to a point, and the distance of the point.
+  [[nodiscard]] Nearest nearest(const Vec<2>& point) const;
+  /// Margin of a feature. \param rate velocity of the point
+  [[nodiscard]] FeatureMargin margin(Index feature, const Vec<2>& point, const Vec<2>& rate) const;
+  /// The faces that end and begin at a vertex; `none` where there is none.
+  [[nodiscard]] Index face_before(Index vertex) const {
+    return !is_closed && vertex == 0 ? none : outline.before(vertex);
+  }
+  [[nodiscard]] Index face_behind(Index vertex) const {
+    return !is_closed && vertex + 1 == outline.size() ? none : vertex;
+  }
+
+private:
+  [[nodiscard]] bool is_beyond(Index vertex, const OutlineEdge& edge, const Vec<2>& point, bool head) const;
+  [[nodiscard]] Vec<2> along_both(Index vertex) const;
+  [[nodiscard]] FeatureMargin margin_at(Index vertex, const OutlineEdge& edge, const Vec<2>& point,
+                                        const Vec<2>& rate, bool head) const;
+};
+
+}  // namespace carom

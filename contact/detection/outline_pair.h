@@ -1,0 +1,74 @@
+#pragma once
+
+/// \file
+/// A vertex of one side and an outline of the other, each in its own frame.
+
+#include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/face_chain.h>
+#include <carom/core/evaluation.h>
+#include <carom/core/ground_shape_kind.h>
+#include <carom/core/layout.h>
+#include <carom/core/space.h>
+#include <carom/core/state.h>
+
+#include <optional>
+
+namespace carom {
+
+/// Frame of a body, or of a shape on ground, and how it moves.
+struct PlaneFrame {
+  Vec<2> centre = Vec<2>::Zero();    ///< of mass, or the point about which a shape on ground turns [m]
+  Vec<2> velocity = Vec<2>::Zero();  ///< of that [m/s]
+  double spin = 0.0;                 ///< [rad/s]
+  double cosine = 1.0, sine = 0.0;   ///< of its angle
+
+  /// That of what is at rest.
+  PlaneFrame() = default;
+  /// That of a body. \param evaluation position group up to date
+  PlaneFrame(const BodySlot& body, const StateView& state, const Evaluation& evaluation)
+      : centre(state.q[body.q], state.q[body.q + 1]), velocity(state.v[body.v], state.v[body.v + 1]) {
+    if (body.v_size > 2) spin = state.v[body.v + 2];
+    if (body.rotation == none) return;
+    cosine = evaluation.rotation[body.rotation];
+    sine = evaluation.rotation[body.rotation + 1];
+  }
+  /// That of a shape on ground. \param motion null: it is at rest
+  explicit PlaneFrame(const GroundMotion* motion) {
+    if (motion == nullptr) return;
+    centre = {motion->point[0], motion->point[1]};
+    velocity = {motion->velocity[0], motion->velocity[1]};
+    spin = motion->spin;
+    cosine = motion->cosine;
+    sine = motion->sine;
+  }
+  /// A direction of the frame, in space.
+  [[nodiscard]] Vec<2> turned(const Vec<2>& at) const {
+    return {cosine * at[0] - sine * at[1], sine * at[0] + cosine * at[1]};
+  }
+  /// A direction of space, in the frame.
+  [[nodiscard]] Vec<2> turned_back(const Vec<2>& at) const {
+    return {cosine * at[0] + sine * at[1], cosine * at[1] - sine * at[0]};
+  }
+  /// A place of the frame, in space [m].
+  [[nodiscard]] Vec<2> outside(const Vec<2>& local) const { return centre + turned(local); }
+  /// A place in space, in the frame [m].
+  [[nodiscard]] Vec<2> inside(const Vec<2>& point) const { return turned_back(Vec<2>(point - centre)); }
+  /// Velocity of what is fixed to the frame. \param arm from the centre, in space [m]
+  [[nodiscard]] Vec<2> velocity_at(const Vec<2>& arm) const {
+    return {velocity[0] - spin * arm[1], velocity[1] + spin * arm[0]};
+  }
+};
+
+/// A vertex and an outline that it may touch. A view.
+struct OutlinePair {
+  PlaneFrame vertex_frame, outline_frame;
+  Vec<2> vertex = Vec<2>::Zero();  ///< in its frame [m]
+  ConvexOutline around;            ///< outline that the vertex is part of, in its frame
+  ConvexOutline outline;           ///< in its frame
+  std::optional<FaceChain> chain;  ///< given if the outline is a chain on ground
+
+  /// True if neither side is rounded.
+  [[nodiscard]] bool is_sharp() const { return outline.radius + around.radius == 0.0; }
+};
+
+}  // namespace carom

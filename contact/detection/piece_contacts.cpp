@@ -1,0 +1,311 @@
+// Problem: which of many pieces of the ground a body touches, where, and by which law.
+
+#include <carom/contact/detection/feature_margin.h>
+#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/pair_rows.h>
+#include <carom/contact/detection/piece_contacts.h>
+#include <carom/contact/detection/short_list.h>
+#include <carom/core/system.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+GapPoint in_space(const PlaneFrame& frame, const GapPoint& gap) {
+  GapPoint out = gap;
+  out.normal = frame.turned(gap.normal);
+  out.point_a = frame.outside(gap.point_a);
+  out.point_b = frame.outside(gap.point_b);
+  return out;
+}
+
+}  // namespace
+
+struct PieceContacts::Search {
+  const ContactQuery& query;
+  const BodyOutline& outline;
+  ConvexOutline placed;  // in the frame of the family
+  const GroundMotion* motion;
+  PlaneFrame frame;   // of the family
+  double margin;      // of gaps, those of lasting contacts included
+  std::size_t first;  // contact of the outline
+};
+
+PieceContacts::PieceContacts(const Assembly& assembly)
+    : assembly_(&assembly), shapes_(assembly.system()), pieces_(assembly.system(), shapes_) {
+  if (pieces_.size() == 0 || assembly.layout()->dimension() != 2) return;
+  outlines_ = BodyOutlines(assembly);
+  const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
+  for (Index body = 0, next = 0; body <= bodies; ++body) {
+    while (next < outlines_.list().size() && outlines_.list()[next].body < body) ++next;
+    begin_.push_back(next);
+  }
+  find_laws();
+  fill_families();
+}
+
+void PieceContacts::find_laws() {
+  const System& system = assembly_->system();
+  laws_.resize(outlines_.materials().size() * shapes_.size());
+  for (const BodyOutline& outline : outlines_.list()) {
+    for (Index shape = 0; shape < shapes_.size(); ++shape) {
+      if (!shapes_.has_pieces(shape) || !carom::may_touch(outline.filter, shapes_.filter(shape))) continue;
+      const auto law = system.law(outlines_.materials()[outline.material], shapes_.id(shape));
+      if (law) laws_[outline.material * shapes_.size() + shape] = *law;
+    }
+  }
+}
+
+/// Pieces at rest are one family, however many shapes they are of.
+void PieceContacts::fill_families() {
+  std::vector<std::vector<OwnedBox<2>>> boxes;
+  std::vector<Index> family_of(shapes_.size(), none);
+  Index at_rest = none;
+  for (Index piece = 0; piece < pieces_.size(); ++piece) {
+    const Index shape = pieces_.shape(piece);
+    Index& family = shapes_.moves(shape) ? family_of[shape] : at_rest;
+    if (family == none) {
+      family = static_cast<Index>(families_.size());
+      families_.emplace_back().shape = shapes_.moves(shape) ? shape : none;
+      boxes.emplace_back();
+    }
+    if (!pieces_.is_bounded(piece)) {
+      families_[family].unbounded.push_back(piece);
+      continue;
+    }
+    const Box<2> box = pieces_.box(piece);
+    boxes[family].push_back({box, piece, none});
+    const double reach = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
+    families_[family].reach = std::max(families_[family].reach, reach);
+  }
+  for (std::size_t i = 0; i < families_.size(); ++i) families_[i].grid.build(boxes[i]);
+}
+
+bool PieceContacts::may_touch(const BodyOutline& a, const GroundOutline& b) const {
+  return carom::may_touch(a.filter, shapes_.filter(b.shape));
+}
+
+/// A vertex stands against the outline of the other side, whichever of its features is nearest. Of two
+/// vertices it is the one of the outline with fewer.
+ConstraintKey PieceContacts::key_of(const BodyOutline& a, const GroundOutline& b, const GapPoint& gap) const {
+  const bool of_a = b.is_hollow() || gap.kind == GapKind::edge_of_b ||
+                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
+  return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
+              : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+}
+
+void PieceContacts::find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
+  const Range bodies = assembly_->bodies_of({component, component + 1});
+  for (Index body = bodies.begin; body < bodies.end; ++body) find_of(body, query, out);
+}
+
+void PieceContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+  const Range own = outlines_of(body);
+  for (Index i = own.begin; i < own.end; ++i) {
+    for (const Family& family : families_) find_in(family, outlines_.list()[i], query, out);
+  }
+}
+
+/// Looks up the pieces of a family near an outline.
+void PieceContacts::find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
+                            std::vector<Constraint>& out) const {
+  const BodySlot& body = assembly_->layout()->bodies()[outline.body];
+  Search search{query, outline, {}, nullptr, {}, query.margin, out.size()};
+  if (family.shape != none) search.motion = shapes_.motion(family.shape, query.places);
+  search.frame = PlaneFrame(search.motion);
+  const PlaneFrame of_body(body, query.state, query.evaluation);
+  if (query.lasting != nullptr && !query.lasting->empty()) {
+    // No contact of the step before has opened faster than the sides move.
+    constexpr double faster = 2.0;
+    double speed = of_body.velocity.norm() + std::abs(of_body.spin) * outline.reach;
+    if (search.motion != nullptr) {
+      const Vec<2> arm = of_body.centre - search.frame.centre;
+      speed += search.frame.velocity_at(arm).norm() + std::abs(search.frame.spin) * outline.reach;
+    }
+    search.margin += faster * query.lasting->step() * speed + query.lasting->slack();
+  }
+  const Vec<2> apart = of_body.centre - search.frame.centre;
+  const double near = family.reach + outline.reach + search.margin;
+  const bool is_near = family.shape == none || apart.squaredNorm() <= near * near;
+  if (!is_near && family.unbounded.empty()) return;
+
+  ShortList<Vec<2>, 32> vertices;
+  vertices.reset(outline.vertices.size());
+  outlines_.place(outline, body, query.state, query.evaluation, vertices.all().data());
+  if (search.motion != nullptr) {
+    for (Vec<2>& vertex : vertices.all()) vertex = search.frame.inside(vertex);
+  }
+  search.placed = {vertices.all(), outline.radius};
+  ShortList<Index, 64> near_by;
+  if (is_near) {
+    Box<2> box{vertices.all()[0], vertices.all()[0]};
+    for (const Vec<2>& vertex : vertices.all()) {
+      box.min = box.min.cwiseMin(vertex);
+      box.max = box.max.cwiseMax(vertex);
+    }
+    const double wider = outline.radius + search.margin;
+    box.min.array() -= wider;
+    box.max.array() += wider;
+    family.grid.for_overlapping(box, [&](const OwnedBox<2>& piece) { near_by.push_back(piece.number); });
+    std::sort(near_by.all().begin(), near_by.all().end());
+  }
+  for (const Index piece : near_by.all()) find_piece(piece, search, out);
+  for (const Index piece : family.unbounded) find_piece(piece, search, out);
+}
+
+void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const {
+  const Index on_ground = pieces_.outline(piece);
+  if (!may_touch(search.outline, pieces_.outlines()[on_ground])) return;
+  std::array<GapPoint, 2> found;
+  const int count = pieces_.find(piece, search.placed, search.margin, found);
+  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
+    add(search, on_ground, search.motion == nullptr ? gap : in_space(search.frame, gap), out);
+  }
+}
+
+/// Appends a contact that is closed, or was and may still be.
+void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& gap,
+                        std::vector<Constraint>& out) const {
+  const ContactQuery& query = search.query;
+  const bool touches = gap.gap <= query.margin;
+  const ConstraintKey key = key_of(search.outline, pieces_.outlines()[on_ground], gap);
+  if (!touches && (query.lasting == nullptr || !query.lasting->contains(key))) return;
+  // Deep in the solid a vertex may be before two faces of a chain: it is out of the nearer one first.
+  const auto same = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(search.first), out.end(),
+                                 [&](const Constraint& other) { return other.key == key; });
+  if (same != out.end() && same->gap <= gap.gap) return;
+  const Index shape = pieces_.outlines()[on_ground].shape;
+  const GroundMotion* const after =
+      search.motion == nullptr || query.after == nullptr ? nullptr : shapes_.motion(shape, *query.after);
+  Constraint contact;
+  fill(key, search.outline, on_ground, gap, query.state, search.motion, after, contact);
+  if (!touches) {
+    if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return;
+    contact.allowed_approach = gap.gap / query.lasting->step();
+  }
+  if (same != out.end()) {
+    *same = contact;
+  } else {
+    out.push_back(contact);
+  }
+}
+
+void PieceContacts::fill(const ConstraintKey& key, const BodyOutline& a, Index on_ground, const GapPoint& gap,
+                         const StateView& state, const GroundMotion* motion, const GroundMotion* after,
+                         Constraint& out) const {
+  const BodySlot& body = assembly_->layout()->bodies()[a.body];
+  out.key = key;
+  out.law = laws_[a.material * shapes_.size() + pieces_.outlines()[on_ground].shape];
+  out.friction = out.law.friction;
+  pieces_.fill_rows(on_ground, PairSide::of_body(body, a.body, a.radius, state), gap, motion, after, out);
+  if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
+}
+
+OutlinePair PieceContacts::outline_pair(const ContactPair& pair, const StateView& state,
+                                        const Evaluation& evaluation, const GroundMotion* motion) const {
+  const PlaneFrame of_body(assembly_->layout()->bodies()[pair.body], state, evaluation), of_ground(motion);
+  OutlinePair out;
+  if (pair.ground_outline != none) {
+    out.vertex_frame = of_body;
+    out.outline_frame = of_ground;
+    out.vertex = outlines_.vertices()[pair.feature];
+    out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
+    out.outline = pieces_.view(pair.ground_outline);
+    if (pieces_.outlines()[pair.ground_outline].is_chain()) out.chain = pieces_.chain(pair.ground_outline);
+  } else {
+    const GroundOutline& on_ground = pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)];
+    out.vertex_frame = of_ground;
+    out.outline_frame = of_body;
+    out.vertex = pieces_.vertices()[pair.ground_vertex];
+    out.around = {pieces_.around(pair.ground_vertex), on_ground.radius};
+    out.outline = outlines_.described(outlines_.list()[pair.outline]);
+  }
+  return out;
+}
+
+/// The gap of a pair at one feature of its outline, or at the nearest one (`none`); a of it is the body.
+GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const {
+  const Vec<2> vertex = at.outline_frame.inside(at.vertex_frame.outside(at.vertex));
+  const ConvexOutline point{{&vertex, 1}, at.around.radius};
+  if (pair.ground_outline != none) {
+    const Index on_ground = pair.ground_outline;
+    GapPoint gap;
+    if (pieces_.outlines()[on_ground].is_hollow()) {
+      gap = pieces_.tracked(on_ground, point, 0, 0);
+    } else {
+      const bool any = feature == none;
+      if (any) feature = FeatureRegions(at).nearest();
+      gap = pieces_.tracked(on_ground, point, 0, feature);
+      // Below the depth of a chain nothing touches.
+      if (any && at.chain && gap.gap < -at.chain->depth) {
+        gap.gap = at.chain->nearest(vertex).distance - at.around.radius;
+      }
+    }
+    gap.feature_a = pair.feature - outlines_.list()[outlines_.outline_of(pair.feature)].vertices.begin;
+    return in_space(at.outline_frame, gap);
+  }
+  if (feature == none) feature = FeatureRegions(at).nearest();
+  GapPoint gap = tracked_gap(point, 0, at.outline, feature);
+  gap.feature_a =
+      pair.ground_vertex - pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)].vertices.begin;
+  return in_space(at.outline_frame, gap).swapped();
+}
+
+void PieceContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                            const GroundMotion* motion, Constraint& out) const {
+  const bool of_body = pair.ground_outline != none;
+  const Index on_ground = of_body ? pair.ground_outline : pieces_.outline_of(pair.ground_vertex);
+  const GroundOutline& b = pieces_.outlines()[on_ground];
+  const BodyOutline& a = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
+  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), none);
+  const ConstraintKey key = of_body ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
+                                    : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+  out = {};  // it may have held a contact of another body
+  fill(key, a, on_ground, gap, state, motion, nullptr, out);
+}
+
+void PieceContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
+                           const Evaluation& evaluation, const GroundMotion* motion,
+                           Constraint& contact) const {
+  const bool of_body = pair.ground_outline != none;
+  const Index on_ground = of_body ? pair.ground_outline : pieces_.outline_of(pair.ground_vertex);
+  const BodyOutline& a = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
+  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), feature);
+  const BodySlot& body = assembly_->layout()->bodies()[pair.body];
+  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, nullptr,
+                    contact);
+}
+
+/// Each vertex of a body against each outline on ground; and, where the body has edges, each corner of the
+/// ground against each outline of the body. Of two round ends one is enough.
+void PieceContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
+  const Range bodies = assembly_->bodies_of({component, component + 1});
+  for (Index i = begin_[bodies.begin]; i < begin_[bodies.end]; ++i) {
+    const BodyOutline& a = outlines_.list()[i];
+    for (Index on_ground = 0; on_ground < pieces_.outlines().size(); ++on_ground) {
+      const GroundOutline& b = pieces_.outlines()[on_ground];
+      if (!may_touch(a, b)) continue;
+      const ContactPair pair{.body = a.body, .ground_shape = b.shape};
+      const bool is_peg = b.form == GroundPiece::Form::solid && b.vertices.size() == 1;
+      for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
+        if (is_peg && a.vertices.size() > 1) break;
+        out.push_back(pair);
+        out.back().feature = vertex;
+        out.back().ground_outline = on_ground;
+      }
+      if (a.vertices.size() == 1 || b.is_hollow()) continue;
+      for (Index vertex = b.vertices.begin; vertex < b.vertices.end; ++vertex) {
+        if (!pieces_.is_corner(vertex)) continue;
+        out.push_back(pair);
+        out.back().outline = i;
+        out.back().ground_vertex = vertex;
+      }
+    }
+  }
+}
+
+}  // namespace carom

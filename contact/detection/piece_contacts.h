@@ -1,0 +1,91 @@
+#pragma once
+
+/// \file
+/// Contacts of bodies with the pieces of shapes on ground: pairs of a body's outline and an outline on ground
+/// whose gap is closed.
+
+#include <carom/contact/detection/body_outlines.h>
+#include <carom/contact/detection/box_grid.h>
+#include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/gap_point.h>
+#include <carom/contact/detection/ground_pieces.h>
+#include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/outline_pair.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/core/surface.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Outlines of the bodies of an assembly, pieces of shapes on ground, and the laws between them.
+class CAROM_API PieceContacts {
+public:
+  /// Throws ModelError where a body's polygon is not convex. Laws must be known to be there (GroundLaws).
+  /// \param assembly outlives it
+  explicit PieceContacts(const Assembly& assembly);
+
+  /// True if there are no pieces, or nothing that may touch them.
+  [[nodiscard]] bool empty() const { return outlines_.empty(); }
+  /// Outlines of bodies.
+  [[nodiscard]] const BodyOutlines& outlines() const { return outlines_; }
+  /// Pieces and outlines on ground.
+  [[nodiscard]] const GroundPieces& pieces() const { return pieces_; }
+
+  /// Appends the contacts of one component that a query asks for, ordered by body.
+  void find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Likewise those of one body.
+  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Appends all pairs of one component that may touch, ordered by body.
+  void append_pairs(Index component, std::vector<ContactPair>& out) const;
+
+  /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
+  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+               const GroundMotion* motion, Constraint& out) const;
+  /// Brings rows, gap and drift of the contact of a pair to a state, as long as its vertex stays with one
+  /// feature of the outline (ConvexOutline), whichever is the nearest; key and law stay.
+  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
+              const GroundMotion* motion, Constraint& contact) const;
+  /// The vertex and the outline of a pair.
+  [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
+                                         const Evaluation& evaluation, const GroundMotion* motion) const;
+
+private:
+  /// Pieces at rest, or those of one shape that moves, in its frame.
+  struct Family {
+    Index shape = none;  ///< none: at rest
+    double reach = 0.0;  ///< radius of a circle around its point o that holds the bounded pieces [m]
+    BoxGrid<2> grid;     ///< of bounded pieces
+    std::vector<Index> unbounded;
+  };
+  /// One body's outline before one family.
+  struct Search;
+
+  void find_laws();
+  void fill_families();
+  [[nodiscard]] bool may_touch(const BodyOutline& a, const GroundOutline& b) const;
+  [[nodiscard]] ConstraintKey key_of(const BodyOutline& a, const GroundOutline& b, const GapPoint& gap) const;
+  [[nodiscard]] Range outlines_of(Index body) const { return {begin_[body], begin_[body + 1]}; }
+  void find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
+               std::vector<Constraint>& out) const;
+  void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
+  void add(const Search& search, Index ground, const GapPoint& gap, std::vector<Constraint>& out) const;
+  void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
+            const StateView& state, const GroundMotion* motion, const GroundMotion* after,
+            Constraint& out) const;
+  [[nodiscard]] GapPoint gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const;
+
+  const Assembly* assembly_;
+  GroundShapes shapes_;
+  GroundPieces pieces_;
+  BodyOutlines outlines_;
+  std::vector<Index> begin_;   // of each body: its first outline
+  std::vector<Surface> laws_;  // row-major: material of the outline, shape; any where they may not touch
+  std::vector<Family> families_;
+};
+
+}  // namespace carom
