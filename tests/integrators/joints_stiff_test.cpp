@@ -49,7 +49,10 @@ std::vector<double> run(const Scene& scene, const TimeStepping& options, double 
   JointCheck check(simulation);
   simulation.run_until(time);
   EXPECT_LE(check.gap, gap_limit) << "step " << options.step;
-  EXPECT_LE(check.speed, speed_limit) << "step " << options.step;
+  // Under the other rule velocities follow positions (energy_momentum_joints_test.cpp).
+  if (options.force_rule == ForceRule::trapezoidal) {
+    EXPECT_LE(check.speed, speed_limit) << "step " << options.step;
+  }
   EXPECT_TRUE(ledger_closes(simulation.energy())) << "step " << options.step;
   return angles(simulation, scene);
 }
