@@ -101,7 +101,9 @@ TEST(GapFace, FacesOfAHillAreTheHill) {
       });
     };
     EXPECT_TRUE(is_found(expected[0]) || (is_bar_across && count == 2 && is_found(expected[1])));
-    if (is_flat) EXPECT_TRUE(is_found(expected[1]));
+    if (is_flat) {
+      EXPECT_TRUE(is_found(expected[1]));
+    }
     overlapping += expected[0].gap + a.radius < 0.0 ? 1 : 0;
     with_two += is_flat ? 1 : 0;
   }
