@@ -2,6 +2,7 @@
 
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/solvers/large_problem_solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,14 +25,68 @@ bool is_one_planar_contact(const ContactProblem& problem) {
   return std::abs(number) <= rounding * constraint.speed(row, velocity_free) + least ? 0.0 : number;
 }
 
-/// Whether the constraints are many and share several bodies in the plane.
-bool may_be_factored(std::span<const Constraint> constraints, std::size_t from) {
-  if (constraints.size() < from || constraints.empty()) return false;
+/// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint
+void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
+  if (row == 0) {
+    set.kind = SetKind::half_line;
+    return;
+  }
+  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
+  set.bound = first;
+  set.coefficient = at.friction;
+}
+
+/// Whether W of constraints may stay in factors: in the plane, of several bodies.
+bool fit_factors(std::span<const Constraint> constraints) {
   const Index first = constraints.front().body();
   const auto planar = [](const Constraint& at) { return at.rows <= 2; };
   const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
   return std::all_of(constraints.begin(), constraints.end(), planar) &&
          std::any_of(constraints.begin(), constraints.end(), other);
+}
+
+// Ratio of masses above which sweeps would need as many sweeps, heavy bodies on light ones: few contacts are
+// left to exact solvers.
+constexpr double uneven_masses = 1e3;
+
+bool has_uneven_masses(const ResponseFactors& factors) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (std::size_t slot = 0; slot < factors.slots(); ++slot) {
+    const double inverse = factors.inverse_mass[ResponseFactors::columns * slot];
+    if (inverse == 0.0) continue;  // immovable
+    least = std::min(least, inverse);
+    most = std::max(most, inverse);
+  }
+  return most > uneven_masses * least;
+}
+
+/// W in full after all: bodies do not answer for themselves, or sweeps would be of no use. The sets stay.
+/// \param sets scratch
+void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
+  sets.assign(problem.sets().begin(), problem.sets().end());
+  problem.reset(problem.rows());
+  std::copy(sets.begin(), sets.end(), problem.sets().begin());
+  problem.group();
+}
+
+/// b of a problem in factors. \param given part of it without velocities of bodies at the end
+/// \param scratch velocities of slots
+void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
+                                std::span<const Delassus::Slot> slots, const double* velocity_free,
+                                std::span<const double> given, std::vector<double>& scratch,
+                                ContactProblem& problem) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  scratch.assign(columns * slots.size(), 0.0);
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+    const Constraint::Block& block = slots[slot].block;
+    std::copy_n(velocity_free + block.v, block.columns, scratch.data() + columns * slot);
+  }
+  const auto b = problem.vector();
+  for (std::size_t row = 0; row < b.size(); ++row) {
+    b[row] = problem.factors().along(row, scratch) + given[row];
+    if (problem.diagonal(static_cast<int>(row)) > 0.0) continue;
+    b[row] = along_held_row(*directions[row].constraint, directions[row].row, velocity_free, b[row]);
+  }
 }
 
 }  // namespace
@@ -56,7 +111,8 @@ void IslandProblem::build_any(const double* velocity_before) {
   }
   const auto count = static_cast<std::size_t>(rows);
   // A large W is not to be made before it is known whether anybody needs it.
-  const bool factored = may_be_factored(constraints, factors_from_);
+  const bool many = constraints.size() >= factors_.begin && constraints.size() <= factors_.end;
+  const bool factored = many && !constraints.empty() && fit_factors(constraints);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
@@ -67,7 +123,11 @@ void IslandProblem::build_any(const double* velocity_before) {
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     for (int i = 0; i < constraints[c].rows; ++i, ++row) {
       directions_.push_back({&constraints[c], i});
-      set_row(c, i);
+      if (constraints[c].has_dry_friction()) {
+        update_bound(c);
+      } else {
+        set_contact_row(constraints[c], first_row_[c], i, problem_.sets()[row]);
+      }
       before_[row] = constraints[c].velocity(i, velocity_before);
       restitution_[row] = constraints[c].restitution(i);
       if (!factored) continue;
@@ -92,24 +152,14 @@ void IslandProblem::take_one_planar(const Constraint& contact, const double* vel
   }
 }
 
-/// The set that impulses along a row lie in.
-void IslandProblem::set_row(std::size_t constraint, int row) {
-  const Constraint& at = constraints_[constraint];
-  if (at.has_dry_friction()) return update_bound(constraint);
-  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + row)];
-  if (row == 0) {
-    set.kind = SetKind::half_line;
-    return;
-  }
-  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
-  set.bound = first_row_[constraint];
-  set.coefficient = at.friction;
-}
-
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
-    if (delassus_.build_factors(directions_, response, problem_)) return problem_.group();
-    make_dense();
+    const bool few = constraints_.size() <= LargeProblemSolver::most_exact;
+    if (delassus_.build_factors(directions_, response, problem_) &&
+        !(few && has_uneven_masses(problem_.factors()))) {
+      return problem_.group();
+    }
+    make_dense(sets_, problem_);
   }
   delassus_.build(directions_, response);
   delassus_.write_symmetric(problem_.matrix().data());
@@ -136,31 +186,6 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
   problem_.group();
 }
 
-/// W in full after all: its bodies do not answer for themselves.
-void IslandProblem::make_dense() {
-  const std::vector<RowSet> sets(problem_.sets().begin(), problem_.sets().end());
-  problem_.reset(problem_.rows());
-  std::copy(sets.begin(), sets.end(), problem_.sets().begin());
-  problem_.group();
-}
-
-/// The same of a problem in factors, from the velocities of its slots.
-void IslandProblem::set_free_velocity_of_slots(const double* velocity_free) {
-  constexpr std::size_t columns = ResponseFactors::columns;
-  const std::span<const Delassus::Slot> slots = delassus_.slots();
-  slot_velocity_.assign(columns * slots.size(), 0.0);
-  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    const Constraint::Block& block = slots[slot].block;
-    std::copy_n(velocity_free + block.v, block.columns, slot_velocity_.data() + columns * slot);
-  }
-  const auto b = problem_.vector();
-  for (std::size_t row = 0; row < before_.size(); ++row) {
-    b[row] = problem_.factors().along(row, slot_velocity_) + given_[row];
-    if (problem_.diagonal(static_cast<int>(row)) > 0.0) continue;
-    b[row] = along_held_row(*directions_[row].constraint, directions_[row].row, velocity_free, b[row]);
-  }
-}
-
 void IslandProblem::add_velocities(double* velocity) {
   if (!problem_.is_factored()) return map().add_velocities(velocity);
   problem_.factors().respond(answer_.impulse, slot_velocity_);
@@ -172,7 +197,10 @@ void IslandProblem::add_velocities(double* velocity) {
 }
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
-  if (problem_.is_factored()) return set_free_velocity_of_slots(velocity_free);
+  if (problem_.is_factored()) {
+    return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, given_, slot_velocity_,
+                                      problem_);
+  }
   const auto b = problem_.vector();
   std::size_t row = 0;
   for (const Constraint& constraint : constraints_) {

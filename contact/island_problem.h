@@ -34,7 +34,10 @@ public:
   /// Lets W stay in factors, and sweeps solve it (nonlinear_cg_solver.h), from so many constraints on, where
   /// these belong to several bodies of the plane that answer for themselves. Never, unless this was called:
   /// answers are only as exact then as the budget of the sweeps says.
-  void allow_factors(std::size_t constraints = factored_constraints) { factors_from_ = constraints; }
+  /// \param most constraints up to which it may
+  void allow_factors(std::size_t constraints = factored_constraints, std::size_t most = no_limit) {
+    factors_ = {constraints, most};
+  }
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
   /// forgotten; respond() is to be called next.
   void build(std::span<const Constraint> constraints, const double* velocity_before);
@@ -106,16 +109,20 @@ public:
 private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
-  void set_row(std::size_t constraint, int row);
-  void make_dense();
-  void set_free_velocity_of_slots(const double* velocity_free);
+
+  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+  // Constraints from which on, and up to which, W may be left in factors.
+  struct Allowed {
+    std::size_t begin = no_limit, end = no_limit;
+  };
 
   // Solver of impacts by another law.
   struct ImpactChoice {
     ImpactSolver* solver = nullptr;
     ImpactLaw law = ImpactLaw::newton;
   };
-  std::size_t factors_from_ = std::numeric_limits<std::size_t>::max();
+
+  Allowed factors_;
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
   Delassus delassus_;
@@ -123,6 +130,7 @@ private:
   ContactSolution answer_;
   ImpactChoice impact_;
   std::vector<int> first_row_;
+  std::vector<RowSet> sets_;    // while W is made in full
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
   std::vector<double> before_, restitution_, xi_, slot_velocity_;
   std::vector<double> given_;  // of a problem in factors: part of b without velocities of bodies at the end

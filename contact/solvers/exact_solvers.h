@@ -29,8 +29,8 @@ struct ExactAttempt {
   int applicable = 0;                        ///< solvers that could be tried
 };
 
-/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; up to three by
-/// enumeration of the modes when all else failed. Reuse it: its memory is kept.
+/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; up to three
+/// by enumeration of the modes when all else failed. Reuse it: its memory is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.

@@ -4,9 +4,17 @@
 
 #include <carom/contact/solvers/contact_mode.h>
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 namespace carom {
+
+namespace {
+
+// A residual below which nothing is left to gain.
+constexpr double round_off = 1e-16;
+
+}  // namespace
 
 void LargeProblemSolver::set_budget(const SweepBudget& budget) {
   if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
@@ -28,7 +36,7 @@ Outcome LargeProblemSolver::judged(double residual) const {
 
 /// Modes that sweeps found are right, or nearly: Newton steps solve them, on W in full.
 void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double> impulse) {
-  constexpr int steps = 10;
+  constexpr int steps = 4;
   dense_.reset(problem.rows());
   for (int row = 0; row < problem.rows(); ++row) {
     for (int column = 0; column <= row; ++column) {
@@ -40,7 +48,12 @@ void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double>
   std::copy(problem.vector().begin(), problem.vector().end(), dense_.vector().begin());
   std::copy(problem.sets().begin(), problem.sets().end(), dense_.sets().begin());
   dense_.group();
-  static_cast<void>(polish_.improve(dense_, impulse, steps));
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < steps; ++step) {
+    const double found = polish_.improve(dense_, impulse, 1).value;
+    if (found <= round_off || !(found <= 0.5 * before)) return;  // more steps only move noise
+    before = found;
+  }
 }
 
 void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
@@ -49,22 +62,22 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   const std::size_t contacts = problem.groups().size();
   report.solver = solver_names[id];
   report.tried = 1u << id;
+  const bool is_small = contacts <= most_exact;
   Residual found = judge(problem, impulse, xi);
-  if (judged(found.value) != Outcome::solved) {
+  if (!(found.value <= budget_.residual)) {
     SweepBudget budget = budget_;
     // Sweeps over few contacts cost less than anything else: all that there are.
-    if (contacts <= most_exact) budget.accepted = std::min(budget.accepted, budget.residual);
+    if (is_small) budget.accepted = std::min(budget.accepted, budget.residual);
     sweeps_.set_budget(budget);
     const SolverAnswer answer = sweeps_.improve(problem, impulse);
     report.iterations = answer.iterations;
     report.reason = answer.reason;
     found = judge(problem, impulse, xi);
-    const Outcome outcome = judged(found.value);
-    if (outcome != Outcome::solved &&
-        (contacts <= most_exact || (outcome == Outcome::not_solved && contacts <= most_polished))) {
-      polish(problem, impulse);
-      found = judge(problem, impulse, xi);
-    }
+  }
+  const bool is_refused = judged(found.value) == Outcome::not_solved;
+  if (is_small ? !(found.value <= round_off) : is_refused && contacts <= most_polished) {
+    polish(problem, impulse);
+    found = judge(problem, impulse, xi);
   }
   report.residual = found.value;
   report.worst_group = found.group;

@@ -17,8 +17,8 @@
 namespace carom {
 
 /// Judges the impulses that it is given, asks for sweeps where they are no answer, and judges again, by the
-/// residual of residual.h on the problem itself. Of a small problem sweeps that end above the residual of the
-/// budget are polished: the modes that they found are solved exactly.
+/// residual of residual.h on the problem itself. The modes that sweeps over a small problem find are solved
+/// exactly (newton_polish.h), as the forces of a stack are far less certain than its residual.
 class LargeProblemSolver {
 public:
   /// Contacts up to which exact solvers are asked where sweeps do not end: W in full, a few milliseconds.

@@ -90,12 +90,12 @@ void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<doub
   if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
 }
 
-// Likewise; a small one exactly where sweeps do not end.
+// Likewise; a small one by the exact solvers where the modes of the sweeps are not those of the answer.
 void SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
                                             ContactReport& report) {
   sweep(problem, impulse, report);
   ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
-  if (report.outcome != Outcome::solved && large.has_dense(problem)) {
+  if (!(report.residual <= accepted_residual) && large.has_dense(problem)) {
     const double swept = report.residual;
     exact.solve(large.dense(), modes, attempt);
     // No solver has a better answer than the sweeps.

@@ -57,9 +57,9 @@ private:
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
   std::vector<Constraint> constraints_, again_;
-  std::vector<Constraint> single_;      // those that join no components
-  std::vector<JoinedNodes> joined_;     // components of all constraints, before they are written
-  std::vector<Index> sources_;          // of the same: place among those of two bodies, or behind them in single_
+  std::vector<Constraint> single_;   // those that join no components
+  std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written
+  std::vector<Index> sources_;  // of the same: place among those of two bodies, or behind them in single_
   StepIslands islands_;
 };
 
