@@ -30,6 +30,19 @@ void Accumulation::take(const Accumulation& other) {
   }
 }
 
+double Accumulation::end(double time, std::span<const Constraint> closing) const {
+  const double of_all = end(time);
+  if (!std::isnan(of_all)) return of_all;
+  Accumulation related;
+  for (const Impact& impact : impacts_) {
+    const bool closes = std::any_of(closing.begin(), closing.end(), [&](const Constraint& constraint) {
+      return constraint.key == impact.contact;
+    });
+    if (closes) related.impacts_.push_back(impact);
+  }
+  return related.end(time);
+}
+
 /// Where the pattern of contacts repeats (by one to four impacts) and its intervals shrink in a constant
 /// ratio r, the sum of all that would follow the last interval D is D r/(1 - r).
 double Accumulation::end(double time) const {

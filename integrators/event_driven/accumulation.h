@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -23,6 +24,9 @@ public:
   /// Time at which infinitely many impacts would have ended [s], by the times up to an impact that is not
   /// remembered yet; NaN where the intervals do not shrink in a constant ratio.
   [[nodiscard]] double end(double time) const;
+  /// Likewise where impacts of other contacts may have come in between, which had nothing to do with these:
+  /// of all impacts, or else of those of the constraints that close.
+  [[nodiscard]] double end(double time, std::span<const Constraint> closing) const;
 
 private:
   struct Impact {
@@ -30,7 +34,7 @@ private:
     ConstraintKey contact;
     friend bool operator==(const Impact&, const Impact&) = default;
   };
-  static constexpr std::size_t remembered = 16;
+  static constexpr std::size_t remembered = 32;
   std::vector<Impact> impacts_;  // in time
 };
 

@@ -1,6 +1,7 @@
 // Problem: where can the bodies of a group be before its horizon?
 
 #include <carom/integrators/event_driven/body_flights.h>
+#include <carom/integrators/event_driven/joinable_group.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,7 @@ void BodyFlights::start(const State& state, double extra) {
 double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end) {
   const SmoothMotion& motion = group.motion();
   const bool is_free = motion.flies_freely();
-  group.sample(time, false, now);
+  JoinableGroup(group).sample(time, false, now);
   const auto for_flights = [&](auto&& f) {
     for (const MotionUnknowns::Part& part : motion.model().parts()) {
       for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
@@ -89,11 +90,11 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
     flight.is_free = is_free;
     flight.speed = 0.0;
   });
-  const double due = group.due();
+  const double due = JoinableGroup(group).due();
   double horizon = due;
   if (due < never) {
     if (!is_free) {
-      group.sample(due, false, end);
+      JoinableGroup(group).sample(due, false, end);
       for_flights([&](Index body, BodyFlight& flight) {
         constexpr double unseen = 2.0;
         const Index v = assembly_->layout()->bodies()[body].v;

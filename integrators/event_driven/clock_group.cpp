@@ -2,6 +2,7 @@
 
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/integrators/event_driven/clock_group.h>
+#include <carom/integrators/event_driven/joinable_group.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +85,7 @@ void ClockGroup::resolve_event(EventBalance& balance) {
     at.update();           // and loads may depend on velocities
   }
   modes_.select(at);
-  phase_ = {is_connected() ? start_flow(at) : Phase::parted};
+  phase_ = {JoinableGroup(*this).is_connected() ? start_flow(at) : Phase::parted};
   unbounded_.clear();
 }
 

@@ -28,7 +28,6 @@
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/step_report.h>
 
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,49 +61,23 @@ public:
   /// Reaction of a joint of the group at the time last advanced to.
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
 
-  // Beside other groups that it may meet (GroupMeetings):
   /// True if its event is not resolved yet.
   [[nodiscard]] bool is_at_event() const { return phase_.kind == Phase::at_event; }
-  /// True if it is at forces without bound: a matter of its own.
-  [[nodiscard]] bool has_unbounded_force() const { return phase_.event.guard == Guard::painleve; }
-  /// Takes a state to be looked at by sample(), before start().
-  void place(const State& state);
-  /// Makes a step ahead, if it stands where modes are decided and moves. \param target that is asked for [s]
-  void go_ahead(double target);
-  /// Time at which something is to be done: the end of the step ahead, or its event; infinity at rest [s].
-  [[nodiscard]] double due();
-  /// Goes on to that time: to an event that is to be resolved then, or to the end of the step.
-  void reach_due(EventBalance& balance);
-  /// Notes what ends at its event, before others are joined to it.
-  void arrive(EventBalance& balance);
-  /// Resolves its event: impacts, modes. False if nothing lasting connects its components any more; they are
-  /// to go on as other groups then, by part().
-  [[nodiscard]] bool resolve(EventBalance& balance);
-  /// Becomes the motion of some groups, which end there, at a time within the steps of all. Their bodies
-  /// touch: that is an event. \param state memory \param output time of the last good state [s]
-  void join(std::span<ClockGroup* const> groups, double time, double output, State& state,
-            EventBalance& balance);
-  /// Becomes the motion of some components of a group whose resolve() was false.
-  void part(const ClockGroup& from, State& state, EventBalance& balance);
-  /// Writes the output state: the present one, or one within the last step.
-  void output(double target, EventBalance& balance);
-  /// The motion at a time of the step ahead, by interpolation, or at rest; `landed`: as accurate as steps.
-  void sample(double time, bool landed, MotionSample& out);
   /// The motion.
   [[nodiscard]] const SmoothMotion& motion() const { return motion_; }
 
 private:
+  friend class JoinableGroup;  // the same motion, beside others
+
   void resolve_event(EventBalance& balance);
   void arrive_at(const Event& event, EventInstant& at);
-  [[nodiscard]] bool is_connected() const;
-  void book_end(EventBalance& balance);
-  void end(double time, State& state, EventBalance& balance);
   void record_event(const Event& event, EventBalance& balance);
   [[nodiscard]] Phase::Kind start_flow(EventInstant& at);
   [[nodiscard]] bool is_at_rest(MotionSample& now);
   void make_step();
   void land(const Event& event);
   void accept_step(EventBalance& balance);
+  void output(double target, EventBalance& balance);
   void close_known_contacts(const ContactModes& present);
 
   GroupMemory* memory_;

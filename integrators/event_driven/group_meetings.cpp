@@ -2,6 +2,7 @@
 
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/group_meetings.h>
+#include <carom/integrators/event_driven/joinable_group.h>
 
 #include <algorithm>
 #include <limits>
@@ -33,7 +34,7 @@ void GroupMeetings::regroup(const State& state) {
   groups_->part_all();
   memory_->motion.limit.restart();
   flights_.start(state, near());
-  groups_->for_each([&](ClockGroup& group) { group.place(state); });
+  groups_->for_each([&](ClockGroup& group) { JoinableGroup(group).place(state); });
   const auto count = static_cast<Index>(assembly_->components().size());
   std::vector<char> is_taken(count, 0);
   std::vector<std::vector<Index>> groups;
@@ -62,7 +63,7 @@ void GroupMeetings::advance(double to, EventBalance& balance) {
   target_ = to;
   Appointment at;
   while (queue_.take(to, at)) keep(at, balance);
-  groups_->for_each([&](ClockGroup& group) { group.output(to, balance); });
+  groups_->for_each([&](ClockGroup& group) { JoinableGroup(group).output(to, balance); });
 }
 
 void GroupMeetings::keep(const Appointment& at, EventBalance& balance) {
@@ -78,12 +79,12 @@ void GroupMeetings::keep(const Appointment& at, EventBalance& balance) {
   }
   if (group.is_at_event()) return resolve(group, balance);
   list_.assign(1, &group);
-  if (at.time < group.due()) return go_on(at.time);
-  group.reach_due(balance);
+  if (at.time < JoinableGroup(group).due()) return go_on(at.time);
+  JoinableGroup(group).reach_due(balance);
   if (!group.is_at_event()) return go_on(at.time);
-  if (!group.has_unbounded_force()) search_.add_near(at.time, near(), list_);
+  if (!JoinableGroup(group).has_unbounded_force()) search_.add_near(at.time, near(), list_);
   if (list_.size() == 1) return resolve(group, balance);
-  group.arrive(balance);
+  JoinableGroup(group).arrive(balance);
   resolve(join(at.time, balance), balance);
 }
 
@@ -98,13 +99,13 @@ ClockGroup& GroupMeetings::join(double time, EventBalance& balance) {
   }
   std::sort(components.begin(), components.end());
   std::unique_ptr<ClockGroup> joined = groups_->make(components);
-  joined->join(list_, time, from_, joined_, balance);
+  JoinableGroup(*joined).join(list_, time, from_, joined_, balance);
   return groups_->put(std::move(joined));
 }
 
 /// Resolves the event of a group; it goes on, or its parts do.
 void GroupMeetings::resolve(ClockGroup& group, EventBalance& balance) {
-  const bool whole = group.resolve(balance);
+  const bool whole = JoinableGroup(group).resolve(balance);
   for (const MotionUnknowns::Part& part : group.motion().model().parts()) queue_.change(part.component);
   const double time = group.now();
   list_.assign(1, &group);
@@ -127,7 +128,7 @@ void GroupMeetings::part(ClockGroup& group, EventBalance& balance) {
     if (i + 1 < by_set.size() && by_set[i + 1].first == by_set[i].first) continue;
     ClockGroup& fresh = components.size() == 1 ? groups_->put_alone(components.front())
                                                : groups_->put(groups_->make(components));
-    fresh.part(*last, joined_, balance);
+    JoinableGroup(fresh).part(*last, joined_, balance);
     list_.push_back(&fresh);
     components.clear();
   }
@@ -137,7 +138,7 @@ void GroupMeetings::part(ClockGroup& group, EventBalance& balance) {
 /// their horizons.
 void GroupMeetings::go_on(double time) {
   for (ClockGroup* const group : list_) {
-    group->go_ahead(target_);
+    JoinableGroup(*group).go_ahead(target_);
     static_cast<void>(flights_.follow(*group, time, now_, end_));
   }
   for (ClockGroup* const group : list_) {

@@ -1,5 +1,6 @@
 // Problem: no meeting of two groups is missed, although each has its own steps.
 
+#include <carom/integrators/event_driven/joinable_group.h>
 #include <carom/integrators/event_driven/meeting_search.h>
 
 #include <algorithm>
@@ -48,8 +49,8 @@ public:
       : a_(&a), b_(&b), landed_(landed), out_(&out) {}
 
   [[nodiscard]] const MotionSample& sample(double time) override {
-    a_->sample(time, landed_, *out_);
-    b_->sample(time, landed_, *out_);
+    JoinableGroup(*a_).sample(time, landed_, *out_);
+    JoinableGroup(*b_).sample(time, landed_, *out_);
     return *out_;
   }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <vector>
 
 namespace {
 
@@ -42,6 +43,23 @@ TEST(Accumulation, PatternsOfSeveralContacts) {
   for (const auto& contacts : {std::initializer_list<Index>{0, 1}, {0, 1, 2}, {0, 1, 0, 2}}) {
     EXPECT_NEAR(rounds(6, ratio, contacts).end(1.0 - std::pow(ratio, 7)), 1.0, 1e-12) << contacts.size();
   }
+}
+
+TEST(Accumulation, UnrelatedImpactsInBetween) {
+  const double ratio = 0.5;
+  Accumulation impacts;
+  for (int k = 1; k <= 6; ++k) {
+    impacts.remember(1.0 - std::pow(ratio, k), contact(0));
+    // Of another contact, at times that follow no rule.
+    for (int i = 0; i < k % 3; ++i) impacts.remember(1.0 - (0.9 - 0.1 * i) * std::pow(ratio, k), contact(1));
+  }
+  std::vector<Constraint> closing(1);
+  closing.front().key = contact(0);
+  const double now = 1.0 - std::pow(ratio, 7);
+  EXPECT_TRUE(std::isnan(impacts.end(now)));
+  EXPECT_NEAR(impacts.end(now, closing), 1.0, 1e-12);
+  closing.front().key = contact(1);
+  EXPECT_TRUE(std::isnan(impacts.end(now, closing)));
 }
 
 TEST(Accumulation, NoEndIsKnown) {

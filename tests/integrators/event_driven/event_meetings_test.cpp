@@ -1,0 +1,147 @@
+// Clock groups that are joined where bodies meet and part again: bullets, the start of a pile, determinism,
+// and runs that fail.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/integrators/event_run.h"
+#include "tests/integrators/same_run.h"
+#include "tests/random.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace {
+
+using namespace body_scenes;
+using namespace carom_test;
+
+/// Time at which a disc meets a wall of another body, of the first impact of the two.
+double first_hit(const Simulation& simulation) {
+  for (const EventRecord& event : simulation.events()) {
+    if (event.kind == EventKind::impact && event.other.valid()) return event.time;
+  }
+  return -1.0;
+}
+
+// A wall 1 mm thick that stands free, and a ball that would cross it in 1e-7 s.
+TEST(EventMeetings, ABulletHitsAThinWall) {
+  for (const double speed : {1e2, 1e4, 1e6}) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+    const BodyId bullet = add_disc(system, 0.01, 0.005, {-7.0, 0.1}, {speed, 0.0});
+    const BodyId wall = add_box(system, 100.0, 0.001, 2.0, {3.0, 0.0});
+    Simulation simulation(system, EventDriven{});
+    simulation.run_until(20.0 / speed);
+    const double way = 10.0 - 0.005 - 0.0005;
+    EXPECT_NEAR(first_hit(simulation), way / speed, 1e-12 * way / speed + 1e-12 / speed) << speed;
+    EXPECT_LT(simulation.state().velocity(bullet)[0], 0.0);
+    EXPECT_GT(simulation.state().velocity(wall)[0], 0.0);
+    EXPECT_EQ(simulation.statistics().impacts, 1);
+  }
+}
+
+// Two of them head on, and a capsule that turns, under gravity.
+TEST(EventMeetings, BulletsHitEachOtherAndACapsule) {
+  System system;
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+  system.add(Gravity{{0.0, -g}});
+  const BodyId left = add_disc(system, 0.01, 0.005, {-7.0, 1.0}, {1e4, 0.0});
+  const BodyId right = add_disc(system, 0.01, 0.005, {7.0, 1.0}, {-1e4, 0.0});
+  const BodyId thrown = add_disc(system, 0.01, 0.005, {-20.0, -1.0}, {1e4, 0.0});
+  const BodyId bar =
+      system.add(RigidBody{.mass = box(1.0, 0.002, 1.0), .position = {5.0, -1.0}, .spin = 3.0});
+  system.add(Segment{.body = bar, .from = {0.0, -0.5}, .to = {0.0, 0.5}, .radius = 0.001});
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(0.01);
+  EXPECT_LT(simulation.state().velocity(left)[0], 0.0);
+  EXPECT_GT(simulation.state().velocity(right)[0], 0.0);
+  EXPECT_LT(simulation.state().velocity(thrown)[0], 1e4);
+  EXPECT_GT(simulation.state().velocity(bar)[0], 0.0);
+  EXPECT_EQ(simulation.statistics().impacts, 2);
+}
+
+System poured(int count, double friction, double restitution) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = friction, .normal_restitution = restitution});
+  Random random(8);
+  for (int i = 0; i < count; ++i) {
+    const double dx = random.uniform(-0.05, 0.05);
+    const double spin = random.uniform(-1.0, 1.0);
+    add_disc(system, 1.0, 0.1, {0.3 * (i % 3 - 1) + dx, 1.0 + 0.3 * (i / 3)}, Vec<2>::Zero(), spin);
+  }
+  system.add(HalfPlane{.normal = Vec<2>(1.0, 1.0).normalized()});
+  system.add(HalfPlane{.normal = Vec<2>(-1.0, 1.0).normalized()});
+  return system;
+}
+
+// Discs poured into a V: they fall, meet, accumulate impacts and come to rest on each other. Groups are
+// joined and part all the time; the ledger closes, and what is at rest stays.
+TEST(EventMeetings, DiscsPouredIntoAVComeToRest) {
+  const System system = poured(20, 0.5, 0.3);
+  Simulation simulation(system, EventDriven{.interval = 0.05, .record_events = false});
+  LedgerWatch ledger(simulation, 20.0);
+  simulation.run_until(8.0);
+  EXPECT_TRUE(ledger.closes());
+  EXPECT_LT(simulation.energy().kinetic(), 1e-12);
+  double overlap = 0.0;
+  std::vector<Vec<2>> x;
+  for (const BodyId body : system.bodies()) x.push_back(simulation.state().position(body));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) overlap = std::max(overlap, 0.2 - (x[i] - x[j]).norm());
+    overlap = std::max(overlap, 0.1 - (x[i][1] - std::abs(x[i][0])) / std::sqrt(2.0));
+  }
+  EXPECT_LT(overlap, 1e-9);
+}
+
+TEST(EventMeetings, TheSameBitsWhateverRanBefore) {
+  const System system = poured(9, 0.3, 0.5);
+  const EventDriven mode{.interval = 0.05};
+  Simulation first(system, mode), other(poured(12, 0.2, 0.2), mode);
+  first.run_until(1.2);
+  other.run_until(0.7);
+  Simulation second(system, mode);
+  second.run_until(1.2);
+  EXPECT_EQ(bits_of(first), bits_of(second));
+}
+
+// From any state the same motion follows within the tolerance: groups start anew there.
+TEST(EventMeetings, ARunGoesOnFromAStateOfItself) {
+  const System system = poured(6, 0.3, 0.5);
+  Simulation whole(system, tight()), parted(system, tight());
+  parted.run_until(0.3);
+  parted.edit([](System&) {});
+  whole.run_until(0.5);
+  parted.run_until(0.5);
+  for (const BodyId body : system.bodies()) {
+    const Vec<2> difference = whole.state().position(body) - parted.state().position(body);
+    EXPECT_LT(difference.norm(), 1e-8);
+  }
+}
+
+// A run that is stopped amid meetings stays at its last good state, and goes on from there.
+TEST(EventMeetings, AFailedStepChangesNothing) {
+  const System system = poured(9, 0.3, 0.5);
+  Simulation whole(system, tight()), failing(system, tight());
+  whole.run_until(0.4);
+  failing.run_until(0.2);
+  const std::vector<std::uint64_t> before = bits_of(failing);
+  for (const int evaluations : {10, 300, 1000}) {
+    int left = evaluations;
+    failing.stop_when([&left] { return --left < 0; });
+    EXPECT_THROW(failing.run_until(0.4), Cancelled);
+    EXPECT_EQ(bits_of(failing), before) << evaluations;
+  }
+  failing.stop_when({});
+  failing.run_until(0.4);
+  for (const BodyId body : system.bodies()) {
+    EXPECT_LT((whole.state().position(body) - failing.state().position(body)).norm(), 1e-8);
+  }
+}
+
+}  // namespace
