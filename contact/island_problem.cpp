@@ -28,10 +28,20 @@ bool is_one_planar_contact(const ContactProblem& problem) {
 bool may_be_factored(std::span<const Constraint> constraints, std::size_t from) {
   if (constraints.size() < from || constraints.empty()) return false;
   const Index first = constraints.front().body();
-  const auto planar = [](const Constraint& at) { return at.rows <= 2; };
+  const auto planar = [](const Constraint& at) { return at.rows <= 2 && at.type != ConstraintType::rolling; };
   const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
   return std::all_of(constraints.begin(), constraints.end(), planar) &&
          std::any_of(constraints.begin(), constraints.end(), other);
+}
+
+/// Modes by constraint: those of the groups, which rolling resistance shares with its contact.
+void share_modes(std::span<const Constraint> constraints, std::span<const ContactMode> of_groups,
+                 std::vector<ContactMode>& modes) {
+  std::size_t group = 0;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const bool rolling = constraints[c].type == ConstraintType::rolling;
+    modes[c] = rolling ? modes[c - 1] : of_groups[group++];
+  }
 }
 
 }  // namespace
@@ -49,6 +59,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   const std::span<const Constraint> constraints = constraints_;
   directions_.clear();
   first_row_.clear();
+  modes_.clear();
   int rows = 0;
   for (const Constraint& constraint : constraints) {
     first_row_.push_back(rows);
@@ -89,8 +100,15 @@ void IslandProblem::take_one_planar(const Constraint& contact, const double* vel
 /// The set that impulses along a row lie in.
 void IslandProblem::set_row(std::size_t constraint, int row) {
   const Constraint& at = constraints_[constraint];
-  if (at.has_dry_friction()) return update_bound(constraint);
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + row)];
+  if (at.type == ConstraintType::rolling) {
+    // Behind the rows of its contact, whose normal row bounds it.
+    set.kind = SetKind::bounded_interval;
+    set.bound = first_row_[constraint - 1];
+    set.coefficient = at.friction;
+    return modes_.assign(constraints_.size(), ContactMode::open);
+  }
+  if (at.has_dry_friction()) return update_bound(constraint);
   if (row == 0) {
     set.kind = SetKind::half_line;
     return;
@@ -112,6 +130,7 @@ void IslandProblem::respond(BodyResponse& response) {
 
 void IslandProblem::update_bound(std::size_t constraint) {
   const Constraint& at = constraints_[constraint];
+  if (at.type == ConstraintType::rolling) return;
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
   const double slides = slides_[constraint] * at.friction_bound, bound = at.friction * at.friction_bound;
   set.kind = SetKind::interval;
@@ -165,9 +184,10 @@ void IslandProblem::set_velocity(const double* velocity) {
 const ContactReport& IslandProblem::solve(SolverChain& chain) {
   if (impact_.solver != nullptr) {
     impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
-    return answer_.report;
+  } else {
+    chain.solve(problem_, answer_);
   }
-  chain.solve(problem_, answer_);
+  if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;
 }
 
@@ -182,6 +202,7 @@ void IslandProblem::set_impulses(std::span<const double> impulses) {
   for (std::size_t group = 0; group < answer_.modes.size(); ++group) {
     answer_.modes[group] = contact_mode(problem_, problem_.groups()[group], answer_.impulse, xi_);
   }
+  if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
 }
 
 void IslandProblem::forget_impulses() { std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0); }

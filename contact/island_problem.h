@@ -71,7 +71,9 @@ public:
   /// Impulses of all rows [N s].
   [[nodiscard]] std::span<const double> impulses() const { return answer_.impulse; }
   /// Modes of the constraints.
-  [[nodiscard]] std::span<const ContactMode> modes() const { return answer_.modes; }
+  [[nodiscard]] std::span<const ContactMode> modes() const {
+    return modes_.empty() ? answer_.modes : std::span<const ContactMode>(modes_);
+  }
   /// True if the last answer has other modes than the one before it since build().
   [[nodiscard]] bool changed_modes() const { return answer_.changed_modes; }
   /// Report of the last answer.
@@ -100,6 +102,7 @@ private:
   ContactProblem problem_;
   ContactSolution answer_;
   ImpactChoice impact_;
+  std::vector<ContactMode> modes_;  // by constraint; empty where none is rolling resistance
   std::vector<int> first_row_;
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
   std::vector<double> before_, restitution_, xi_, slot_velocity_;

@@ -42,6 +42,8 @@ public:
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
   /// True if some law of impact is not Newton's.
   [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
+  /// True if some law has rolling resistance.
+  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
   /// The outlines.
@@ -74,6 +76,7 @@ private:
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
   bool has_static_friction_ = false;
   bool has_other_impact_law_ = false;
+  bool resists_rolling_ = false;
 };
 
 }  // namespace carom

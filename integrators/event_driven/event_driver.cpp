@@ -85,6 +85,12 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
+  if (resists_rolling(detector_)) {
+    throw ModelError(
+        "event-driven mode: rolling_resistance of a contact is > 0; allowed: 0 in all laws of contact, or "
+        "the "
+        "time-stepping mode");
+  }
   for (const GroupComponents& components : find_groups(assembly, detector_)) {
     const auto group = static_cast<Index>(groups_.size());
     for (const Index component : components.components) group_of_[component] = group;
@@ -239,6 +245,10 @@ void EventDriver::report_contacts(StepReport& report) const {
     const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = limit ? 1 : assembly_->layout()->dimension();
     static_cast<ImpactNote&>(entry) = event;
+    entry.time = event.time;
+    entry.point = event.point;
+    entry.normal = event.normal;
+    entry.gap = event.gap;
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;

@@ -1,6 +1,7 @@
 // Problem: which constraints take part in a step, and which components they join.
 
 #include <carom/contact/impact_restitution.h>
+#include <carom/contact/rolling_resistance.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -68,6 +69,19 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   take_sticking(found);
   // Friction in joints comes last.
   if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
+  if (resists_rolling(detector_)) add_rolling(first, out);
+}
+
+/// Rolling resistance behind each contact that has some, of the constraints from `first` on.
+void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& out) {
+  with_rolling_.assign(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first));
+  for (std::size_t i = first; i < out.size(); ++i) {
+    with_rolling_.push_back(out[i]);
+    if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
+      with_rolling_.push_back(rolling_resistance(out[i]));
+    }
+  }
+  out.swap(with_rolling_);
 }
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
@@ -85,6 +99,7 @@ void StepConstraints::find_between(const StepInput& in, const StepTrial& trial) 
   detector_.bodies().find(query(in, trial), search_, between_);
   if (between_.empty()) return;
   take_sticking(between_);
+  if (resists_rolling(detector_)) add_rolling(0, between_);
   const auto before = [&](const Constraint& a, const Constraint& b) {
     return in.assembly.component_of(a.body()) < in.assembly.component_of(b.body());
   };

@@ -13,6 +13,7 @@
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,7 @@ private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
   void find_between(const StepInput& in, const StepTrial& trial);
+  void add_rolling(std::size_t first, std::vector<Constraint>& out);
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
@@ -55,7 +57,7 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
-  std::vector<Constraint> constraints_, again_, between_;
+  std::vector<Constraint> constraints_, again_, between_, with_rolling_;
   StepIslands islands_;
 };
 
