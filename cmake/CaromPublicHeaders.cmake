@@ -79,6 +79,8 @@ set(carom_public_headers
     core/time_course.h
     core/trace_comparison.h
     integrators/callback_id.h
+    integrators/contact_forces.h
+    integrators/contact_recorder.h
     integrators/csv_recorder.h
     integrators/energy_recorder.h
     integrators/flow/flow_method.h

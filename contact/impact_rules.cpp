@@ -33,8 +33,11 @@ void keep_fastest(std::vector<Constraint>& constraints, const double* velocities
     fastest = std::max(fastest, -constraint.normal_velocity(velocities));
   }
   const double least = (1.0 - same_speed) * fastest;
+  bool kept = true;  // the contact that rolling resistance belongs to
   std::erase_if(constraints, [&](const Constraint& constraint) {
-    return !constraint.has_dry_friction() && -constraint.normal_velocity(velocities) < least;
+    if (constraint.type == ConstraintType::rolling) return !kept;
+    kept = constraint.has_dry_friction() || !(-constraint.normal_velocity(velocities) < least);
+    return !kept;
   });
 }
 

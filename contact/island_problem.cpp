@@ -39,10 +39,20 @@ void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
 /// Whether W of constraints may stay in factors: in the plane, of several bodies.
 bool fit_factors(std::span<const Constraint> constraints) {
   const Index first = constraints.front().body();
-  const auto planar = [](const Constraint& at) { return at.rows <= 2; };
+  const auto planar = [](const Constraint& at) { return at.rows <= 2 && at.type != ConstraintType::rolling; };
   const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
   return std::all_of(constraints.begin(), constraints.end(), planar) &&
          std::any_of(constraints.begin(), constraints.end(), other);
+}
+
+/// Modes by constraint: those of the groups, which rolling resistance shares with its contact.
+void share_modes(std::span<const Constraint> constraints, std::span<const ContactMode> of_groups,
+                 std::vector<ContactMode>& modes) {
+  std::size_t group = 0;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const bool rolling = constraints[c].type == ConstraintType::rolling;
+    modes[c] = rolling ? modes[c - 1] : of_groups[group++];
+  }
 }
 
 // Ratio of masses above which sweeps would need as many sweeps, heavy bodies on light ones: few contacts are
@@ -104,6 +114,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   const std::span<const Constraint> constraints = constraints_;
   directions_.clear();
   first_row_.clear();
+  modes_.clear();
   int rows = 0;
   for (const Constraint& constraint : constraints) {
     first_row_.push_back(rows);
@@ -123,7 +134,9 @@ void IslandProblem::build_any(const double* velocity_before) {
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     for (int i = 0; i < constraints[c].rows; ++i, ++row) {
       directions_.push_back({&constraints[c], i});
-      if (constraints[c].has_dry_friction()) {
+      if (constraints[c].type == ConstraintType::rolling) {
+        bound_rolling(c);
+      } else if (constraints[c].has_dry_friction()) {
         update_bound(c);
       } else {
         set_contact_row(constraints[c], first_row_[c], i, problem_.sets()[row]);
@@ -152,6 +165,15 @@ void IslandProblem::take_one_planar(const Constraint& contact, const double* vel
   }
 }
 
+/// Rolling resistance stands behind the rows of its contact, whose normal row bounds it.
+void IslandProblem::bound_rolling(std::size_t constraint) {
+  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
+  set.kind = SetKind::bounded_interval;
+  set.bound = first_row_[constraint - 1];
+  set.coefficient = constraints_[constraint].friction;
+  modes_.assign(constraints_.size(), ContactMode::open);
+}
+
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
     const bool few = constraints_.size() <= LargeProblemSolver::most_exact;
@@ -167,6 +189,7 @@ void IslandProblem::respond(BodyResponse& response) {
 
 void IslandProblem::update_bound(std::size_t constraint) {
   const Constraint& at = constraints_[constraint];
+  if (at.type == ConstraintType::rolling) return;
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
   const double slides = slides_[constraint] * at.friction_bound, bound = at.friction * at.friction_bound;
   set.kind = SetKind::interval;
@@ -234,9 +257,10 @@ void IslandProblem::set_velocity(const double* velocity) {
 const ContactReport& IslandProblem::solve(SolverChain& chain) {
   if (impact_.solver != nullptr) {
     impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
-    return answer_.report;
+  } else {
+    chain.solve(problem_, answer_);
   }
-  chain.solve(problem_, answer_);
+  if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;
 }
 
@@ -251,6 +275,7 @@ void IslandProblem::set_impulses(std::span<const double> impulses) {
   for (std::size_t group = 0; group < answer_.modes.size(); ++group) {
     answer_.modes[group] = contact_mode(problem_, problem_.groups()[group], answer_.impulse, xi_);
   }
+  if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
 }
 
 void IslandProblem::forget_impulses() { std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0); }

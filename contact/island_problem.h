@@ -76,7 +76,9 @@ public:
   /// Impulses of all rows [N s].
   [[nodiscard]] std::span<const double> impulses() const { return answer_.impulse; }
   /// Modes of the constraints.
-  [[nodiscard]] std::span<const ContactMode> modes() const { return answer_.modes; }
+  [[nodiscard]] std::span<const ContactMode> modes() const {
+    return modes_.empty() ? answer_.modes : std::span<const ContactMode>(modes_);
+  }
   /// True if the last answer has other modes than the one before it since build().
   [[nodiscard]] bool changed_modes() const { return answer_.changed_modes; }
   /// Report of the last answer.
@@ -109,6 +111,7 @@ public:
 private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
+  void bound_rolling(std::size_t constraint);
 
   static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
   // Constraints from which on, and up to which, W may be left in factors.
@@ -129,6 +132,7 @@ private:
   ContactProblem problem_;
   ContactSolution answer_;
   ImpactChoice impact_;
+  std::vector<ContactMode> modes_;  // by constraint; empty where none is rolling resistance
   std::vector<int> first_row_;
   std::vector<RowSet> sets_;    // while W is made in full
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0

@@ -51,6 +51,8 @@ run_example 05_squeezing_mechanism scripts/plot_squeezer.py
 run_example 06_slider_crank_and_stop scripts/plot_slider_crank.py
 run_example 07_pendulums_and_wall scripts/plot_pendulums.py
 run_example 08_discs_in_a_box scripts/plot_discs.py
+run_example 09_newtons_cradle scripts/plot_cradle.py
+run_example 10_rocking_block scripts/plot_rocking_block.py
 run_example 11_bars_in_a_drum scripts/plot_drum.py
 
 if $update_docs; then

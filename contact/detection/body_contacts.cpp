@@ -76,6 +76,7 @@ void BodyContacts::find_laws(const System& system) {
     for (const MaterialId b : materials) {
       laws_.push_back(system.law(a, b));
       has_static_friction_ = has_static_friction_ || (laws_.back() && laws_.back()->has_static_friction());
+      resists_rolling_ = resists_rolling_ || (laws_.back() && laws_.back()->resists_rolling());
       has_other_impact_law_ = has_other_impact_law_ || (laws_.back() && laws_.back()->has_other_impact_law());
     }
   }

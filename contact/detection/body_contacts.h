@@ -53,6 +53,12 @@ public:
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
   /// True if some law of impact is not Newton's.
   [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
+  /// True if some law has rolling resistance.
+  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
+  /// True if the law of such a contact has.
+  [[nodiscard]] bool resists_rolling(const BodyTouch& touch) const {
+    return resists_rolling_ && law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
+  }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
   /// The outlines.
@@ -95,6 +101,7 @@ private:
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
   bool has_static_friction_ = false;
   bool has_other_impact_law_ = false;
+  bool resists_rolling_ = false;
 };
 
 }  // namespace carom

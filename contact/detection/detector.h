@@ -104,8 +104,12 @@ public:
                const GroundPlaces& places, Constraint& out) const;
 
   /// True if some law of impact is not Newton's.
-  [[nodiscard]] bool has_other_impact_law() const {
-    return ground_.has_other_impact_law() || bodies_.has_other_impact_law();
+  friend bool has_other_impact_law(const Detector& of) {
+    return of.ground_.has_other_impact_law() || of.bodies_.has_other_impact_law();
+  }
+  /// True if some law has rolling resistance.
+  friend bool resists_rolling(const Detector& of) {
+    return of.ground_.resists_rolling() || of.bodies_.resists_rolling();
   }
   /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one
   /// feature of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key

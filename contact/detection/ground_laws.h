@@ -35,6 +35,8 @@ public:
   [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
   /// True if some law of impact is not Newton's.
   [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
+  /// True if some law has rolling resistance.
+  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
 
 private:
   Index shapes_;               // number of shapes
@@ -43,6 +45,7 @@ private:
   std::vector<Index> touched_;
   bool has_static_friction_ = false;
   bool has_other_impact_law_ = false;
+  bool resists_rolling_ = false;
 };
 
 }  // namespace carom

@@ -1,5 +1,6 @@
 // Problem: every impulse does its work on a line of the ledger, and is recorded.
 
+#include <carom/contact/contact_point.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/integrators/event_driven/event_balance.h>
 
@@ -149,6 +150,10 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
     }
     if (keeping.records) {
       event.motions = motions_[c];
+      const PointOfContact place = point_of_contact(contact, event.motions[0].position.data());
+      event.point = place.point;
+      event.normal = place.normal;
+      event.gap = contact.gap;
       set_after(contact, impact.velocity, assembly, event.motions);
     }
     event.energy_before = impact.energy_before;

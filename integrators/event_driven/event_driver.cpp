@@ -54,6 +54,11 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
+  if (resists_rolling(detector_)) {
+    throw ModelError(
+        "event-driven mode: rolling_resistance of a contact is > 0; allowed: 0 in all laws of contact, or the "
+        "time-stepping mode");
+  }
   if (!detector_.bodies_touch()) return;
   meetings_ = std::make_unique<GroupMeetings>(assembly, detector_, options_, memory_, groups_);
 }
@@ -207,6 +212,10 @@ void EventDriver::report_contacts(StepReport& report) const {
     const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
     entry.directions = limit ? 1 : assembly_->layout()->dimension();
     static_cast<ImpactNote&>(entry) = event;
+    entry.time = event.time;
+    entry.point = event.point;
+    entry.normal = event.normal;
+    entry.gap = event.gap;
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;

@@ -88,8 +88,10 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const Index front = island.components.front();
   JointStage* const joints = joints_of(island);
   const bool joined = parts_->joined.takes(island);
-  if (joined && std::any_of(island.constraints.begin(), island.constraints.end(),
-                            [](const Constraint& constraint) { return constraint.has_dry_friction(); })) {
+  if (joined &&
+      std::any_of(island.constraints.begin(), island.constraints.end(), [](const Constraint& constraint) {
+        return constraint.has_dry_friction() && constraint.type != ConstraintType::rolling;
+      })) {
     parts_->errors(in, front).fail_joined(island.constraints);
   }
   const bool together = method_.is_newton() || joints != nullptr || joined;

@@ -1,5 +1,6 @@
 // Problem: tell the ledger, the report and the statistics what a step did, and make the step's end the state.
 
+#include <carom/contact/contact_point.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
@@ -108,7 +109,9 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   bool impact = false;
   const std::size_t first = result_.report.contacts.size();
   for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
-    if (problem.constraints()[contact].has_dry_friction()) {
+    if (problem.constraints()[contact].type == ConstraintType::rolling) {
+      book_rolling(problem, contact, after, work);
+    } else if (problem.constraints()[contact].has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work);
     } else {
       book_contact(problem, contact, after, time, in, work, impact);
@@ -157,7 +160,10 @@ void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact
                                                                     problem.impulses().data() + first;
   ContactRecord& entry = record(problem, contact);
   entry.time = time;
-  place(at, in, entry);
+  const PointOfContact place =
+      point_of_contact(at, in.start.q.data() + assembly_->layout()->bodies()[at.body()].q);
+  entry.point = place.point;
+  entry.normal = place.normal;
   entry.impact = before[0] < -capture_speed_;
   impact = impact || entry.impact;
   double on_surface = 0.0;
@@ -177,6 +183,19 @@ void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact
     on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
   }
   result_.flows[EnergyFlow::external] += on_surface;
+}
+
+/// Rolling resistance, in the record of the contact before it.
+void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
+                               ImpulseWork& sum) {
+  const Constraint& at = problem.constraints()[contact];
+  const auto row = static_cast<std::size_t>(problem.first_row(contact));
+  const double moment = problem.impulses()[row];
+  const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
+  ContactRecord& entry = result_.report.contacts.back();
+  entry.rolling_moment = moment;
+  entry.contact_work += work;
+  result_.flows[EnergyFlow::rolling] -= work;
 }
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
@@ -244,18 +263,6 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   return entry;
 }
 
-/// Where a contact of a body touches: the lever r follows from its rows, n x r = -r.t and t x r = r.n.
-void StepBalance::place(const Constraint& at, const StepInput& in, ContactRecord& entry) const {
-  if (at.type != ConstraintType::contact) return;
-  const double* const centre = in.start.q.data() + assembly_->layout()->bodies()[at.body()].q;
-  const double *const n = at.row(0), *const t = at.row(1);
-  const bool turns = at.rows == 2 && at.blocks[0].columns == 3;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(at.rows); ++i) {
-    entry.normal[i] = n[i];
-    entry.point[i] = turns ? centre[i] + (n[2] * t[i] - t[2] * n[i]) : centre[i];
-  }
-}
-
 /// Impulses from which the next step starts.
 void StepBalance::keep_impulses(const IslandProblem& problem) {
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
@@ -292,81 +299,6 @@ StepResult& StepBalance::finish(const StepInput& in) {
                                                  in.companion.ledger.potential() + coupling_work_.value());
   if (!result_.contacts.empty()) result_.contacts.contacts.finish();
   return result_;
-}
-
-namespace {
-
-void add_to(Statistics& statistics, const StepReport& report) {
-  ++statistics.steps;
-  statistics.sweeps += report.sweeps;
-  ++statistics.steps_by_iteration[static_cast<std::size_t>(report.iteration)];
-  statistics.fallbacks += report.fallbacks;
-  statistics.most_sweeps = std::max(statistics.most_sweeps, report.sweeps);
-  statistics.largest_contraction = std::max(statistics.largest_contraction, report.contraction);
-  for (const ContactRecord& contact : report.contacts) {
-    ++statistics.contact_steps;
-    if (contact.impact) ++statistics.impacts;
-    if (contact.outcome == Outcome::several_solutions) ++statistics.several_solutions;
-    if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
-    statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
-    statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
-  }
-  if (report.energy_gain > report.lasting_gain) {
-    ++statistics.energy_gains;
-    statistics.energy_gained += report.energy_gain - report.lasting_gain;
-  }
-  if (report.lasting_gain > 0.0) {
-    ++statistics.lasting_gains;
-    statistics.lasting_gained += report.lasting_gain;
-  }
-}
-
-/// Takes the report over, and gives the room of the last one back. Findings stay: they are of the model.
-void hand_over(StepReport& made, StepReport& report) {
-  static_cast<StepNumbers&>(report) = made;
-  report.contacts.swap(made.contacts);
-  report.joint_impulses.swap(made.joint_impulses);
-}
-
-}  // namespace
-
-void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
-            Companion& companion, StepReport& report) {
-  const double step = in.step, end_time = in.end_time;
-  memory.joints->record(step, companion.joints);
-  std::swap(state.q, trial.end.q);
-  std::swap(state.v, trial.end.v);
-  std::swap(state.z, trial.end.z);
-  state.time = end_time;
-  PresentLoads& loads = companion.loads;
-  loads.valid = true;
-  loads.mean = memory.mean;
-  companion.history.step = step;
-  if (memory.guesses) {  // else no loads change
-    loads.total.swap(trial.loads_end.total);
-    loads.dissipative.swap(trial.loads_end.dissipative);
-    loads.external.swap(trial.loads_end.external);
-    // The loads at the start are kept as those to which the next step compares its own.
-    companion.history = std::move(trial.history);
-    companion.history.sweeps.assign(memory.sweeps.begin(), memory.sweeps.end());
-    companion.history.go_on(step, trial.loads_end.total.size());
-    companion.history.before.swap(trial.loads_end.total);
-    companion.iterations.swap(memory.iterations);
-  } else {
-    companion.iterations.clear();
-  }
-  std::swap(companion.rounding, trial.rounding);
-  companion.ledger.book(result.flows, result.stored);
-  if (!companion.contacts.empty() || !result.contacts.empty()) std::swap(companion.contacts, result.contacts);
-  companion.modes = result.joint_friction_modes;
-  for (const ContactRecord& contact : result.report.contacts) {
-    if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
-    companion.modes.emplace_back(contact.key, contact.mode);
-  }
-  add_to(companion.statistics, result.report);
-  companion.statistics.cut_sequences += result.cut_sequences;
-  companion.statistics.scaled_impacts += result.scaled_impacts;
-  hand_over(result.report, report);
 }
 
 }  // namespace carom

@@ -80,11 +80,11 @@ private:
                     const StepInput& in, ImpulseWork& sum, bool& impact);
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
+  void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
   ContactRecord& record(const IslandProblem& problem, std::size_t contact);
   void keep_impulses(const IslandProblem& problem);
-  void place(const Constraint& at, const StepInput& in, ContactRecord& entry) const;
 
   const Assembly* assembly_;
   double capture_speed_;

@@ -1,6 +1,7 @@
 // Problem: which constraints take part in a step, and which components they join.
 
 #include <carom/contact/impact_restitution.h>
+#include <carom/contact/rolling_resistance.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -68,6 +69,19 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   take_sticking(found);
   // Friction in joints comes last.
   if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
+  if (resists_rolling(detector_)) add_rolling(first, out);
+}
+
+/// Rolling resistance behind each contact that has some, of the constraints from `first` on.
+void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& out) {
+  with_rolling_.assign(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first));
+  for (std::size_t i = first; i < out.size(); ++i) {
+    with_rolling_.push_back(out[i]);
+    if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
+      with_rolling_.push_back(rolling_resistance(out[i]));
+    }
+  }
+  out.swap(with_rolling_);
 }
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
@@ -93,10 +107,15 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     return islands_.take(constraints_);
   }
   merge(in, touching);
+  Index last = none;
   for (const Index i : islands_.find(batches, joined_)) {
     const Index source = sources_[i];
     if (source >= touching.size()) {
       constraints_.push_back(single_[source - touching.size()]);
+      continue;
+    }
+    if (std::exchange(last, source) == source) {
+      constraints_.push_back(rolling_resistance(constraints_.back()));
       continue;
     }
     bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
@@ -106,7 +125,8 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
 }
 
 /// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each
-/// other come before the others of a component: friction in joints stays last.
+/// other come before the others of a component: friction in joints stays last. What has rolling resistance is
+/// listed twice.
 void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touching) {
   const std::vector<BodyOutline>& outlines = detector_.bodies().outlines().list();
   const auto count = static_cast<Index>(touching.size());
@@ -125,6 +145,9 @@ void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touc
     const Index first = in.assembly.component_of(outlines[touching[i].a].body);
     add_single_before(first);
     joined_.push_back({first, in.assembly.component_of(outlines[touching[i].b].body)});
+    sources_.push_back(i);
+    if (!detector_.bodies().resists_rolling(touching[i])) continue;
+    joined_.push_back(joined_.back());
     sources_.push_back(i);
   }
   add_single_before(none);

@@ -13,6 +13,7 @@
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,7 @@ private:
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
   void find_joining(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
+  void add_rolling(std::size_t first, std::vector<Constraint>& out);
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
@@ -56,7 +58,7 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
-  std::vector<Constraint> constraints_, again_;
+  std::vector<Constraint> constraints_, again_, with_rolling_;
   std::vector<Constraint> single_;   // those that join no components
   std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written
   std::vector<Index> sources_;  // of the same: place among those of two bodies, or behind them in single_

@@ -19,11 +19,15 @@ constexpr int most_impacts_at_once = 10000;
 StepImpacts::StepImpacts(StepParts& parts)
     : parts_(&parts),
       on_(parts.options.impact_order == ImpactOrder::sequential || parts.options.limit_energy_gain ||
-          parts.constraints.detector().has_other_impact_law()),
+          has_other_impact_law(parts.constraints.detector())),
       balance_(*parts.assembly, parts.options),
       response_(*parts.assembly) {
+  if (parts.options.impacts == ImpactTimes::located && resists_rolling(parts.constraints.detector())) {
+    throw ModelError(
+        "time stepping: impacts is located; allowed where a contact has rolling resistance: at_step_start");
+  }
   if (!on_) return;
-  if (parts.options.impacts == ImpactTimes::located) {
+  if (parts.options.impacts == ImpactTimes::located && has_other_impact_law(parts.constraints.detector())) {
     throw ModelError(
         "time stepping: impacts is located; allowed where a law of impact is poisson or energetic: "
         "at_step_start");
@@ -46,7 +50,7 @@ bool StepImpacts::resolve(const StepInput& in) {
   for (const StepIsland& island : parts_->constraints.islands()) {
     contacts_.clear();
     for (const Constraint& constraint : island.constraints) {
-      if (constraint.has_dry_friction()) continue;
+      if (constraint.has_dry_friction() && constraint.type != ConstraintType::rolling) continue;
       Constraint& contact = contacts_.emplace_back(constraint);
       contact.surface_velocity_after = contact.surface_velocity;
       contact.allowed_approach = 0.0;
@@ -100,7 +104,8 @@ bool StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     if (!(fastest(contacts) > least)) return round > 0;
     touching_.assign(contacts.begin(), contacts.end());
     for (Constraint& contact : touching_) {
-      contact.friction = contact.law.friction_at(contact.sliding_speed(start_.v.data()));
+      if (!contact.has_dry_friction())
+        contact.friction = contact.law.friction_at(contact.sliding_speed(start_.v.data()));
     }
     ImpactNote note;
     note.cut_sequence = sequential && round >= options.sequence_limit;
@@ -173,7 +178,7 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
   }
   if (note.cut_sequence) {
     for (const EnergyFlow line : {EnergyFlow::impact_normal, EnergyFlow::impact_tangential,
-                                  EnergyFlow::contact_normal, EnergyFlow::sliding}) {
+                                  EnergyFlow::contact_normal, EnergyFlow::sliding, EnergyFlow::rolling}) {
       flows[EnergyFlow::accumulation] += flows[line] - known[line];
       flows[line] = known[line];
     }

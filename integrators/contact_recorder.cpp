@@ -1,0 +1,111 @@
+#include <carom/core/csv.h>
+#include <carom/core/errors.h>
+#include <carom/integrators/contact_recorder.h>
+#include <carom/integrators/simulation.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Name of the part that the body of a contact touches.
+std::string other_part(const System& system, const ContactRecord& contact) {
+  if (contact.obstacle.valid()) return system.name(contact.obstacle);
+  return contact.other.valid() ? system.name(contact.other) : std::string();
+}
+
+}  // namespace
+
+struct ContactRecorder::Impl {
+  explicit Impl(const std::string& file_path) : path(file_path), file(file_path) {}
+
+  void write_header();
+  void write_row(const Simulation& simulation, const ContactRecord& contact);
+  /// Empty where there is no number.
+  void add(double number) {
+    if (!std::isnan(number)) append_csv(line, number);
+    line += ',';
+  }
+  void add(std::string_view text) {
+    append_csv(line, text);
+    line += ',';
+  }
+  void end_line() {
+    line.back() = '\n';
+    file << line;
+    line.clear();
+    if (!file) throw FileError("contact recorder: '" + path + "' cannot be written");
+  }
+
+  std::string path;
+  std::ofstream file;
+  std::string line;
+  long rows = 0;
+};
+
+void ContactRecorder::Impl::write_header() {
+  line = "time [s],contact,part,other part,x [m],y [m],z [m],normal x,normal y,normal z,gap [m]";
+  for (const char* const when : {"before", "after"}) {
+    for (const char* const along : {"normal", "tangential", "second tangential"})
+      line.append(",").append(along).append(" velocity ").append(when).append(" [m/s]");
+  }
+  for (const char* const along : {"normal", "tangential", "second tangential"})
+    line.append(",").append(along).append(" impulse [N s]");
+  line += ",rolling impulse moment [N m s]";
+  for (const char* const along : {"normal", "tangential", "second tangential"})
+    line.append(",").append(along).append(" mean force [N]");
+  line += ",mode,kind,work of contact [J],energy gain of impact [J],restitution factor,";
+  end_line();
+}
+
+void ContactRecorder::Impl::write_row(const Simulation& simulation, const ContactRecord& contact) {
+  const System& system = simulation.system();
+  add(contact.time);
+  add(simulation.name(contact.key));
+  add(system.name(contact.body));
+  add(other_part(system, contact));
+  for (const auto* numbers : {&contact.point, &contact.normal}) {
+    for (const double number : *numbers) add(number);
+  }
+  add(contact.gap);
+  for (const auto* numbers : {&contact.velocity_before, &contact.velocity_after, &contact.impulse}) {
+    for (const double number : *numbers) add(number);
+  }
+  add(contact.rolling_moment);
+  const double step = simulation.report().step;
+  for (const double number : contact.impulse) add(contact.impact || !(step > 0.0) ? nothing : number / step);
+  add(to_string(contact.mode));
+  add(std::string_view(contact.impact ? "impact" : "lasting"));
+  add(contact.contact_work);
+  add(contact.energy_gain);
+  add(contact.restitution_factor);
+  end_line();
+  ++rows;
+}
+
+ContactRecorder::ContactRecorder(Simulation& simulation, const std::string& path)
+    : impl_(std::make_shared<Impl>(path)) {
+  impl_->write_header();
+  observer_ = simulation.observe([impl = impl_](const Simulation& run) {
+    for (const ContactRecord& contact : run.report().contacts) impl->write_row(run, contact);
+  });
+}
+
+void ContactRecorder::flush() {
+  impl_->file.flush();
+  if (!impl_->file) throw FileError("contact recorder: '" + impl_->path + "' cannot be written");
+}
+
+void ContactRecorder::detach(Simulation& simulation) {
+  simulation.remove_callback(observer_);
+  flush();
+}
+
+long ContactRecorder::rows() const { return impl_->rows; }
+
+}  // namespace carom

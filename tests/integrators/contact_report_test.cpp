@@ -1,0 +1,131 @@
+// The report of contacts: forces on one part against statics and momentum, in both modes, and the recorder.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/integrators/throws.h"
+#include "tests/temporary_folder.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace body_scenes;
+
+TEST(ContactReport, ForcesOfAStackAreItsWeights) {
+  System system;
+  system.set_default_law({.friction = 0.5, .normal_restitution = 0.0});
+  system.add(Gravity{{0.0, -g}});
+  const ObstacleId floor =
+      system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.5, .normal_restitution = 0.0});
+  const BodyId lower = add_box(system, 2.0, 1.0, 0.5, {0.0, 0.25});
+  const BodyId upper = add_box(system, 1.0, 0.8, 0.5, {0.0, 0.75});
+  Simulation simulation(system, TimeStepping{.step = 1e-3});
+  for (int i = 0; i < 5; ++i) simulation.step();
+  const StepReport& report = simulation.report();
+  // A certificate of 1e-12 of the largest impulse.
+  EXPECT_NEAR(force_on(report, floor).mean_force[1], -3.0 * g, 1e-9);
+  EXPECT_NEAR(force_on(report, upper).mean_force[1], 1.0 * g, 1e-9);
+  const PartForce on_lower = force_on(report, lower);
+  EXPECT_NEAR(on_lower.mean_force[1], 2.0 * g, 1e-9);
+  EXPECT_NEAR(on_lower.impulse[1], 2.0 * g * 1e-3, 1e-12);
+  EXPECT_NEAR(on_lower.angular_impulse, 0.0, 1e-12);
+  EXPECT_EQ(on_lower.contacts, 4);
+  EXPECT_EQ(force_on(report, BodyId{}).contacts, 0);
+}
+
+TEST(ContactReport, ImpulsesOfImpactsChangeTheMomentum) {
+  for (const bool events : {false, true}) {
+    System system;
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.6, .tangential_restitution = 0.2});
+    const BodyId a = add_disc(system, 1.0, 0.2, {-0.5, 0.05}, {2.0, 0.0}, 3.0);
+    const BodyId b = add_box(system, 2.0, 0.4, 0.6, {0.2, 0.0}, 0.1);
+    Simulation simulation = events ? Simulation(system, EventDriven{.interval = 1.0})
+                                   : Simulation(system, TimeStepping{.step = 1e-3});
+    Vec<2> on_a = Vec<2>::Zero(), on_b = Vec<2>::Zero();
+    double spin_b = 0.0;
+    const auto angular = [&](const Simulation& run) {
+      const Vec<2> x = run.state().position(b), v = run.state().velocity(b);
+      return 2.0 * (x[0] * v[1] - x[1] * v[0]) + 2.0 * (0.16 + 0.36) / 12.0 * run.state().spin(b);
+    };
+    simulation.observe([&](const Simulation& run) {
+      on_a += force_on(run.report(), a).impulse;
+      const PartForce of_b = force_on(run.report(), b);
+      on_b += of_b.impulse;
+      spin_b += of_b.angular_impulse;
+      EXPECT_EQ(of_b.impulse, of_b.impact_impulse);
+      for (const ContactRecord& contact : run.report().contacts) {
+        EXPECT_NEAR(std::hypot(contact.normal[0], contact.normal[1]), 1.0, 1e-14);
+        EXPECT_NEAR((Vec<2>(contact.point[0], contact.point[1]) - run.state().position(a)).norm(), 0.2, 1.5);
+      }
+    });
+    simulation.run_until(1.0);
+    EXPECT_GT(on_b.norm(), 0.5) << events;
+    const Vec<2> gained_a = simulation.state().velocity(a) - Vec<2>(2.0, 0.0);
+    const Vec<2> gained_b = 2.0 * simulation.state().velocity(b);
+    EXPECT_NEAR((on_a - gained_a).norm(), 0.0, 1e-12) << events;
+    EXPECT_NEAR((on_b - gained_b).norm(), 0.0, 1e-12) << events;
+    EXPECT_NEAR(spin_b, angular(simulation), 1e-12) << events;
+  }
+}
+
+TEST(ContactReport, RecorderWritesARowForEveryContact) {
+  const carom_test::TemporaryFolder folder;
+  const std::string path = folder / "contacts.csv";
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  const ObstacleId floor = system.add(HalfPlane{.normal = {0.0, 1.0}},
+                                      Surface{.friction = 0.5, .normal_restitution = 0.0}, "floor");
+  const BodyId body = system.add(
+      RigidBody{.mass = box(1.0, 1.0, 0.5), .position = Vec<2>(0.0, 0.25), .velocity = Vec<2>(1.0, -1.0)},
+      "box");
+  system.add(Polygon{.body = body, .vertices = corners_of(1.0, 0.5)});
+  Simulation simulation(system, TimeStepping{.step = 1e-3});
+  ContactRecorder recorder(simulation, path);
+  double weight = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    simulation.step();
+    weight -= force_on(simulation.report(), floor).mean_force[1];
+  }
+  recorder.detach(simulation);
+  EXPECT_EQ(recorder.rows(), 8);
+  std::ifstream file(path);
+  std::string line;
+  ASSERT_TRUE(std::getline(file, line));
+  const auto cells = [](const std::string& text) {
+    std::vector<std::string> found;
+    std::stringstream in(text);
+    for (std::string cell; std::getline(in, cell, ',');) found.push_back(cell);
+    return found;
+  };
+  const std::vector<std::string> header = cells(line);
+  const auto column = [&](const std::string& name) {
+    const auto at = std::find(header.begin(), header.end(), name);
+    EXPECT_NE(at, header.end()) << name;
+    return static_cast<std::size_t>(at - header.begin());
+  };
+  double sum = 0.0;
+  int impacts = 0;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> row = cells(line);
+    ASSERT_EQ(row.size(), header.size());
+    EXPECT_NE(row[column("part")].find("box"), std::string::npos);
+    EXPECT_NE(row[column("other part")].find("floor"), std::string::npos);
+    const std::string& force = row[column("normal mean force [N]")];
+    EXPECT_EQ(force.empty(), row[column("kind")] == "impact");
+    impacts += force.empty() ? 1 : 0;
+    if (!force.empty()) sum += std::stod(force);
+  }
+  EXPECT_EQ(impacts, 2);
+  EXPECT_NEAR(sum, weight, 1e-12);
+  EXPECT_NEAR(sum, 3.0 * g, 1e-9);
+  EXPECT_THROWS(FileError, ContactRecorder(simulation, folder / "none/contacts.csv"), "contacts.csv");
+}
+
+}  // namespace
