@@ -3,6 +3,7 @@
 #include <carom/bodies/rigid_body.h>
 #include <carom/contact/detection/ground_parts.h>
 #include <carom/contact/detection/ground_pieces.h>
+#include <carom/contact/detection/outline_pair.h>
 #include <carom/core/system.h>
 
 #include "tests/contact/detection/convex_reference.h"
@@ -235,18 +236,19 @@ TEST(GroundPieces, FacesWithoutAnInnerCornerAreOneOutline) {
   system.add(Terrain{.vertices = {{0, 0}, {1, 1}, {2, 0}}, .depth = 0.1, .is_closed = true}, law);
   const Ground ground(system);
   const std::vector<GroundOutline>& outlines = ground.pieces.outlines();
-  ASSERT_EQ(ground.pieces.size(), 1U + 4U + 4U + 3U);
+  ASSERT_EQ(ground.pieces.size(), 1U + 4U + (4U + 2U) + 3U);
   ASSERT_EQ(outlines.size(), 1U + 4U + 2U + 1U);
   EXPECT_EQ(outlines[0].key, ground.shapes.key(0));
   for (Index face = 0; face < 4; ++face) EXPECT_EQ(outlines[1 + face].key.feature, 3 * face);
-  EXPECT_EQ(outlines[5].vertices.size(), 2U);  // from right to left
-  EXPECT_EQ(outlines[6].vertices.size(), 4U);
-  EXPECT_EQ(outlines[6].key.feature, 3U);
+  EXPECT_EQ(outlines[5].vertices.size(), 3U);  // from right to left, with the sides
+  EXPECT_EQ(outlines[6].vertices.size(), 5U);
+  EXPECT_EQ(outlines[6].key.feature, 4U);
   const FaceChain chain = ground.pieces.chain(6);
   EXPECT_EQ(chain.corners[0], ChainCorner::concave);
   EXPECT_EQ(chain.corners[1], ChainCorner::convex);
   EXPECT_EQ(chain.corners[2], ChainCorner::flat);
-  EXPECT_EQ(chain.corners[3], ChainCorner::free);
+  EXPECT_EQ(chain.corners[3], ChainCorner::convex);
+  EXPECT_EQ(chain.corners[4], ChainCorner::free);
   EXPECT_TRUE(outlines[7].is_closed);
   EXPECT_EQ(outlines[7].vertices.size(), 3U);
 }
