@@ -29,7 +29,7 @@ void ActiveSet::update(const Detector& detector, const StateView& state, const E
                        const GroundPlaces& places) {
   for (ActiveContact& contact : contacts_) {
     if (contact.feature != none) {
-      detector.follow(contact.pair, contact.feature, state, evaluation, places, contact.at);
+      follow(detector, contact.pair, contact.feature, state, evaluation, places, contact.at);
     } else {
       detector.contact(contact.pair, state, evaluation, places, contact.at);
     }

@@ -4,7 +4,7 @@
 //   drum         the inside of a circle of radius 1 m, which turns at 1.5 rad/s: phi(t) = 1.5 t; two lifters,
 //                walls that turn with it
 //   contact      of bodies with each other, with the drum and its lifters: gap >= 0, e_n = e_t = 0, mu = 0.5
-//   time stepping h = 1e-3 s, 6 s
+//   time stepping h = 1e-3 s, 4 s
 //
 // The drum lifts what lies in it by friction until it falls back. Its work is all that comes in, and what
 // friction and impacts lose goes out; the energy account closes to rounding.
@@ -29,7 +29,7 @@
 namespace {
 
 constexpr double step = 1e-3;                     // [s]
-constexpr double times[] = {0.3, 1.0, 2.0, 6.0};  // [s], of the pictures; the last is the end
+constexpr double times[] = {0.3, 1.0, 2.0, 4.0};  // [s], of the pictures; the last is the end
 
 /// Writes the outlines of bodies where they are: one line for each vertex.
 void write_bodies(const carom::Simulation& now, const std::vector<scenes::DrumBody>& bodies,

@@ -11,8 +11,8 @@ import matplotlib.pyplot as plt
 from matplotlib.patches import Circle, Polygon
 from plotting import columns_of, save
 
-TIMES = (0.3, 1.0, 2.0, 6.0)  # s, of the pictures
-RADIUS, SPIN, SIZE, LIFTERS = 1.0, 1.5, 0.1, 2  # m, rad/s, m, number
+TIMES = (0.3, 1.0, 2.0, 4.0)  # s, of the pictures
+RADIUS, SPIN, SIZE, LIFTERS = 1.0, 1.5, 0.08, 2  # m, rad/s, m, number
 COLOURS = ("#6baed6", "#fdae6b", "#a1d99b")  # bars, discs, bricks
 
 

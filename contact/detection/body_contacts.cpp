@@ -3,6 +3,7 @@
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/pair_rows.h>
+#include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
 #include <array>
@@ -228,6 +229,11 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   } else {
     fill({vertex_key, b.surface()}, a, b, gap, state, out);
   }
+}
+
+void BodyContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
+                          const Evaluation& evaluation, Constraint& contact) const {
+  follow_feature(*assembly_, outlines_, pair, feature, state, evaluation, contact);
 }
 
 OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView& state,

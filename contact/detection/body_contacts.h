@@ -79,6 +79,9 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;
 
+  /// Brings the contact of such a pair to a state, as follow_feature().
+  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
+              Constraint& contact) const;
   /// The vertex and the outline of such a pair.
   [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
                                          const Evaluation& evaluation) const;

@@ -1,6 +1,5 @@
 #include <carom/contact/detection/contact_name.h>
 #include <carom/contact/detection/detector.h>
-#include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
 #include <cassert>
@@ -88,8 +87,8 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
   GroundMotion now;
-  if (moves(pair)) now = ground_.shapes().motion(pair.ground_shape, state.time);
-  const GroundMotion* const motion = moves(pair) ? &now : nullptr;
+  if (moves(*this, pair)) now = ground_.shapes().motion(pair.ground_shape, state.time);
+  const GroundMotion* const motion = moves(*this, pair) ? &now : nullptr;
   if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, motion, out);
   ground_.contact(pair, state, evaluation, motion, out);
 }
@@ -104,22 +103,18 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   ground_.contact(pair, state, evaluation, motion, out);
 }
 
-void Detector::follow(const ContactPair& pair, Index feature, const StateView& state,
-                      const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) const {
-  if (!pair.is_of_pieces()) {
-    return follow_feature(*assembly_, bodies_.outlines(), pair, feature, state, evaluation, contact);
-  }
-  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
-  pieces_.follow(pair, feature, state, evaluation, motion, contact);
-}
-
-OutlinePair Detector::outline_pair(const ContactPair& pair, const StateView& state,
-                                   const Evaluation& evaluation, const GroundPlaces& places) const {
-  if (!pair.is_of_pieces()) return bodies_.outline_pair(pair, state, evaluation);
-  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
-  return pieces_.outline_pair(pair, state, evaluation, motion);
-}
-
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
+
+void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
+            const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {
+  if (!pair.is_of_pieces()) return detector.bodies().follow(pair, feature, state, evaluation, contact);
+  detector.pieces().follow(pair, feature, state, evaluation, motion_of(detector, pair, places), contact);
+}
+
+OutlinePair outline_pair(const Detector& detector, const ContactPair& pair, const StateView& state,
+                         const Evaluation& evaluation, const GroundPlaces& places) {
+  if (!pair.is_of_pieces()) return detector.bodies().outline_pair(pair, state, evaluation);
+  return detector.pieces().outline_pair(pair, state, evaluation, motion_of(detector, pair, places));
+}
 
 }  // namespace carom

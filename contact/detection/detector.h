@@ -111,26 +111,9 @@ public:
   friend bool resists_rolling(const Detector& of) {
     return of.ground_.resists_rolling() || of.bodies_.resists_rolling();
   }
-  /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one
-  /// feature of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key
-  /// and law stay.
-  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
-              const GroundPlaces& places, Constraint& contact) const;
-  /// The vertex and the outline of a pair that has one (ContactPair::has_outline()).
-  [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
-                                         const Evaluation& evaluation, const GroundPlaces& places) const;
-
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
     return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();
-  }
-  /// Motion of the shape on ground of a pair; null if it is at rest.
-  [[nodiscard]] const GroundMotion* motion(const ContactPair& pair, const GroundPlaces& places) const {
-    return moves(pair) ? ground_.shapes().motion(pair.ground_shape, places) : nullptr;
-  }
-  /// True if the shape on ground of a pair moves.
-  [[nodiscard]] bool moves(const ContactPair& pair) const {
-    return pair.ground_shape != none && ground_.shapes().moves(pair.ground_shape);
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
@@ -148,5 +131,25 @@ private:
   BodyContacts bodies_;
   JointRows joints_;
 };
+
+/// True if the shape on ground of a pair moves.
+[[nodiscard]] inline bool moves(const Detector& detector, const ContactPair& pair) {
+  return pair.ground_shape != none && detector.pieces().shapes().moves(pair.ground_shape);
+}
+/// Motion of the shape on ground of a pair; null if there is none or it is at rest.
+[[nodiscard]] inline const GroundMotion* motion_of(const Detector& detector, const ContactPair& pair,
+                                                   const GroundPlaces& places) {
+  return moves(detector, pair) ? detector.pieces().shapes().motion(pair.ground_shape, places) : nullptr;
+}
+/// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one feature
+/// of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key and law
+/// stay.
+CAROM_API void follow(const Detector& detector, const ContactPair& pair, Index feature,
+                      const StateView& state, const Evaluation& evaluation, const GroundPlaces& places,
+                      Constraint& contact);
+/// The vertex and the outline of a pair that has one (ContactPair::has_outline()).
+[[nodiscard]] CAROM_API OutlinePair outline_pair(const Detector& detector, const ContactPair& pair,
+                                                 const StateView& state, const Evaluation& evaluation,
+                                                 const GroundPlaces& places);
 
 }  // namespace carom

@@ -35,9 +35,8 @@ struct CAROM_API FaceChain {
 
   ConvexOutline outline;                 ///< its vertices; radius 0
   std::span<const ChainCorner> corners;  ///< by vertex
-  Vec<2> before, behind;   ///< of an open chain: other ends of the faces at its concave ends [m]
-  bool is_closed = false;  ///< the last vertex is joined to the first
-  double depth = 0.0;      ///< what is deeper does not touch it [m]
+  bool is_closed = false;                ///< the last vertex is joined to the first
+  double depth = 0.0;                    ///< what is deeper does not touch it [m]
 
   /// Number of faces.
   [[nodiscard]] Index faces() const { return outline.size() - (is_closed ? 0U : 1U); }

@@ -122,6 +122,10 @@ private:
     if (height < -depth_) return false;
     const Index edge = at.feature_a - a_.size();
     if (best.length > 0.0 && best.tail == edge) {
+      // Where the way out along the neighbour's normal is shorter, the neighbour is touched.
+      constexpr double tie = 1e-9;
+      const bool is_out_sooner = separation_at(corner.at, corner.along) > height + tie * best.length;
+      if (!corner.is_free && is_out_sooner) return false;
       return is_cut_by(ends_) || (!corner.is_free && is_cut_by(neighbour_at(corner, is_head ? 1.0 : -1.0)));
     }
     return height_above_others(edge, corner.at) <= height;

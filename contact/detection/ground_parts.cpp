@@ -89,7 +89,16 @@ std::vector<GroundPiece> Terrain::pieces(const PartCheck& check) const {
   check.positive(depth, "depth", "m");
   check_faces(vertices, is_closed, check);
   check_crossing(vertices, is_closed, check);
-  return faces_along(vertices, is_closed, depth);
+  if (is_closed) return faces_along(vertices, true, depth);
+  const auto down = [&](const Vec<2>& from, const Vec<2>& to) -> Vec<2> {
+    const Vec<2> along = (to - from).stableNormalized();
+    return {depth * along[1], -depth * along[0]};
+  };
+  const std::size_t n = vertices.size();
+  std::vector<Vec<2>> with_sides{vertices[0] + down(vertices[0], vertices[1])};
+  with_sides.insert(with_sides.end(), vertices.begin(), vertices.end());
+  with_sides.push_back(vertices[n - 1] + down(vertices[n - 2], vertices[n - 1]));
+  return faces_along(with_sides, false, depth);
 }
 
 std::vector<GroundPiece> BoxInside::pieces(const PartCheck& check) const {

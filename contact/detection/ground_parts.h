@@ -22,7 +22,8 @@
 namespace carom::planar {
 
 /// Straight faces one after the other, solid on one side. Bodies slide across the corners where faces join
-/// without a snag. At its ends, if it is open, the solid ends at right angles.
+/// without a snag. If it is open, the solid has
+/// a side at each end, at a right angle and `depth` high; below that it has no surface.
 struct CAROM_API Terrain {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "terrain";

@@ -81,7 +81,6 @@ void GroundPieces::add_solid(GroundPiece piece, Index shape, double surface_spee
   outline.vertices.begin = static_cast<Index>(vertices_.size());
   vertices_.insert(vertices_.end(), piece.points.begin(), piece.points.end());
   corners_.resize(vertices_.size(), ChainCorner::convex);
-  ends_.push_back({Vec<2>::Zero(), Vec<2>::Zero()});
   pieces_.push_back({std::move(piece), static_cast<Index>(outlines_.size()), 0});
   finish(outline);
 }
@@ -126,7 +125,6 @@ void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t 
     vertices_.push_back(head.points[2]);
     corners_.push_back(head.head_is_free ? ChainCorner::free : ChainCorner::concave);
   }
-  ends_.push_back({tail.points[0], head.points[3]});
   finish(outline);
 }
 
@@ -208,9 +206,7 @@ ConvexOutline GroundPieces::view(Index outline) const {
 FaceChain GroundPieces::chain(Index outline) const {
   const GroundOutline& of = outlines_[outline];
   const std::span<const ChainCorner> corners(corners_);
-  return {view(outline),     corners.subspan(of.vertices.begin, of.vertices.size()),
-          ends_[outline][0], ends_[outline][1],
-          of.is_closed,      of.depth};
+  return {view(outline), corners.subspan(of.vertices.begin, of.vertices.size()), of.is_closed, of.depth};
 }
 
 GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feature_a,

@@ -108,9 +108,8 @@ private:
   std::vector<GroundOutline> outlines_;
   std::vector<Vec<2>> vertices_;
   std::vector<std::array<Vec<2>, 3>> around_;
-  std::vector<ChainCorner> corners_;         // by vertex; of others than chains convex
-  std::vector<Index> outline_of_;            // by vertex
-  std::vector<std::array<Vec<2>, 2>> ends_;  // by outline: before and behind a chain
+  std::vector<ChainCorner> corners_;  // by vertex; of others than chains convex
+  std::vector<Index> outline_of_;     // by vertex
 };
 
 }  // namespace carom

@@ -31,6 +31,8 @@ public:
 
   /// True if there are no pieces, or nothing that may touch them.
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
+  /// All shapes on ground.
+  [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
   /// Outlines of bodies.
   [[nodiscard]] const BodyOutlines& outlines() const { return outlines_; }
   /// Pieces and outlines on ground.

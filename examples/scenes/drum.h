@@ -15,10 +15,9 @@ namespace scenes {
 
 /// Parameters.
 struct Drum {
-  int count = 60;
   double radius = 1.0;  ///< of the drum [m]
   double spin = 1.5;    ///< counter-clockwise [rad/s]
-  double size = 0.1;    ///< half the length of a bar [m]
+  double size = 0.08;   ///< half the length of a bar [m]
   int lifters = 2;      ///< walls that turn with the drum
   double friction = 0.5;
 };
@@ -71,14 +70,17 @@ inline std::vector<DrumBody> add_drum(carom::System& system, const Drum& scene) 
                     .radius = 0.2 * scene.size,
                     .motion = shell.motion});
   }
-  const double pitch = 2.6 * scene.size;
-  const int in_a_row = static_cast<int>(1.3 * scene.radius / pitch);
+  // As many as find a place beside each other, clear of the lifters.
+  const double pitch = 2.6 * scene.size, farthest = scene.radius - 2.5 * scene.size;
+  const int rows = static_cast<int>(farthest / pitch);
   std::vector<DrumBody> all;
-  for (int i = 0; i < scene.count; ++i) {
-    const carom::Vec<2> place(
-        (0.5 + i % in_a_row - 0.5 * in_a_row) * pitch + 0.05 * scene.size * scattered(3 * i),
-        -0.6 * scene.radius + i / in_a_row * 0.6 * pitch);
-    all.push_back(drum_body(system, i, scene.size, place));
+  for (int row = -rows; row <= rows; ++row) {
+    for (int column = -rows; column <= rows; ++column) {
+      const int i = static_cast<int>(all.size());
+      const double shift = 0.04 * scene.size * scattered(3 * i);
+      const carom::Vec<2> place(column * pitch + shift, row * pitch);
+      if (place.norm() < farthest) all.push_back(drum_body(system, i, scene.size, place));
+    }
   }
   return all;
 }

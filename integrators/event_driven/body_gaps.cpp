@@ -31,7 +31,7 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
   const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
   const GroupModel& model = step.motion.model();
   // The flow does not know the motion of shapes on ground.
-  if (step.motion.flies_freely() && !model.detector->moves(model.pairs[model.bounds[bound].pair]))
+  if (step.motion.flies_freely() && !moves(*model.detector, model.pairs[model.bounds[bound].pair]))
     return speed;
   // Loads within the step are as at its ends, but for what steps may be wrong by.
   constexpr double unseen = 2.0;
@@ -53,7 +53,7 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
     const BodyPairBound& bound = model.bounds[place];
     const std::size_t pair = bound.pair;
     if (is_active[pair] != 0) continue;
-    const GroundMotion* const of_ground = model.detector->motion(model.pairs[pair], at.places);
+    const GroundMotion* const of_ground = motion_of(*model.detector, model.pairs[pair], at.places);
     const double least = bound.least_gap(at.view(), of_ground),
                  speed = bound.most_speed(at.state.v.data(), of_ground);
     out.gap_speeds[place] = speed;

@@ -141,7 +141,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     if (step.is_active[i] != 0 || passed_over.gaps[i] != 0 || step.motion.model().bound_of[i] != none)
       continue;
     // The flow does not know the motion of shapes on ground.
-    const bool moving = step.motion.model().detector->moves(step.motion.model().pairs[i]);
+    const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
     FallRule rule;
     rule.raise = step.scales.gap_noise - step.ends.gap_level(i);
     rule.fine = fine;

@@ -176,8 +176,8 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
   const auto sample_at = [&](OfContact& load, std::array<double, 2>& rows) {
     if (contact.feature != none) {
       moved = contact.at;
-      model_->detector->follow(contact.pair, contact.feature, sample.view(), sample.evaluation, sample.places,
-                               moved);
+      follow(*model_->detector, contact.pair, contact.feature, sample.view(), sample.evaluation,
+             sample.places, moved);
     } else {
       model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
     }

@@ -43,7 +43,7 @@ private:
   [[nodiscard]] FeatureLook look(double time) {
     const MotionSample& at = path_->sample(time);
     const FeatureRegions regions(
-        pair_->detector.outline_pair(pair_->pair, at.view(), at.evaluation, at.places));
+        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places));
     FeatureLook out;
     out.gap = {time, gap_in(*pair_, at), 0.0};
     out.feature = regions.nearest();
@@ -98,7 +98,7 @@ double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, 
   rule.fine = fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
-  if (of.detector.moves(of.pair)) rule.least_depth = least_of_moving;
+  if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;
   if (!bound.round) {
     rule.fastest = how.fastest;
     return KinkedSearch(path, of, rule, how.until).first(from.time, to.time);

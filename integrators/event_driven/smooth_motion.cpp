@@ -25,7 +25,7 @@ void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint&
 void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, double near,
                                    Constraint& out) const {
   if (const Index bound = model_.bound_of[pair]; bound != none) {
-    const GroundMotion* const motion = model_.detector->motion(model_.pairs[pair], at.places);
+    const GroundMotion* const motion = motion_of(*model_.detector, model_.pairs[pair], at.places);
     const double least = model_.bounds[bound].least_gap(at.view(), motion);
     if (least > near) {
       out.clear_bodies();

@@ -91,12 +91,12 @@ TEST(GroundPieces, InABoxBothWallsOfACornerTouch) {
   System system;
   system.add(BoxInside{.lower = {0, 0}, .upper = {4, 3}}, law);
   const Ground ground(system);
-  auto found = ground.find(disc(0.5, 0.75, 0.5), 0.5);
+  auto found = ground.find(disc(0.5, 0.75, 0.5), 0.5);  // the left wall, then the floor
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].gap, 0.25);
-  EXPECT_EQ(found[0].normal, Vec<2>(0, 1));
-  EXPECT_EQ(found[1].gap, 0.0);
-  EXPECT_EQ(found[1].normal, Vec<2>(1, 0));
+  EXPECT_EQ(found[0].gap, 0.0);
+  EXPECT_EQ(found[0].normal, Vec<2>(1, 0));
+  EXPECT_EQ(found[1].gap, 0.25);
+  EXPECT_EQ(found[1].normal, Vec<2>(0, 1));
   found = ground.find(disc(3.875, 2.875, 0.5), 0.0);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].gap, -0.375);
@@ -153,7 +153,7 @@ TEST(GroundPieces, MoveAsPrescribed) {
   const Vec<2> at = Vec<2>(1.0 + time, 2.0 * time) + along + 0.5 * normal;
   const auto found = ground.find(disc(at[0], at[1], 0.25), 0.5);
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_NEAR(found[0].gap, 0.25, 1e-15);
+  EXPECT_NEAR(found[0].gap, 0.0, 1e-15);
   EXPECT_LE((found[0].normal - normal).norm(), 1e-15);
   EXPECT_EQ(ground.find(disc(0, -3.75, 0.25), 0.0).size(), 1U);
   const Box<2> box = ground.pieces.box(0);  // in the frame of the wall
@@ -236,18 +236,19 @@ TEST(GroundPieces, FacesWithoutAnInnerCornerAreOneOutline) {
   system.add(Terrain{.vertices = {{0, 0}, {1, 1}, {2, 0}}, .depth = 0.1, .is_closed = true}, law);
   const Ground ground(system);
   const std::vector<GroundOutline>& outlines = ground.pieces.outlines();
-  ASSERT_EQ(ground.pieces.size(), 1U + 4U + 4U + 3U);
+  ASSERT_EQ(ground.pieces.size(), 1U + 4U + (4U + 2U) + 3U);
   ASSERT_EQ(outlines.size(), 1U + 4U + 2U + 1U);
   EXPECT_EQ(outlines[0].key, ground.shapes.key(0));
   for (Index face = 0; face < 4; ++face) EXPECT_EQ(outlines[1 + face].key.feature, 3 * face);
-  EXPECT_EQ(outlines[5].vertices.size(), 2U);  // from right to left
-  EXPECT_EQ(outlines[6].vertices.size(), 4U);
-  EXPECT_EQ(outlines[6].key.feature, 3U);
+  EXPECT_EQ(outlines[5].vertices.size(), 3U);  // from right to left, with the sides
+  EXPECT_EQ(outlines[6].vertices.size(), 5U);
+  EXPECT_EQ(outlines[6].key.feature, 4U);
   const FaceChain chain = ground.pieces.chain(6);
   EXPECT_EQ(chain.corners[0], ChainCorner::concave);
   EXPECT_EQ(chain.corners[1], ChainCorner::convex);
   EXPECT_EQ(chain.corners[2], ChainCorner::flat);
-  EXPECT_EQ(chain.corners[3], ChainCorner::free);
+  EXPECT_EQ(chain.corners[3], ChainCorner::convex);
+  EXPECT_EQ(chain.corners[4], ChainCorner::free);
   EXPECT_TRUE(outlines[7].is_closed);
   EXPECT_EQ(outlines[7].vertices.size(), 3U);
 }
@@ -264,7 +265,8 @@ TEST(GroundPieces, PointsDoNotTouchThem) {
 TEST(GroundPieces, ImpossibleShapesAreRefused) {
   System system;
   EXPECT_MODEL_ERROR(system.add(Wall{}, law), "wall #0", "from is nan m");
-  EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {1, 1}}, law), "to is the same point as from");
+  EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {1, 1}, .radius = 1}, law),
+                     "to is the same point as from");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}, .radius = -1}, law), "radius is -1 m");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}}, law), "radius is nan m");
   EXPECT_MODEL_ERROR(system.add(Block{.vertices = {{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}}, law), "not convex");
@@ -296,7 +298,7 @@ TEST(GroundPieces, FingerprintsTellThemApart) {
     system.add(shape, law);
     return system.fingerprint();
   };
-  const Wall wall{.from = {-1, 0}, .to = {1, 0}};
+  const Wall wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.25};
   std::vector<std::uint64_t> prints{print(wall)};
   const auto expect_new = [&](const auto& shape) {
     const std::uint64_t another = print(shape);
