@@ -322,9 +322,9 @@ def broad_phase_table(broad):
 def pile_table(pile, steps):
     """Time of a step and its residual: of the contact problem alone, and of whole steps, where measured."""
     rows = []
-    for cases, what in ((pile, "contact problem alone"), (steps, "whole step")):
+    for cases, clock, what in ((pile, "/manual_time", "contact problem alone"), (steps, "", "whole step")):
         for key in ("settled", "collapse"):
-            found = [(cases or {}).get(f"{key}/{count}") for count in PILES]
+            found = [cases.get(f"{key}/{count}{clock}") for count in PILES]
             if not any(found):
                 continue
             times = [figure(case["ms"] if "ms" in case else 1e3 * seconds(case)) if case else "" for case in found]
