@@ -44,8 +44,10 @@ public:
   /// as many rows
   [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
                                    ContactProblem& problem);
-  /// Slots of factors that were built.
-  [[nodiscard]] std::span<const Slot> slots() const { return slots_; }
+  /// Slots of the factors; none where W is made in full.
+  [[nodiscard]] std::span<const Slot> slots() const {
+    return factored_ ? std::span<const Slot>(slots_) : std::span<const Slot>();
+  }
 
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace carom {
 
@@ -53,6 +54,19 @@ public:
   /// v += scale B H^T P. \param velocity of all bodies
   void add_velocities(double* velocity, double scale = 1.0) const {
     delassus_->add_response(impulses_, velocity, scale);
+  }
+  /// Calls f(block) for each body; where W is left in factors once, else perhaps more often.
+  template <class F>
+  void for_bodies(F&& f) const {
+    for (const Delassus::Slot& slot : delassus_->slots()) f(slot.block);
+    if (!delassus_->slots().empty()) return;
+    Index last = none;
+    for (const Constraint& constraint : constraints_) {
+      for (std::size_t b = 0; b < static_cast<std::size_t>(constraint.bodies); ++b) {
+        const Constraint::Block& block = constraint.blocks[b];
+        if (std::exchange(last, block.body) != block.body) f(block);
+      }
+    }
   }
   /// f += scale H^T P. \param load over all velocities
   void add_loads(double scale, double* load) const;

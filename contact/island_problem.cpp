@@ -36,6 +36,13 @@ void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
   set.coefficient = at.friction;
 }
 
+/// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
+void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
+  set.kind = SetKind::bounded_interval;
+  set.bound = normal;
+  set.coefficient = at.friction;
+}
+
 /// Whether W of constraints may stay in factors: in the plane, of several bodies.
 bool fit_factors(std::span<const Constraint> constraints) {
   const Index first = constraints.front().body();
@@ -127,7 +134,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
-  given_.resize(factored ? count : 0);
+  scratch_.given.resize(factored ? count : 0);
   answer_.impulse.assign(count, 0.0);
   slides_.assign(constraints.size(), 0.0);
   std::size_t row = 0;
@@ -135,7 +142,8 @@ void IslandProblem::build_any(const double* velocity_before) {
     for (int i = 0; i < constraints[c].rows; ++i, ++row) {
       directions_.push_back({&constraints[c], i});
       if (constraints[c].type == ConstraintType::rolling) {
-        bound_rolling(c);
+        set_rolling_row(constraints[c], first_row_[c - 1], problem_.sets()[row]);
+        modes_.assign(constraints.size(), ContactMode::open);
       } else if (constraints[c].has_dry_friction()) {
         update_bound(c);
       } else {
@@ -145,8 +153,8 @@ void IslandProblem::build_any(const double* velocity_before) {
       restitution_[row] = constraints[c].restitution(i);
       if (!factored) continue;
       const double approach = i == 0 ? constraints[c].allowed_approach : 0.0;
-      given_[row] = restitution_[row] * before_[row] + approach -
-                    constraints[c].surface_velocity_after[static_cast<std::size_t>(i)];
+      scratch_.given[row] = restitution_[row] * before_[row] + approach -
+                            constraints[c].surface_velocity_after[static_cast<std::size_t>(i)];
     }
   }
   if (!factored) problem_.group();  // factors are still to be written
@@ -165,15 +173,6 @@ void IslandProblem::take_one_planar(const Constraint& contact, const double* vel
   }
 }
 
-/// Rolling resistance stands behind the rows of its contact, whose normal row bounds it.
-void IslandProblem::bound_rolling(std::size_t constraint) {
-  RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
-  set.kind = SetKind::bounded_interval;
-  set.bound = first_row_[constraint - 1];
-  set.coefficient = constraints_[constraint].friction;
-  modes_.assign(constraints_.size(), ContactMode::open);
-}
-
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
     const bool few = constraints_.size() <= LargeProblemSolver::most_exact;
@@ -181,7 +180,7 @@ void IslandProblem::respond(BodyResponse& response) {
         !(few && has_uneven_masses(problem_.factors()))) {
       return problem_.group();
     }
-    make_dense(sets_, problem_);
+    make_dense(scratch_.sets, problem_);
   }
   delassus_.build(directions_, response);
   delassus_.write_symmetric(problem_.matrix().data());
@@ -211,8 +210,8 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
 
 void IslandProblem::add_velocities(double* velocity) {
   if (!problem_.is_factored()) return map().add_velocities(velocity);
-  problem_.factors().respond(answer_.impulse, slot_velocity_);
-  const double* change = slot_velocity_.data();
+  problem_.factors().respond(answer_.impulse, scratch_.slot_velocity);
+  const double* change = scratch_.slot_velocity.data();
   for (const Delassus::Slot& slot : delassus_.slots()) {
     for (int c = 0; c < slot.block.columns; ++c) velocity[slot.block.v + static_cast<Index>(c)] += change[c];
     change += ResponseFactors::columns;
@@ -221,8 +220,8 @@ void IslandProblem::add_velocities(double* velocity) {
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
   if (problem_.is_factored()) {
-    return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, given_, slot_velocity_,
-                                      problem_);
+    return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, scratch_.given,
+                                      scratch_.slot_velocity, problem_);
   }
   const auto b = problem_.vector();
   std::size_t row = 0;
@@ -240,9 +239,9 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
 void IslandProblem::set_velocity(const double* velocity) {
   set_free_velocity(velocity);
   if (problem_.is_factored()) {
-    problem_.factors().respond(answer_.impulse, slot_velocity_);
+    problem_.factors().respond(answer_.impulse, scratch_.slot_velocity);
     for (std::size_t row = 0; row < before_.size(); ++row) {
-      problem_.vector()[row] -= problem_.factors().along(row, slot_velocity_);
+      problem_.vector()[row] -= problem_.factors().along(row, scratch_.slot_velocity);
     }
     return;
   }

@@ -18,7 +18,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace carom {
@@ -88,21 +87,6 @@ public:
   /// Adds to velocities what the impulses of the last answer change, as map() does; faster where W is left in
   /// factors. \param velocity of all bodies
   void add_velocities(double* velocity);
-  /// Calls f(block) for each body, of a problem in factors once, else perhaps more often.
-  template <class F>
-  void for_bodies(F&& f) const {
-    if (problem_.is_factored()) {
-      for (const Delassus::Slot& slot : delassus_.slots()) f(slot.block);
-      return;
-    }
-    Index last = none;
-    for (const Constraint& constraint : constraints_) {
-      for (std::size_t b = 0; b < static_cast<std::size_t>(constraint.bodies); ++b) {
-        const Constraint::Block& block = constraint.blocks[b];
-        if (std::exchange(last, block.body) != block.body) f(block);
-      }
-    }
-  }
   /// The way back of the last answer. Valid until the problem changes.
   [[nodiscard]] ImpulseMap map() const {
     return {constraints_, first_row_, delassus_, before_, answer_.impulse};
@@ -111,7 +95,6 @@ public:
 private:
   void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
-  void bound_rolling(std::size_t constraint);
 
   static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
   // Constraints from which on, and up to which, W may be left in factors.
@@ -124,6 +107,12 @@ private:
     ImpactSolver* solver = nullptr;
     ImpactLaw law = ImpactLaw::newton;
   };
+  // Scratch of a problem in factors.
+  struct FactorScratch {
+    std::vector<RowSet> sets;           // while W is made in full
+    std::vector<double> slot_velocity;  // of bodies
+    std::vector<double> given;          // part of b without velocities of bodies at the end
+  };
 
   Allowed factors_;
   std::span<const Constraint> constraints_;
@@ -134,10 +123,9 @@ private:
   ImpactChoice impact_;
   std::vector<ContactMode> modes_;  // by constraint; empty where none is rolling resistance
   std::vector<int> first_row_;
-  std::vector<RowSet> sets_;    // while W is made in full
+  FactorScratch scratch_;
   std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
-  std::vector<double> before_, restitution_, xi_, slot_velocity_;
-  std::vector<double> given_;  // of a problem in factors: part of b without velocities of bodies at the end
+  std::vector<double> before_, restitution_, xi_;
 };
 
 }  // namespace carom

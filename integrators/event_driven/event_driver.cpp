@@ -56,7 +56,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
   if (resists_rolling(detector_)) {
     throw ModelError(
-        "event-driven mode: rolling_resistance of a contact is > 0; allowed: 0 in all laws of contact, or the "
+        "event-driven mode: rolling_resistance of a contact is > 0; allowed: 0 in all laws of contact, or "
+        "the "
         "time-stepping mode");
   }
   if (!detector_.bodies_touch()) return;

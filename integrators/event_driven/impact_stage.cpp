@@ -158,7 +158,8 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   at.take_velocities();
   impact.energy_after = model.kinetic_energy_of(problem.constraints(), at.velocities());
   // Before the impacts of this instant are remembered.
-  if (kind == EventKind::accumulation) impact.accumulation_time = accumulation_.end(at.time, problem.constraints());
+  if (kind == EventKind::accumulation)
+    impact.accumulation_time = accumulation_.end(at.time, problem.constraints());
   const double gain = at.balance.book(impact, *model.assembly);
   at.balance.book_joints(impact, model, at.motion.joints(), at.now);
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {

@@ -218,7 +218,7 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
   constexpr int of_planar_body = 3;
-  problem.for_bodies([&](const Constraint::Block& block) {
+  problem.map().for_bodies([&](const Constraint::Block& block) {
     if (block.columns == of_planar_body) {
       free_body<of_planar_body>(in, loads, block, trial);
     } else {

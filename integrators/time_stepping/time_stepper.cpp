@@ -28,12 +28,13 @@ void demand_options_for_bodies(const Detector& detector, const TimeStepping& opt
 
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : parts_(assembly, (check_options(options), options)),
-      impacts_(parts_),
+      impacts_(std::make_unique<StepImpacts>(parts_)),
       prescribed_(assembly),
       iteration_(parts_, stop),
       balance_(assembly, options),
       couplings_(assembly) {
   demand_options_for_bodies(parts_.constraints.detector(), options);
+  if (!impacts_->on()) impacts_.reset();
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
@@ -42,7 +43,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
-  if (!impacts_.on()) return step_from(in, state, companion, report);
+  if (impacts_ == nullptr) return step_from(in, state, companion, report);
   try {
     if (!strike(in)) return step_from(in, state, companion, report);
   } catch (const SolverError& error) {
@@ -51,22 +52,22 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
   try {
-    evaluate_start(impacts_.start(), companion);
-    step_from({*parts_.assembly, impacts_.start(), companion, step, end_time, in.last_step}, state, companion,
-              report);
+    evaluate_start(impacts_->start(), companion);
+    step_from({*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step}, state,
+              companion, report);
   } catch (...) {
     std::swap(companion.loads, loads_before_);
     throw;
   }
-  companion.contact_statistics += impacts_.chain().statistics();
-  impacts_.chain().reset_statistics();
+  companion.contact_statistics += impacts_->chain().statistics();
+  impacts_->chain().reset_statistics();
 }
 
 /// Impacts at the start of the step. True if there were any.
 bool TimeStepper::strike(const StepInput& in) {
   prepare(in);
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
-  struck_ = impacts_.resolve(in);
+  struck_ = impacts_->resolve(in);
   return struck_;
 }
 
@@ -103,9 +104,9 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
   // gaps <= 0, joint limits, dry friction, at t_j
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
-  if (impacts_.on()) {
+  if (impacts_ != nullptr) {
     StepImpacts::remove_restitution(parts_.constraints.islands());
-    if (struck_) balance_.add(impacts_.result());
+    if (struck_) balance_.add(impacts_->result());
   }
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
   return balance_.finish(in);  // works of what acted, records
@@ -165,7 +166,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
     iteration_.use(iteration);
     if (tried > 0) {
       parts_.constraints.restore(in, island, parts_.trial);
-      if (impacts_.on()) StepImpacts::remove_restitution({&island, 1});
+      if (impacts_ != nullptr) StepImpacts::remove_restitution({&island, 1});
     }
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;

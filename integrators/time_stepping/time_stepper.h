@@ -29,6 +29,7 @@
 #include <carom/integrators/time_stepping/step_impacts.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 
+#include <memory>
 #include <span>
 
 namespace carom {
@@ -68,9 +69,9 @@ private:
   void evaluate_start(const State& state, Companion& companion);
 
   StepParts parts_;
-  StepImpacts impacts_;
-  bool struck_ = false;        // there were impacts at the start of the step at hand
-  PresentLoads loads_before_;  // these
+  std::unique_ptr<StepImpacts> impacts_;  // null where all impacts are those of the step
+  bool struck_ = false;                   // there were impacts at the start of the step at hand
+  PresentLoads loads_before_;             // these
   PrescribedJoints prescribed_;
   IslandIteration iteration_;
   StepBalance balance_;
