@@ -32,9 +32,11 @@ struct SolverChain::Workspace {
   ChainStatistics statistics;
   std::vector<double> xi, start;  // the last: impulses of a start
   std::vector<ContactMode> modes, start_modes;
+  bool capped = false;  // a budget was set: it judges other problems too
 
   bool begin(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  void take_at_cap(const ExactAttempt& attempt, ContactReport& report) const;
   void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   void sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 };
@@ -96,12 +98,15 @@ void SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::
   sweep(problem, impulse, report);
   ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
   if (!(report.residual <= accepted_residual) && large.has_dense(problem)) {
-    const double swept = report.residual;
     exact.solve(large.dense(), modes, attempt);
-    // No solver has a better answer than the sweeps.
-    if (report.residual == swept && !attempt.proved_unsolvable) report.outcome = large.judged(swept);
+    take_at_cap(attempt, report);
   }
   count(report, attempt.best, attempt.applicable, statistics);
+}
+
+// Where no solver finishes, the best answer is judged by the budget.
+void SolverChain::Workspace::take_at_cap(const ExactAttempt& attempt, ContactReport& report) const {
+  if (!report.usable() && !attempt.proved_unsolvable) report.outcome = large.judged(report.residual);
 }
 
 SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
@@ -128,6 +133,7 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   if (!work.begin(problem, impulse, report)) return;
   ExactAttempt attempt{.impulse = impulse, .xi = work.xi, .report = report};
   work.exact.solve(problem, work.modes, attempt);
+  if (work.capped) work.take_at_cap(attempt, report);
   count(report, attempt.best, attempt.applicable, work.statistics);
 }
 
@@ -190,7 +196,10 @@ ContactReport SolverChain::solve_with(SolverId solver, const ContactProblem& pro
   return report;
 }
 
-void SolverChain::set_budget(const SweepBudget& budget) { work_->large.set_budget(budget); }
+void SolverChain::set_budget(const SweepBudget& budget) {
+  work_->large.set_budget(budget);
+  work_->capped = true;
+}
 
 std::span<const double> SolverChain::velocities() const { return work_->xi; }
 std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }

@@ -45,7 +45,7 @@ System mill() {
   system.add(Gravity{{0.0, -9.81}});
   system.set_default_law(Surface{.friction = 0.4, .normal_restitution = 0.1});
   for (const Wall& wall : hopper({0.0, 1.2}, 0.3, 1.0, 0.5, 0.02)) system.add(wall);
-  system.add(stairs({-1.2, 0.8}, 3, 0.4, -0.2), "stairs");
+  system.add(stairs({-2.6, 0.8}, 3, 0.4, -0.2), "stairs");
   system.add(Peg{.centre = {0.4, 0.7}, .radius = 0.05}, "peg");
   system.add(HalfPlane{.normal = {0.0, 1.0}, .surface_speed = 0.5}, "belt");
   const BodyId grain = system.add(RigidBody{.mass = disc(0.1, 0.05), .position = {0.1, 1.6}}, "grain");
