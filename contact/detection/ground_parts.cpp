@@ -97,7 +97,7 @@ std::vector<GroundPiece> Terrain::pieces(const PartCheck& check) const {
   const std::size_t n = vertices.size();
   std::vector<Vec<2>> with_sides{vertices[0] + down(vertices[0], vertices[1])};
   with_sides.insert(with_sides.end(), vertices.begin(), vertices.end());
-  with_sides.push_back(vertices[n - 1] + down(vertices[n - 2], vertices[n - 1]));
+  with_sides.emplace_back(vertices[n - 1] + down(vertices[n - 2], vertices[n - 1]));
   return faces_along(with_sides, false, depth);
 }
 
