@@ -16,7 +16,7 @@
 
 namespace carom {
 
-/// What a constraint joins: the node of its first body with that of another one, or with itself.
+/// Nodes that a constraint joins: that of its first body and that of another one, or the first alone, twice.
 struct JoinedNodes {
   Index first = none, second = none;
 };

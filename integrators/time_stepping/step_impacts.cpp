@@ -68,7 +68,7 @@ bool StepImpacts::resolve(const StepInput& in) {
     struck = true;
     const auto mechanism = [&](Index body) { return in.assembly.mechanism(body); };
     for (const Range part : partition_.arrange(std::span(contacts_), bodies, mechanism)) {
-      static_cast<void>(resolve_island(in, std::span(contacts_).subspan(part.begin, part.size())));
+      resolve_island(in, std::span(contacts_).subspan(part.begin, part.size()));
     }
   }
   return struck;
@@ -92,7 +92,7 @@ double StepImpacts::fastest(std::span<const Constraint> contacts) const {
 
 /// Impacts of contacts that share bodies, until none closes faster than the capture speed; a sequence, until
 /// none closes at all.
-bool StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
+void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
   const TimeStepping& options = parts_->options;
   const bool sequential = options.impact_order == ImpactOrder::sequential;
   double noise = 0.0;
@@ -101,7 +101,7 @@ bool StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
   }
   for (int round = 0; round < most_impacts_at_once; ++round) {
     const double least = sequential && round > 0 ? noise : std::max(noise, options.capture_speed);
-    if (!(fastest(contacts) > least)) return round > 0;
+    if (!(fastest(contacts) > least)) return;
     touching_.assign(contacts.begin(), contacts.end());
     for (Constraint& contact : touching_) {
       if (!contact.has_dry_friction())
@@ -117,7 +117,7 @@ bool StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     }
     solve_by_law(in, note);
     apply(in, note);
-    if (note.cut_sequence) return true;
+    if (note.cut_sequence) return;
   }
   parts_->errors(in, in.assembly.component_of(contacts.front().body()))
       .fail_impacts(problem_, "impacts do not come to an end");

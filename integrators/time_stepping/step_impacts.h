@@ -46,7 +46,7 @@ public:
   [[nodiscard]] SolverChain& chain() { return chain_; }
 
 private:
-  [[nodiscard]] bool resolve_island(const StepInput& in, std::span<const Constraint> contacts);
+  void resolve_island(const StepInput& in, std::span<const Constraint> contacts);
   [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
   [[nodiscard]] bool solve();
   void place_joints(const StepInput& in);

@@ -56,7 +56,7 @@ TEST(ImpactLaws, NewtonsCradleInBothOrdersAndModes) {
           sequential ? at.at("sequential_velocities") : at.at("simultaneous_velocities").at(0);
       const auto check = [&](const Simulation& simulation, const Cradle& cradle, const char* name) {
         for (std::size_t i = 0; i < cradle.discs.size(); ++i) {
-          // What a sequence leaves of the approach is below 1e-12 of the speed.
+          // The approach that a sequence leaves is below 1e-12 of the speed.
           EXPECT_NEAR(simulation.state().velocity(cradle.discs[i])[0], expected.at(i).get<double>(), 1e-12)
               << name << ", " << count << " discs, e = " << e << ", " << to_string(order) << ", disc " << i;
         }
