@@ -27,6 +27,27 @@ void append_csv(std::string& line, std::string_view text) {
   line += '"';
 }
 
+CsvWriter::CsvWriter(std::string_view what, const std::string& path)
+    : name_(std::string(what) + ": '" + path + "'"), file_(path) {
+  demand_written();
+}
+
+void CsvWriter::end_line() {
+  line_.back() = '\n';
+  file_ << line_;
+  line_.clear();
+  demand_written();
+}
+
+void CsvWriter::flush() {
+  file_.flush();
+  demand_written();
+}
+
+void CsvWriter::demand_written() const {
+  if (!file_) throw FileError(name_ + " cannot be written");
+}
+
 CsvReader::CsvReader(std::string_view what, const std::string& path) : name_(what) {
   name_ += " '" + path + "'";
   if (is_special_file(path)) throw FileError(name_ + " cannot be read: it is not a regular file");

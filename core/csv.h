@@ -3,6 +3,8 @@
 /// \file
 /// Comma-separated values: exact digits whatever the locale, texts quoted where they need to be. Not API.
 
+#include <cstddef>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,34 @@ namespace carom {
 void append_csv(std::string& line, double number);
 /// Appends a text, quoted if it holds a comma, a quote or an end of line.
 void append_csv(std::string& line, std::string_view text);
+
+/// Writes the records of a file, one after the other.
+class CsvWriter {
+public:
+  /// Makes the file. Throws FileError if it cannot be written, as the others. \param what names it in
+  /// messages
+  CsvWriter(std::string_view what, const std::string& path);
+
+  /// Adds a field to the record.
+  template <class T>
+  void add(const T& field) {
+    append_csv(line_, field);
+    line_ += ',';
+  }
+  /// Adds empty fields.
+  void skip(std::size_t fields = 1) { line_.append(fields, ','); }
+  /// Ends the record and writes it.
+  void end_line();
+  /// Writes what is still in memory.
+  void flush();
+
+private:
+  void demand_written() const;
+
+  std::string name_;
+  std::ofstream file_;
+  std::string line_;
+};
 
 /// Reads the records of a file, one after the other. Lines end with "\n" or "\r\n", the last one too: a file
 /// without it was cut off.

@@ -1,10 +1,8 @@
 #include <carom/core/csv.h>
-#include <carom/core/errors.h>
 #include <carom/integrators/contact_recorder.h>
 #include <carom/integrators/simulation.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace carom {
@@ -22,45 +20,37 @@ std::string other_part(const System& system, const ContactRecord& contact) {
 }  // namespace
 
 struct ContactRecorder::Impl {
-  explicit Impl(const std::string& file_path) : path(file_path), file(file_path) {}
+  explicit Impl(const std::string& path) : file("contact recorder", path) {}
 
   void write_header();
   void write_row(const Simulation& simulation, const ContactRecord& contact);
   /// Empty where there is no number.
-  void add(double number) {
-    if (!std::isnan(number)) append_csv(line, number);
-    line += ',';
-  }
-  void add(std::string_view text) {
-    append_csv(line, text);
-    line += ',';
-  }
-  void end_line() {
-    line.back() = '\n';
-    file << line;
-    line.clear();
-    if (!file) throw FileError("contact recorder: '" + path + "' cannot be written");
-  }
+  void add(double number) { std::isnan(number) ? file.skip() : file.add(number); }
+  void add(std::string_view text) { file.add(text); }
 
-  std::string path;
-  std::ofstream file;
-  std::string line;
+  CsvWriter file;
   long rows = 0;
 };
 
 void ContactRecorder::Impl::write_header() {
-  line = "time [s],contact,part,other part,x [m],y [m],z [m],normal x,normal y,normal z,gap [m]";
-  for (const char* const when : {"before", "after"}) {
+  const auto vector = [this](std::string_view quantity) {
     for (const char* const along : {"normal", "tangential", "second tangential"})
-      line.append(",").append(along).append(" velocity ").append(when).append(" [m/s]");
+      add(std::string(along).append(quantity));
+  };
+  for (const char* const name : {"time [s]", "contact", "part", "other part", "x [m]", "y [m]", "z [m]",
+                                 "normal x", "normal y", "normal z", "gap [m]"}) {
+    add(std::string_view(name));
   }
-  for (const char* const along : {"normal", "tangential", "second tangential"})
-    line.append(",").append(along).append(" impulse [N s]");
-  line += ",rolling impulse moment [N m s]";
-  for (const char* const along : {"normal", "tangential", "second tangential"})
-    line.append(",").append(along).append(" mean force [N]");
-  line += ",mode,kind,work of contact [J],energy gain of impact [J],restitution factor,";
-  end_line();
+  vector(" velocity before [m/s]");
+  vector(" velocity after [m/s]");
+  vector(" impulse [N s]");
+  add(std::string_view("rolling impulse moment [N m s]"));
+  vector(" mean force [N]");
+  for (const char* const name :
+       {"mode", "kind", "work of contact [J]", "energy gain of impact [J]", "restitution factor"}) {
+    add(std::string_view(name));
+  }
+  file.end_line();
 }
 
 void ContactRecorder::Impl::write_row(const Simulation& simulation, const ContactRecord& contact) {
@@ -84,7 +74,7 @@ void ContactRecorder::Impl::write_row(const Simulation& simulation, const Contac
   add(contact.contact_work);
   add(contact.energy_gain);
   add(contact.restitution_factor);
-  end_line();
+  file.end_line();
   ++rows;
 }
 
@@ -96,10 +86,7 @@ ContactRecorder::ContactRecorder(Simulation& simulation, const std::string& path
   });
 }
 
-void ContactRecorder::flush() {
-  impl_->file.flush();
-  if (!impl_->file) throw FileError("contact recorder: '" + impl_->path + "' cannot be written");
-}
+void ContactRecorder::flush() { impl_->file.flush(); }
 
 void ContactRecorder::detach(Simulation& simulation) {
   simulation.remove_callback(observer_);

@@ -5,7 +5,6 @@
 #include <carom/integrators/simulation.h>
 
 #include <array>
-#include <fstream>
 #include <string_view>
 
 namespace carom {
@@ -17,29 +16,13 @@ constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
 }  // namespace
 
 struct CsvRecorder::Impl {
-  Impl(const std::string& file_path, const Options& chosen)
-      : path(file_path), options(chosen), file(file_path) {}
+  Impl(const std::string& file_path, const Options& chosen) : options(chosen), file("recorder", file_path) {}
 
   void write_header(const Simulation& simulation);
   void write_row(const Simulation& simulation);
-  void add(double number) {
-    append_csv(line, number);
-    line += ',';
-  }
-  void end_line() {
-    line.back() = '\n';
-    file << line;
-    line.clear();
-    demand_written();
-  }
-  void demand_written() const {
-    if (!file) throw FileError("recorder: '" + path + "' cannot be written");
-  }
 
-  std::string path;
   Options options;
-  std::ofstream file;
-  std::string line;
+  CsvWriter file;
   std::vector<std::size_t> columns;  // by body
   long rows = 0;
   long steps = 0;
@@ -48,15 +31,13 @@ struct CsvRecorder::Impl {
 void CsvRecorder::Impl::write_header(const Simulation& simulation) {
   const Layout& layout = *simulation.state().layout();
   const auto dimension = static_cast<std::size_t>(layout.dimension());
-  line = "time [s],";
+  const auto add = [this](const std::string& name) { file.add(std::string_view(name)); };
+  add("time [s]");
   for (const BodyId body : options.bodies) {
     std::string name = simulation.system().given_name(body);
     if (name.empty()) name = simulation.system().name(body);
     const bool oriented = layout.slot(body).rotation != none;
-    const auto column = [&](const std::string& quantity) {
-      append_csv(line, name + "." + quantity);
-      line += ',';
-    };
+    const auto column = [&](const std::string& quantity) { add(name + "." + quantity); };
     for (std::size_t i = 0; i < dimension; ++i) column(std::string(axes[i]) + " [m]");
     if (oriented) column("angle [rad]");
     for (std::size_t i = 0; i < dimension; ++i) column("v" + std::string(axes[i]) + " [m/s]");
@@ -64,23 +45,24 @@ void CsvRecorder::Impl::write_header(const Simulation& simulation) {
     columns.push_back(layout.slot(body).q_size + layout.slot(body).v_size);
   }
   if (options.energies) {
-    const auto column = [&](std::string_view name) { line.append(name).append(" [J],"); };
+    const auto column = [&](std::string_view name) { add(std::string(name) + " [J]"); };
     for (std::size_t i = 0; i < stored_energy_count; ++i) column(to_string(static_cast<StoredEnergy>(i)));
     column("total");
     for (std::size_t i = 0; i < energy_flow_count; ++i) column(to_string(static_cast<EnergyFlow>(i)));
     column("residual");
   }
-  end_line();
+  file.end_line();
 }
 
 void CsvRecorder::Impl::write_row(const Simulation& simulation) {
   const State& state = simulation.state();
   const Layout& layout = *state.layout();
+  const auto add = [this](double number) { file.add(number); };
   add(state.time);
   for (std::size_t i = 0; i < options.bodies.size(); ++i) {
     const BodyId body = options.bodies[i];
     if (!layout.contains(body)) {
-      line.append(columns[i], ',');
+      file.skip(columns[i]);
       continue;
     }
     const BodySlot& slot = layout.slot(body);
@@ -94,7 +76,7 @@ void CsvRecorder::Impl::write_row(const Simulation& simulation) {
     for (std::size_t i = 0; i < energy_flow_count; ++i) add(energy.flow(static_cast<EnergyFlow>(i)));
     add(energy.residual());
   }
-  end_line();
+  file.end_line();
   ++rows;
 }
 
@@ -108,7 +90,6 @@ CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const 
   }
   for (const BodyId body : options.bodies) (void)simulation.state().layout()->index(body);
   impl_ = std::make_shared<Impl>(path, options);
-  impl_->demand_written();
   if (impl_->options.bodies.empty()) impl_->options.bodies = simulation.system().bodies();
   impl_->write_header(simulation);
   impl_->write_row(simulation);
@@ -117,10 +98,7 @@ CsvRecorder::CsvRecorder(Simulation& simulation, const std::string& path, const 
   });
 }
 
-void CsvRecorder::flush() {
-  impl_->file.flush();
-  impl_->demand_written();
-}
+void CsvRecorder::flush() { impl_->file.flush(); }
 
 void CsvRecorder::detach(Simulation& simulation) {
   simulation.remove_callback(observer_);
