@@ -16,8 +16,9 @@ constexpr double dependent = 1e-11;
 
 double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
   if (frictionless) return 0.0;
-  return sticks() ? where.law.sticking_friction()
-                  : where.law.sliding_friction(slip_sign() * where.tangential_velocity(velocities));
+  if (sticks()) return where.law.sticking_friction();
+  if (!where.law.falls_with_speed()) return where.law.friction;
+  return where.law.sliding_friction(slip_sign() * where.tangential_velocity(velocities));
 }
 
 void ActiveSet::bind(const Assembly& assembly, ComponentsResponse& response) {

@@ -200,12 +200,13 @@ private:
   template <class F>
   void for_columns(int i, F&& f) const {
     constexpr int of_planar_body = 3;
-    if (bodies == 1 && blocks[0].columns == of_planar_body) {  // the usual case, without loops
-      const double* const h = jacobian.data() + of_planar_body * i;
+    if (bodies == 1 && blocks[0].columns <= of_planar_body) {  // the usual case, without loops
+      const int width = blocks[0].columns;
+      const double* const h = jacobian.data() + width * i;
       const Index v = blocks[0].v;
       f(h[0], v);
       f(h[1], v + 1);
-      f(h[2], v + 2);
+      if (width == of_planar_body) f(h[2], v + 2);
       return;
     }
     const double* h = row(i);

@@ -42,6 +42,8 @@ struct Surface {
 
   /// True if static friction is larger than sliding friction.
   [[nodiscard]] bool has_static_friction() const { return static_friction > friction; }
+  /// True if friction falls with the speed of sliding.
+  [[nodiscard]] bool falls_with_speed() const { return stribeck_speed > 0.0; }
   /// True if impacts are not solved by Newton's law.
   [[nodiscard]] bool has_other_impact_law() const { return impact_law != ImpactLaw::newton; }
   /// True if a moment acts against rolling.
@@ -54,7 +56,7 @@ struct Surface {
   /// stribeck_speed 0 mu_s at rest and mu_k at any other speed.
   [[nodiscard]] double friction_at(double speed) const {
     if (!has_static_friction()) return friction;
-    if (stribeck_speed > 0.0) {
+    if (falls_with_speed()) {
       return friction + (static_friction - friction) * std::exp(-speed / stribeck_speed);
     }
     return speed > 0.0 ? friction : static_friction;
@@ -62,7 +64,7 @@ struct Surface {
   /// Coefficient of a contact that slides at a speed >= 0 [m/s], at 0 the limit of slow sliding; below 0 the
   /// curve is continued.
   [[nodiscard]] double sliding_friction(double speed) const {
-    return stribeck_speed > 0.0 ? friction_at(speed) : friction;
+    return falls_with_speed() ? friction_at(speed) : friction;
   }
 };
 

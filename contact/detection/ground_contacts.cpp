@@ -30,6 +30,17 @@ private:
 /// A look at so many points together is not worth while.
 constexpr Index hardly_any = 2;
 
+/// Makes a constraint ready for the rows of a contact. That of the same contact keeps what is not of the
+/// state: to clear all of it costs as much as the rows.
+void start(const ConstraintKey& key, Constraint& out) {
+  if (out.key != key) {
+    out = {};
+    return;
+  }
+  out.drift = out.surface_velocity = out.surface_velocity_after = {};
+  out.allowed_approach = 0.0;
+}
+
 template <class F>
 void for_parts(Range all, Index size, F&& f) {
   for (Index first = all.begin; first < all.end; first += size) {
@@ -212,7 +223,7 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const BodyFeature feature = pair.feature == none ? BodyFeature::at_centre(body, pair.body, pair.material)
                                                    : features_.points()[pair.feature];
-  out = {};  // it may have held a contact of another body
+  start(ConstraintKey{feature.key, shapes_.key(pair.ground_shape)}, out);
   const auto with_dimension = [&]<int D>(std::integral_constant<int, D>) {
     const PlacedFeature<D> at = place_feature<D>(body, feature, state, evaluation);
     const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());
