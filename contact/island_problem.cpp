@@ -1,4 +1,9 @@
-// Problem: state the law of contact for the constraints of an island.
+// Problem: state the law of contact and impact for the constraints of an island, as the sets that impulses
+// lie in and the velocities that they answer to (Johansson 1999, equations 4 to 13). With
+//     xi = W P + b = v^+ + e v^-   along every row,
+// normal rows obey 0 <= P_n, 0 <= xi_n, P_n xi_n = 0; tangential ones |P_t| <= mu P_n, and where xi_t is not
+// 0, P_t = -mu P_n sign(xi_t). Rows of limits are normal; friction in joints and rolling resistance have a
+// bound of their own in place of mu P_n.
 
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/contact_mode.h>

@@ -1,7 +1,7 @@
 // Problem: one step t_j -> t_{j+1} (Johansson 1999, section 4). Stages are named functions of a range and
 // hand values on; `in` never changes, whatever is thrown, and the trial of a step that fails is asked for the
-// cause. From here: the iteration is island_iteration.cpp, the law of impact contact/solvers/solver_chain.cpp
-// and the solvers that it calls.
+// cause. From here: the iteration is island_iteration.cpp, the law of contact and impact
+// contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those that it calls.
 
 #include <carom/integrators/time_stepping/time_stepper.h>
 
