@@ -54,6 +54,7 @@ run_example 08_discs_in_a_box scripts/plot_discs.py
 run_example 09_newtons_cradle scripts/plot_cradle.py
 run_example 10_rocking_block scripts/plot_rocking_block.py
 run_example 11_bars_in_a_drum scripts/plot_drum.py
+run_example 12_woodpecker scripts/plot_woodpecker.py
 
 if $update_docs; then
   mkdir -p docs/figures
