@@ -1,0 +1,12 @@
+"""Nonsmooth multibody dynamics: impacts with friction, time stepping and event-driven.
+
+Names, defaults and units are those of the C++ library; functions stay functions (simulation.energy()), members are
+attributes. `from` is a word of Python: that argument is `from_`.
+"""
+
+from . import planar, spatial
+from ._core import *  # noqa: F403
+from ._core import ground as ground
+
+__version__ = "0.1.0"
+__all__ = [name for name in dir() if not name.startswith("_")]

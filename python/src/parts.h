@@ -1,0 +1,48 @@
+#pragma once
+
+// Parts of systems: described structs that can be added.
+
+#include "types.h"
+
+#include <carom/core/system.h>
+
+#include <string>
+
+namespace carom_python {
+
+/// What a system does with parts of one type.
+struct PartType {
+  carom::Role role = carom::Role::body;
+  const Record* record = nullptr;
+  /// Adds a part; returns its identity. \param surface null: none
+  nb::object (*add)(carom::System& system, const void* part, const carom::Surface* surface,
+                    std::string name) = nullptr;
+  nb::object (*copy)(const void* part) = nullptr;
+};
+
+/// That of a Python type; null if none.
+[[nodiscard]] const PartType* part_type(nb::handle type);
+void register_part(nb::handle type, const PartType& part);
+[[nodiscard]] const char* role_name(carom::Role role);
+
+/// Binds a part.
+template <class P, class Describe>
+void bind_part(nb::module_& module, const char* name, const std::vector<std::string>& doc_keys,
+               const Describe& describe) {
+  const nb::class_<P> type = bind_record<P>(module, name, doc_keys, true, describe);
+  PartType part;
+  part.role = P::role;
+  part.record = record_of(type);
+  const_cast<Record*>(part.record)->role = role_name(P::role);
+  part.add = [](carom::System& system, const void* what, const carom::Surface* surface, std::string label) {
+    const P& given = *static_cast<const P*>(what);
+    if constexpr (P::role == carom::Role::obstacle) {
+      if (surface != nullptr) return nb::cast(system.add(given, *surface, std::move(label)));
+    }
+    return nb::cast(system.add(given, std::move(label)));
+  };
+  part.copy = [](const void* what) { return nb::cast(P(*static_cast<const P*>(what))); };
+  register_part(type, part);
+}
+
+}  // namespace carom_python

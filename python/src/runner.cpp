@@ -1,0 +1,159 @@
+#include "runner.h"
+
+#include <carom/core/errors.h>
+#include <carom/core/layout.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace carom_python {
+
+using namespace carom;
+
+std::string path_of(nb::handle from) {
+  const nb::object text = nb::steal(PyOS_FSPath(from.ptr()));
+  if (!text.is_valid()) {
+    PyErr_Clear();
+    refuse("path", "a text or a path", from);
+  }
+  std::string path;
+  Convert<std::string>::load(text, path, "path");
+  return path;
+}
+
+Mode mode_of(nb::handle from) {
+  if (nb::isinstance<TimeStepping>(from)) return nb::cast<TimeStepping>(from);
+  if (nb::isinstance<EventDriven>(from)) return nb::cast<EventDriven>(from);
+  refuse("mode", "TimeStepping(...) or EventDriven(...)", from);
+}
+
+void check_threads(const Journal& journal, const Mode& mode) {
+  const auto* const stepping = std::get_if<TimeStepping>(&mode);
+  if (stepping == nullptr || stepping->threads <= 1) return;
+  const std::string part = find_python_part(journal);
+  if (part.empty()) return;
+  throw ModelError(part + " is in Python, which one thread at a time can run, and threads is " +
+                   std::to_string(stepping->threads) +
+                   "; allowed: threads = 1, or a compiled function (of ctypes, or numba.cfunc)");
+}
+
+namespace {
+
+/// Lets signals of the system (Ctrl-C) end a run: asked in every sweep, it looks a few times a second.
+class Signals {
+public:
+  explicit Signals(StopFunction stop) : stop_(std::move(stop)) {}
+  bool operator()() {
+    if (stop_ && stop_()) return true;
+    if (++count_ % 64 != 0) return false;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(50)) return false;
+    last_ = now;
+    const nb::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    return false;
+  }
+
+private:
+  StopFunction stop_;
+  unsigned count_ = 0;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Runner::Runner(const Model& model, const Mode& mode) : journal_(model) {
+  check_threads(journal_, mode);
+  simulation_ = std::make_unique<Simulation>(model.system, mode);
+  python_laws_ = !find_python_part(journal_).empty();
+  install_stop();
+}
+
+void Runner::check_thread() const {
+  if (thread_.load() != std::this_thread::get_id()) {
+    throw ModelError("simulation: another thread is running it; one thread at a time may use it");
+  }
+}
+
+void Runner::install_stop() {
+  // In the event-driven mode a function that is asked would change how run_until() cuts the run into steps.
+  const bool stepping = std::holds_alternative<TimeStepping>(simulation_->mode());
+  if (stepping || stop_) {
+    simulation_->stop_when(Signals(stop_));
+  } else {
+    simulation_->stop_when({});
+  }
+}
+
+void Runner::stop_when(StopFunction stop) {
+  get();
+  stop_ = std::move(stop);
+  install_stop();
+}
+
+std::size_t Runner::keep(nb::handle function) {
+  kept_.push_back(nb::borrow(function));
+  return kept_.size() - 1;
+}
+
+void Runner::forget_model() {
+  system_ = nb::object();
+  slots_.clear();
+}
+
+nb::object Runner::system() {
+  get();
+  if (!system_.is_valid()) {
+    Model copy;
+    static_cast<Journal&>(copy) = journal_;
+    copy.system = simulation_->system();
+    system_ = nb::cast(std::move(copy));
+  }
+  return system_;
+}
+
+void Runner::edit(nb::handle change) {
+  get();
+  if (PyCallable_Check(change.ptr()) == 0) refuse("edit(): change", "a function of a System", change);
+  nb::object lent = nb::cast(Model{});
+  Model& model = *nb::inst_ptr<Model>(lent);
+  static_cast<Journal&>(model) = journal_;
+  Journal changed;
+  const auto take_back = [&](System& system) {
+    system = std::move(model.system);
+    model.system = System();
+    model.closed = true;
+  };
+  simulation_->edit([&](System& system) {
+    model.system = std::move(system);
+    try {
+      change(lent);
+    } catch (...) {
+      take_back(system);
+      throw;
+    }
+    take_back(system);
+    check_threads(model, simulation_->mode());
+    changed = model;
+  });
+  journal_ = std::move(changed);
+  python_laws_ = !find_python_part(journal_).empty();
+  forget_model();
+}
+
+void Runner::switch_to(const Mode& mode) {
+  check_threads(journal_, mode);
+  get().switch_to(mode);
+  install_stop();
+}
+
+const std::vector<std::pair<BodyId, BodySlot>>& Runner::slots() {
+  if (slots_.empty()) {
+    const Layout& layout = *get().state().layout();
+    for (Index i = 0; i < layout.bodies().size(); ++i) slots_.emplace_back(layout.id(i), layout.bodies()[i]);
+    std::ranges::sort(slots_, {}, [](const auto& place) { return place.first.serial; });
+  }
+  return slots_;
+}
+
+}  // namespace carom_python

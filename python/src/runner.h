@@ -1,0 +1,88 @@
+#pragma once
+
+// The Simulation of Python: a carom::Simulation, the parts of its model, and the functions that it calls.
+
+#include "model.h"
+
+#include <carom/integrators/simulation.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace carom_python {
+
+/// A path, given as text or as an object with __fspath__.
+[[nodiscard]] std::string path_of(nb::handle from);
+
+/// A mode from its options. Raises TypeError.
+[[nodiscard]] carom::Mode mode_of(nb::handle from);
+/// Throws ModelError for functions in Python that several threads would call.
+void check_threads(const Journal& journal, const carom::Mode& mode);
+
+/// A running model.
+class Runner {
+public:
+  Runner(const Model& model, const carom::Mode& mode);
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+  ~Runner() = default;
+
+  /// The simulation. Throws ModelError while another thread runs it.
+  [[nodiscard]] carom::Simulation& get() {
+    if (thread_.load(std::memory_order_relaxed) != std::thread::id()) check_thread();
+    return *simulation_;
+  }
+  /// Runs `work` with the interpreter's lock released, unless something in Python is called in it.
+  template <class Work>
+  void run(const Work& work) {
+    get();
+    const std::thread::id before = thread_.exchange(std::this_thread::get_id());
+    const Restore restore{thread_, before};
+    if (calls_python()) {
+      work(*simulation_);
+    } else {
+      const nb::gil_scoped_release release;
+      work(*simulation_);
+    }
+  }
+  /// The model, as a copy of its own; the same object until the next edit.
+  [[nodiscard]] nb::object system();
+  void edit(nb::handle change);
+  void switch_to(const carom::Mode& mode);
+  /// Keeps a function of the user as long as the simulation; returns its number.
+  std::size_t keep(nb::handle function);
+  [[nodiscard]] nb::handle kept(std::size_t number) const { return kept_[number]; }
+  /// Forgets all functions, and that they are called (for the collector of garbage).
+  void clear() { kept_.clear(); }
+  [[nodiscard]] const std::vector<nb::object>& all_kept() const { return kept_; }
+  [[nodiscard]] const Journal& journal() const { return journal_; }
+  /// Asks `stop` from now on; a null one ends that.
+  void stop_when(carom::StopFunction stop);
+  /// First coordinate and velocity of every body, in the order in which bodies were added.
+  [[nodiscard]] const std::vector<std::pair<carom::BodyId, carom::BodySlot>>& slots();
+  void forget_model();
+
+private:
+  struct Restore {
+    std::atomic<std::thread::id>& thread;
+    std::thread::id before;
+    ~Restore() { thread.store(before); }
+  };
+  void check_thread() const;
+  [[nodiscard]] bool calls_python() const { return python_laws_ || !kept_.empty() || stop_; }
+  void install_stop();
+
+  Journal journal_;
+  std::unique_ptr<carom::Simulation> simulation_;
+  std::vector<nb::object> kept_;
+  carom::StopFunction stop_;
+  bool python_laws_ = false;
+  nb::object system_;
+  std::vector<std::pair<carom::BodyId, carom::BodySlot>> slots_;
+  std::atomic<std::thread::id> thread_{};
+};
+
+}  // namespace carom_python

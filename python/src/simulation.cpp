@@ -1,0 +1,288 @@
+// Simulation: runs a model.
+
+#include "bind.h"
+#include "functions.h"
+#include "runner.h"
+
+#include <carom/core/log.h>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <cmath>
+#include <limits>
+
+namespace carom_python {
+
+using namespace carom;
+
+namespace {
+
+CallbackId observe(Runner& self, nb::handle observer) {
+  if (PyCallable_Check(observer.ptr()) == 0)
+    refuse("observe(): observer", "a function of a Simulation", observer);
+  const std::size_t number = self.keep(observer);
+  return self.get().observe([&self, number](const Simulation&) {
+    const nb::gil_scoped_acquire lock;
+    self.kept(number)(nb::find(self));
+  });
+}
+
+CallbackId every(Runner& self, double interval, nb::handle action) {
+  if (PyCallable_Check(action.ptr()) == 0) refuse("every(): action", "a function of a Simulation", action);
+  const std::size_t number = self.keep(action);
+  return self.get().every(interval, [&self, number](Simulation&) {
+    const nb::gil_scoped_acquire lock;
+    self.kept(number)(nb::find(self));
+  });
+}
+
+void set_log(Runner& self, nb::handle sink, nb::handle level) {
+  if (sink.is_none()) {
+    self.get().log() = Log();
+    return;
+  }
+  if (PyCallable_Check(sink.ptr()) == 0) refuse("set_log(): sink", "a function of a level and a text", sink);
+  LogLevel least{};
+  Convert<LogLevel>::load(level, least, "set_log(): level");
+  const std::size_t number = self.keep(sink);
+  self.get().log() = Log(
+      [&self, number](LogLevel of, std::string_view text) {
+        const nb::gil_scoped_acquire lock;
+        self.kept(number)(nb::cast(of), nb::str(text.data(), text.size()));
+      },
+      least);
+}
+
+// Numbers of all bodies, in the order in which they were added; `bodies` says which.
+enum class What { positions, velocities, angles, spins };
+
+nb::object gather(Runner& self, What what) {
+  const State& state = self.get().state();
+  const auto& slots = self.slots();
+  const bool of_angle = what == What::angles || what == What::spins;
+  const bool of_q = what == What::positions || what == What::angles;
+  const std::size_t width = state.layout()->dimension() == 3 ? 3 : 2, columns = of_angle ? 1 : width;
+  std::vector<double> numbers(slots.size() * columns, std::numeric_limits<double>::quiet_NaN());
+  const double* const from = of_q ? state.q.data() : state.v.data();
+  double* to = numbers.data();
+  for (const auto& [body, slot] : slots) {
+    const double* const own = from + (of_q ? slot.q : slot.v);
+    if (!of_angle) {
+      for (std::size_t i = 0; i < columns; ++i) to[i] = own[i];
+    } else if (slot.rotation != none && width == 2) {
+      to[0] = own[2];
+    }
+    to += columns;
+  }
+  return make_array(numbers.data(), slots.size(), of_angle ? 0 : columns);
+}
+
+nb::object mode_object(const Simulation& simulation) {
+  if (const auto* stepping = std::get_if<TimeStepping>(&simulation.mode())) return nb::cast(*stepping);
+  return nb::cast(std::get<EventDriven>(simulation.mode()));
+}
+
+nb::list events_from(Runner& self, std::size_t first) {
+  nb::list list;
+  const std::vector<EventRecord>& events = self.get().events();
+  for (std::size_t i = first; i < events.size(); ++i) list.append(nb::cast(events[i]));
+  return list;
+}
+
+using Class = nb::class_<Runner>;
+constexpr const char* array = "numpy.typing.NDArray[numpy.float64]";
+
+void bind_runs(Class& type) {
+  type.def(
+          "__init__",
+          [](Runner* self, Model& system, nb::handle mode) {
+            system.get();
+            new (self) Runner(system, mode_of(mode));
+          },
+          nb::arg("system"), nb::arg("mode"),
+          nb::sig("def __init__(self, system: System, mode: TimeStepping | EventDriven) -> None"),
+          doc("Simulation.Simulation"))
+      .def(
+          "step", [](Runner& self) { self.run([](Simulation& simulation) { simulation.step(); }); },
+          doc("Simulation.step"))
+      .def(
+          "run_until",
+          [](Runner& self, nb::handle time) {
+            double until = 0.0;
+            Convert<double>::load(time, until, "run_until(): time");
+            self.run([until](Simulation& simulation) { simulation.run_until(until); });
+          },
+          nb::arg("time"), nb::sig("def run_until(self, time: float) -> None"), doc("Simulation.run_until"))
+      .def("observe", &observe, nb::arg("observer"),
+           nb::sig("def observe(self, observer: collections.abc.Callable[[Simulation], typing.Any]) -> "
+                   "CallbackId"),
+           doc("Simulation.observe"))
+      .def("every", &every, nb::arg("interval"), nb::arg("action"),
+           nb::sig("def every(self, interval: float, action: collections.abc.Callable[[Simulation], "
+                   "typing.Any]) -> CallbackId"),
+           doc("Simulation.every"))
+      .def(
+          "remove_callback", [](Runner& self, const CallbackId& id) { self.get().remove_callback(id); },
+          nb::arg("callback"), doc("Simulation.remove_callback"))
+      .def(
+          "stop_when",
+          [](Runner& self, nb::handle stop) {
+            StopFunction function;
+            Convert<StopFunction>::load(stop, function, "stop_when(): stop");
+            self.stop_when(std::move(function));
+          },
+          nb::arg("stop").none(),
+          nb::sig("def stop_when(self, stop: collections.abc.Callable[[], bool] | None) -> None"),
+          doc("Simulation.stop_when"))
+      .def(
+          "edit", [](Runner& self, nb::handle change) { self.edit(change); }, nb::arg("change"),
+          nb::sig("def edit(self, change: collections.abc.Callable[[System], typing.Any]) -> None"),
+          doc("Simulation.edit"))
+      .def(
+          "set_state", [](Runner& self, const State& state) { self.get().set_state(state); },
+          nb::arg("state"), doc("Simulation.set_state"))
+      .def(
+          "switch_to", [](Runner& self, nb::handle mode) { self.switch_to(mode_of(mode)); }, nb::arg("mode"),
+          nb::sig("def switch_to(self, mode: TimeStepping | EventDriven) -> None"),
+          doc("Simulation.switch_to"))
+      .def(
+          "save", [](Runner& self, nb::handle path) { self.get().save(path_of(path)); }, nb::arg("path"),
+          nb::sig("def save(self, path: str | os.PathLike[str]) -> None"), doc("Simulation.save"))
+      .def(
+          "load", [](Runner& self, nb::handle path) { self.get().load(path_of(path)); }, nb::arg("path"),
+          nb::sig("def load(self, path: str | os.PathLike[str]) -> None"), doc("Simulation.load"))
+      .def("set_log", &set_log, nb::arg("sink").none(), nb::arg("level") = "info",
+           nb::sig("def set_log(self, sink: collections.abc.Callable[[LogLevel, str], typing.Any] | None, "
+                   "level: LogLevel | str = 'info') -> None"),
+           "Hands lines of the log, of at least this level, to a function of the level and the text. None: a "
+           "quiet log.")
+      .def(
+          "show_progress", [](Runner& self, bool on) { self.get().show_progress(on); }, nb::arg("on"),
+          doc("Simulation.show_progress"));
+}
+
+void bind_results(Class& type) {
+  type.def("system", &Runner::system, nb::sig("def system(self) -> System"),
+           "The model: a copy, changed with edit() only; the same object until the next edit.")
+      .def(
+          "state", [](Runner& self) { return State(self.get().state()); },
+          nb::sig("def state(self) -> State"), "The state: a copy, taken now.")
+      .def(
+          "time", [](Runner& self) { return self.get().time(); }, "Time [s].")
+      .def(
+          "mode", [](Runner& self) { return mode_object(self.get()); },
+          nb::sig("def mode(self) -> TimeStepping | EventDriven"), "The mode and its options: a copy.")
+      .def(
+          "energy", [](Runner& self) { return self.get().energy(); }, "The energy ledger: a copy, taken now.")
+      .def(
+          "report", [](Runner& self) { return self.get().report(); },
+          "Report of the last step: a copy, taken now.")
+      .def(
+          "statistics", [](Runner& self) { return self.get().statistics(); },
+          "Counts since the start: a copy, taken now.")
+      .def(
+          "contact_statistics", [](Runner& self) { return self.get().contact_statistics(); },
+          doc("Simulation.contact_statistics"))
+      .def("events", &events_from, nb::arg("first") = 0,
+           nb::sig("def events(self, first: int = 0) -> list[EventRecord]"),
+           "Events of the event-driven mode, in order of time, from the one numbered `first` on: copies.")
+      .def(
+          "event_count", [](Runner& self) { return self.get().events().size(); },
+          "Number of events that are kept.")
+      .def(
+          "clear_events", [](Runner& self) { self.get().clear_events(); }, doc("Simulation.clear_events"))
+      .def(
+          "write_events", [](Runner& self, nb::handle path) { self.get().write_events(path_of(path)); },
+          nb::arg("path"), nb::sig("def write_events(self, path: str | os.PathLike[str]) -> None"),
+          doc("Simulation.write_events"))
+      .def(
+          "mobility", [](Runner& self) { return self.get().mobility(); }, doc("Simulation.mobility"))
+      .def(
+          "reaction", [](Runner& self, JointId joint) { return self.get().reaction(joint); },
+          nb::arg("joint"), doc("Simulation.reaction"))
+      .def(
+          "name", [](Runner& self, const ConstraintKey& key) { return self.get().name(key); }, nb::arg("key"),
+          doc("Simulation.name"))
+      .def(
+          "name", [](Runner& self, const EventRecord& event) { return self.get().name(event); },
+          nb::arg("event"), doc("Simulation.name"))
+      .def(
+          "name", [](Runner& self, const ContactRecord& contact) { return self.get().name(contact.key); },
+          nb::arg("contact"), doc("Simulation.name"))
+      .def(
+          "position",
+          [](Runner& self, BodyId body) {
+            const auto at = self.get().state().position(body);
+            return make_array(at.data(), static_cast<std::size_t>(at.size()), 0);
+          },
+          nb::arg("body"), nb::sig("def position(self, body: BodyId) -> numpy.typing.NDArray[numpy.float64]"),
+          "Position of a body [m]: a copy, without one of the whole state.")
+      .def(
+          "velocity",
+          [](Runner& self, BodyId body) {
+            const auto at = self.get().state().velocity(body);
+            return make_array(at.data(), static_cast<std::size_t>(at.size()), 0);
+          },
+          nb::arg("body"), nb::sig("def velocity(self, body: BodyId) -> numpy.typing.NDArray[numpy.float64]"),
+          "Velocity of a body [m/s]: a copy, without one of the whole state.")
+      .def(
+          "angle", [](Runner& self, BodyId body) { return self.get().state().angle(body); }, nb::arg("body"),
+          doc("State.angle"))
+      .def(
+          "spin", [](Runner& self, BodyId body) { return self.get().state().spin(body); }, nb::arg("body"),
+          doc("State.spin"))
+      .def(
+          "coordinate", [](Runner& self, JointId joint) { return self.get().state().coordinate(joint); },
+          nb::arg("joint"), doc("State.coordinate"))
+      .def(
+          "rate", [](Runner& self, JointId joint) { return self.get().state().rate(joint); },
+          nb::arg("joint"), doc("State.rate"));
+}
+
+void bind_arrays(Class& type) {
+  const auto add = [&](const char* name, What what, const char* text) {
+    const std::string signature = "def " + std::string(name) + "(self) -> " + array;
+    type.def(
+        name, [what](Runner& self) { return gather(self, what); }, nb::sig(signature.c_str()), text);
+  };
+  add("positions", What::positions,
+      "Positions of all bodies, a row each, in the order in which they were added [m]: a copy.");
+  add("velocities", What::velocities, "Velocities of all bodies, likewise [m/s].");
+  add("angles", What::angles, "Angles of all bodies, likewise; NaN of particles [rad].");
+  add("spins", What::spins, "Spins of all bodies, likewise; NaN of particles [rad/s].");
+  type.def(
+      "bodies",
+      [](Runner& self) {
+        nb::list list;
+        for (const auto& place : self.slots()) list.append(nb::cast(place.first));
+        return list;
+      },
+      nb::sig("def bodies(self) -> list[BodyId]"), "The bodies of positions() and its like, in their order.");
+}
+
+int traverse(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  for (const nb::object& kept : nb::inst_ptr<Runner>(self)->all_kept()) Py_VISIT(kept.ptr());
+  return 0;
+}
+int clear(PyObject* self) {
+  nb::inst_ptr<Runner>(self)->clear();
+  return 0;
+}
+PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
+                       {Py_tp_clear, reinterpret_cast<void*>(&clear)},
+                       {0, nullptr}};
+
+}  // namespace
+
+void bind_simulation(nb::module_& core) {
+  nb::class_<CallbackId>(core, "CallbackId", doc("CallbackId")).def(nb::init<>());
+  Class type(core, "Simulation", nb::type_slots(slots), doc("Simulation"));
+  bind_runs(type);
+  bind_results(type);
+  bind_arrays(type);
+}
+
+}  // namespace carom_python

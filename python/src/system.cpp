@@ -1,0 +1,287 @@
+// System: the model.
+
+#include "bind.h"
+#include "model.h"
+#include "parts.h"
+#include "python_element.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+
+namespace carom_python {
+
+using namespace carom;
+
+carom::System& Model::get() {
+  if (closed) throw ModelError("system of an edit: it may be used until the function given to edit() ends");
+  return system;
+}
+
+std::string find_python_part(const Journal& journal) {
+  for (const Entry& entry : journal.entries) {
+    if (is_python_element(entry.part)) {
+      return entry.name.empty() ? "force element #" + std::to_string(entry.serial)
+                                : "force element '" + entry.name + "'";
+    }
+    const Record* const record = record_of(entry.part.type());
+    if (record == nullptr) continue;
+    const void* const data = nb::inst_ptr<void>(entry.part);
+    for (const Field& field : record->fields) {
+      if (field.type->is_python == nullptr || !field.type->is_python(field.of(data))) continue;
+      const std::string name =
+          entry.name.empty() ? "#" + std::to_string(entry.serial) : "'" + entry.name + "'";
+      return record->name + " " + name + ": " + field.name;
+    }
+  }
+  return {};
+}
+
+namespace {
+
+template <class Id>
+void drop(Model& model, Role role, Id id) {
+  std::erase_if(model.entries,
+                [&](const Entry& entry) { return entry.role == role && entry.serial == id.serial; });
+}
+
+Index serial_of(nb::handle id) { return nb::cast<Index>(id.attr("serial")); }
+
+// add(part), add(part, "name"), add(part, surface), add(part, surface, "name").
+nb::object add(Model& model, nb::handle part, nb::handle surface, nb::handle name) {
+  std::string label;
+  std::optional<Surface> law;
+  if (nb::isinstance<nb::str>(surface) && name.is_none()) {
+    label = nb::cast<std::string>(surface);
+  } else if (!surface.is_none()) {
+    Convert<std::optional<Surface>>::load(surface, law, "add(): surface");
+  }
+  if (!name.is_none()) Convert<std::string>::load(name, label, "add(): name");
+
+  Entry entry;
+  entry.surface = law;
+  entry.name = label;
+  const PartType* const type = part_type(part.type());
+  nb::object id;
+  if (type != nullptr) {
+    if (law && type->role != Role::obstacle) {
+      throw nb::type_error("add(): surface: only shapes on ground are added with a Surface");
+    }
+    const void* const data = nb::inst_ptr<void>(part);
+    entry.role = type->role;
+    entry.part = type->copy(data);
+    id = type->add(model.get(), nb::inst_ptr<void>(entry.part), law ? &*law : nullptr, label);
+  } else {
+    id = add_python_element(model.get(), part, label);
+    if (!id.is_valid()) refuse("add(): part", "a part of carom.planar or carom.spatial", part);
+    entry.role = Role::force;
+    entry.part = nb::borrow(part);
+  }
+  entry.serial = serial_of(id);
+  model.entries.push_back(std::move(entry));
+  return id;
+}
+
+MaterialId material(Model& model, const std::string& name) {
+  const MaterialId id = model.get().material(name);
+  if (std::ranges::find(model.materials, name) == model.materials.end()) model.materials.push_back(name);
+  return id;
+}
+
+void between(Model& model, MaterialId a, MaterialId b, const Surface& surface) {
+  model.get().between(a, b, surface);
+  const auto name_of = [&](MaterialId id) {
+    return id.serial < model.materials.size() ? model.materials[id.serial] : std::string();
+  };
+  model.laws.push_back({name_of(a), name_of(b), surface});
+}
+
+// Parts as scene files need them: a dictionary each.
+nb::list parts_of(const Model& model) {
+  nb::list list;
+  for (const Entry& entry : model.entries) {
+    nb::dict item;
+    item["role"] = role_name(entry.role);
+    item["serial"] = entry.serial;
+    item["name"] = entry.name;
+    item["part"] = entry.part;
+    item["surface"] = entry.surface ? nb::cast(*entry.surface) : nb::none();
+    list.append(item);
+  }
+  return list;
+}
+
+template <class Id>
+void bind_for(nb::class_<Model>& type) {
+  type.def(
+          "remove",
+          [](Model& self, Id id) {
+            self.get().remove(id);
+            constexpr Role role = std::is_same_v<Id, BodyId>      ? Role::body
+                                  : std::is_same_v<Id, ElementId> ? Role::force
+                                  : std::is_same_v<Id, JointId>   ? Role::joint
+                                  : std::is_same_v<Id, ShapeId>   ? Role::shape
+                                                                  : Role::obstacle;
+            drop(self, role, id);
+          },
+          nb::arg("part"), doc("System.remove"))
+      .def(
+          "name", [](Model& self, Id id) { return self.get().name(id); }, nb::arg("part"), doc("System.name"))
+      .def(
+          "__contains__", [](Model& self, Id id) { return self.get().contains(id); }, doc("System.contains"));
+}
+
+template <class Id>
+nb::list listed(const std::vector<Id>& ids) {
+  nb::list list;
+  for (const Id id : ids) list.append(nb::cast(id));
+  return list;
+}
+
+void bind_queries(nb::class_<Model>& type) {
+  type.def(
+          "body", [](Model& self, const std::string& name) { return self.get().body(name); }, nb::arg("name"),
+          doc("System.body"))
+      .def(
+          "element", [](Model& self, const std::string& name) { return self.get().element(name); },
+          nb::arg("name"), doc("System.body"))
+      .def(
+          "joint", [](Model& self, const std::string& name) { return self.get().joint(name); },
+          nb::arg("name"), doc("System.body"))
+      .def(
+          "shape", [](Model& self, const std::string& name) { return self.get().shape(name); },
+          nb::arg("name"), doc("System.body"))
+      .def(
+          "obstacle", [](Model& self, const std::string& name) { return self.get().obstacle(name); },
+          nb::arg("name"), doc("System.body"))
+      .def(
+          "given_name", [](Model& self, BodyId id) { return self.get().given_name(id); }, nb::arg("body"),
+          doc("System.given_name"))
+      .def(
+          "body_of", [](Model& self, ShapeId id) { return self.get().body_of(id); }, nb::arg("shape"),
+          doc("System.body_of"))
+      .def(
+          "has_orientation", [](Model& self, BodyId id) { return self.get().has_orientation(id); },
+          nb::arg("body"), doc("System.has_orientation"))
+      .def(
+          "bodies", [](Model& self) { return listed(self.get().bodies()); },
+          nb::sig("def bodies(self) -> list[BodyId]"), doc("System.bodies"))
+      .def(
+          "elements", [](Model& self) { return listed(self.get().elements()); },
+          nb::sig("def elements(self) -> list[ElementId]"), doc("System.bodies"))
+      .def(
+          "joints", [](Model& self) { return listed(self.get().joints()); },
+          nb::sig("def joints(self) -> list[JointId]"), doc("System.bodies"))
+      .def(
+          "shapes", [](Model& self) { return listed(self.get().shapes()); },
+          nb::sig("def shapes(self) -> list[ShapeId]"), doc("System.bodies"))
+      .def(
+          "obstacles", [](Model& self) { return listed(self.get().obstacles()); },
+          nb::sig("def obstacles(self) -> list[ObstacleId]"), doc("System.bodies"))
+      .def(
+          "dimension", [](Model& self) { return self.get().dimension(); }, doc("System.dimension"))
+      .def(
+          "fingerprint", [](Model& self) { return self.get().fingerprint(); }, doc("System.fingerprint"))
+      .def(
+          "check", [](Model& self) { return Convert<std::vector<ModelFinding>>::cast(self.get().check()); },
+          nb::sig("def check(self) -> list[ModelFinding]"), doc("System.check"))
+      .def("_parts", &parts_of, nb::sig("def _parts(self) -> list[dict[str, typing.Any]]"),
+           "Parts as they were added.");
+}
+
+void bind_laws_of(nb::class_<Model>& type) {
+  type.def("material", &material, nb::arg("name"), doc("System.material"))
+      .def("between", &between, nb::arg("a"), nb::arg("b"), nb::arg("surface"), doc("System.between"))
+      .def(
+          "set_default_law",
+          [](Model& self, const Surface& surface) {
+            self.get().set_default_law(surface);
+            self.default_law = surface;
+          },
+          nb::arg("surface"), doc("System.set_default_law"))
+      .def(
+          "law",
+          [](Model& self, MaterialId a, MaterialId b) {
+            return Convert<std::optional<Surface>>::cast(self.get().law(a, b));
+          },
+          nb::arg("a"), nb::arg("b"),
+          nb::sig("def law(self, a: MaterialId, b: MaterialId) -> Surface | None"), doc("System.law"))
+      .def(
+          "law",
+          [](Model& self, MaterialId a, ObstacleId b) {
+            return Convert<std::optional<Surface>>::cast(self.get().law(a, b));
+          },
+          nb::arg("a"), nb::arg("obstacle"),
+          nb::sig("def law(self, a: MaterialId, obstacle: ObstacleId) -> Surface | None"), doc("System.law"))
+      .def_prop_ro(
+          "default_law",
+          [](const Model& self) { return Convert<std::optional<Surface>>::cast(self.default_law); },
+          nb::sig("def default_law(self) -> Surface | None"),
+          "The law of pairs that have no other, if it was set.")
+      .def_prop_ro(
+          "materials",
+          [](const Model& self) { return Convert<std::vector<std::string>>::cast(self.materials); },
+          nb::sig("def materials(self) -> list[str]"), "Names of all materials, by their serial numbers.")
+      .def(
+          "_laws",
+          [](const Model& self) {
+            nb::list list;
+            for (const LawEntry& law : self.laws)
+              list.append(nb::make_tuple(law.a, law.b, nb::cast(law.surface)));
+            return list;
+          },
+          nb::sig("def _laws(self) -> list[tuple[str, str, Surface]]"),
+          "Laws between materials as they were set.")
+      .def(
+          "keep_place", [](Model& self, BodyId body, bool keep) { self.get().keep_place(body, keep); },
+          nb::arg("body"), nb::arg("keep") = true, doc("System.keep_place"))
+      .def(
+          "keeps_place", [](Model& self, BodyId body) { return self.get().keeps_place(body); },
+          nb::arg("body"), doc("System.keeps_place"))
+      .def(
+          "allow_contact",
+          [](Model& self, BodyId a, BodyId b, std::optional<bool> allowed) {
+            self.get().allow_contact(a, b, allowed);
+          },
+          nb::arg("a"), nb::arg("b"), nb::arg("allowed").none() = true, doc("System.allow_contact"))
+      .def(
+          "is_contact_allowed",
+          [](Model& self, BodyId a, BodyId b) { return self.get().is_contact_allowed(a, b); }, nb::arg("a"),
+          nb::arg("b"), doc("System.is_contact_allowed"))
+      .def(
+          "contact_decisions",
+          [](Model& self) {
+            nb::list list;
+            for (const auto& [pair, allowed] : self.get().contact_decisions())
+              list.append(nb::make_tuple(pair.first, pair.second, allowed));
+            return list;
+          },
+          nb::sig("def contact_decisions(self) -> list[tuple[int, int, bool]]"),
+          doc("System.contact_decisions"));
+}
+
+}  // namespace
+
+void bind_system(nb::module_& core) {
+  nb::class_<Model> type(core, "System", doc("System"));
+  type.def(nb::init<>())
+      .def("__copy__",
+           [](Model& self) {
+             self.get();
+             return Model(self);
+           })
+      .def("add", &add, nb::arg("part"), nb::arg("surface") = nb::none(), nb::arg("name") = nb::none(),
+           nb::sig("def add(self, part: typing.Any, surface: Surface | str | None = None, name: str | None = "
+                   "None) -> typing.Any"),
+           doc("System.add"));
+  bind_for<BodyId>(type);
+  bind_for<ElementId>(type);
+  bind_for<JointId>(type);
+  bind_for<ShapeId>(type);
+  bind_for<ObstacleId>(type);
+  bind_queries(type);
+  bind_laws_of(type);
+}
+
+}  // namespace carom_python
