@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Without, ccache keeps nothing that is compiled with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
 
-scripts/setup.sh
+scripts/setup.sh --python
 cmake --preset release >/dev/null
 cmake --build build/release --target carom --parallel "$(nproc)"
 

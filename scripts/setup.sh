@@ -2,6 +2,7 @@
 # Installs what carom is built with, on Debian and Ubuntu. Says nothing when all of it is there.
 #   scripts/setup.sh            compiler, libraries, plotting
 #   scripts/setup.sh --docs     also what scripts/docs.sh needs
+#   scripts/setup.sh --python   also what scripts/python.sh needs
 #   scripts/setup.sh --checks   also what .ci/run checks with
 set -euo pipefail
 
@@ -15,9 +16,10 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --docs) packages+=(doxygen graphviz) ;;
+    --python) packages+=(python3-venv python3-dev) ;;
     --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen graphviz) ;;
     *)
-      echo "usage: $0 [--docs | --checks]" >&2
+      echo "usage: $0 [--docs | --python | --checks]" >&2
       exit 2
       ;;
   esac

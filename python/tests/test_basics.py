@@ -40,17 +40,13 @@ def test_ball_bounces_as_in_the_tutorial():
     assert str(ledger).startswith("  total")
 
 
-def test_same_bits_with_and_without_functions_in_python():
-    ends = []
-    for law in (lambda time: (0.3 * time, 0.0), None):
-        system, body = ball()
-        if law is not None:
-            system.add(planar.AppliedForce(on=body, force=law))
-        simulation = Simulation(system, TimeStepping(step=1e-3))
-        simulation.run_until(1.0)
-        ends.append(simulation.state().q.copy())
-    # The horizontal force moves it; friction on the floor acts on both components only after the impact.
-    assert ends[0][0] > 0.0 and ends[1][0] == 0.0
+def test_law_in_python_acts():
+    system, body = ball()
+    system.add(planar.AppliedForce(on=body, force=lambda time: (0.3 * time, 0.0)))
+    simulation = Simulation(system, TimeStepping(step=1e-3))
+    simulation.run_until(0.2)
+    # x = 0.3 t^3/(6 m), m = 1 kg; the trapezoidal rule misses it by h^2/12 times the rate of v, 0.06 m/s^2.
+    assert abs(simulation.state().q[0] - 0.05 * 0.2**3) < 1.1 * 1e-6 / 12.0 * 0.06
 
 
 def test_compiled_law_is_the_same_as_the_law_in_python():
