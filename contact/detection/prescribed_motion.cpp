@@ -9,7 +9,7 @@ namespace carom {
 NonFiniteMotion find_non_finite(const GroundMotion& motion) {
   // A difference from itself is 0 of finite numbers only, and so is a sum of such.
   double nothing = (motion.angle - motion.angle) + (motion.spin - motion.spin) +
-                (motion.angular_acceleration - motion.angular_acceleration);
+                   (motion.angular_acceleration - motion.angular_acceleration);
   for (const auto* const numbers : {&motion.point, &motion.velocity, &motion.acceleration}) {
     for (const double value : *numbers) nothing += value - value;
   }
