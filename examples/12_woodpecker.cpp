@@ -1,4 +1,4 @@
-// A wooden woodpecker pecks its way down a pole (Pfeiffer and Glocker 1996, chapter 9).
+// A wooden woodpecker pecks its way down a pole (Glocker, thesis, TU Munich 1995).
 //
 //   A sleeve with clearance sits on the pole; a bird hangs on it by a torsional spring. While the sleeve
 //   jams, the bird swings; when it swings back the sleeve comes free and both fall, until the beak hits the
@@ -6,7 +6,7 @@
 //   take: a limit cycle.
 //
 // The sleeve may move sideways within its clearance and touches with four corners, two on each side of the
-// pole; angles are not taken small. Masses, lengths and coefficients are those of the book.
+// pole; angles are not taken small. Masses, lengths and coefficients are Glocker's.
 //
 // Usage: 12_woodpecker <folder>: writes course.csv with the motion, cycles.csv with a line for each cycle and
 // events.csv there, prints the cycles, and compares the motion with time stepping at two steps.
