@@ -16,10 +16,12 @@ python3 -m venv --clear "$venv"
 "$venv/bin/pip" -q install pytest
 "$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
 
-failed=0
+status=0
 log=build/python-test.log
-"$venv/bin/python" -m pytest -q -p no:cacheprovider python/tests 2>&1 </dev/null | tee "$log" || failed=1
-tests=$(grep -oE '[0-9]+ passed' "$log" | tail -n 1 | tr -dc '0-9' || true)
-passed=${tests:-0}
-echo "$passed passed, $failed failed"
-((failed == 0 && passed > 0))
+"$venv/bin/python" -m pytest -q -p no:cacheprovider python/tests 2>&1 </dev/null | tee "$log" || status=$?
+# count <word>: number before it in the last line of pytest.
+count() { tail -n 1 "$log" | grep -oE "[0-9]+ $1" | tr -dc '0-9' || true; }
+passed=$(count passed) failed=$(count failed)
+if ((status != 0)); then failed=${failed:-1}; fi
+echo "${passed:-0} passed, ${failed:-0} failed"
+((status == 0 && ${passed:-0} > 0))

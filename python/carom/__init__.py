@@ -6,7 +6,6 @@ attributes. `from` is a word of Python: that argument is `from_`.
 
 from . import planar, spatial
 from ._core import *  # noqa: F403
-from ._core import ground as ground
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]

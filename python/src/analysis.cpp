@@ -8,8 +8,6 @@
 #include <carom/analysis/inverse_dynamics.h>
 #include <carom/analysis/modes.h>
 
-#include <sstream>
-
 namespace carom_python {
 
 using namespace carom;
@@ -25,6 +23,8 @@ template <>
 struct Convert<ContactForce> : BoundRecord<ContactForce> {};
 template <>
 struct Convert<DriverForces> : BoundRecord<DriverForces> {};
+template <>
+struct Convert<VibrationMode> : BoundRecord<VibrationMode> {};
 template <class M>
 struct Convert<M, std::enable_if_t<std::is_same_v<M, Eigen::MatrixXd>>> {
   static TypeNames names() { return {"", "numpy.typing.NDArray[numpy.float64]", ""}; }
@@ -64,11 +64,7 @@ void bind_cross_check(nb::module_& core) {
     using P = CrossCheck;
     fields("levels", &P::levels)("probes", &P::probes)("outliers", &P::outliers)(
         "position_order", &P::position_order)("velocity_order", &P::velocity_order);
-  }).def("__str__", [](const CrossCheck& self) {
-    std::ostringstream text;
-    text << self;
-    return nb::str(text.str().c_str());
-  });
+  }).def("__str__", &printed<CrossCheck>);
   core.def(
       "spread_steps",
       [](double largest, double smallest, int count) {
@@ -154,20 +150,15 @@ void bind_modes(nb::module_& core) {
       nb::arg("simulation"), nb::arg("options") = ModesOptions{},
       nb::sig("def linearise(simulation: Simulation, options: ModesOptions = ...) -> Linearisation"),
       doc("linearise"));
-  const auto listed = [](const std::vector<VibrationMode>& modes) {
-    nb::list list;
-    for (const VibrationMode& mode : modes) list.append(nb::cast(mode));
-    return list;
-  };
+  using Modes = Convert<std::vector<VibrationMode>>;
   core.def(
-      "find_modes",
-      [listed](const Linearisation& linearisation) { return listed(find_modes(linearisation)); },
+      "find_modes", [](const Linearisation& linearisation) { return Modes::cast(find_modes(linearisation)); },
       nb::arg("linearisation"),
       nb::sig("def find_modes(linearisation: Linearisation) -> list[VibrationMode]"), doc("find_modes"));
   core.def(
       "find_modes",
-      [listed](Runner& simulation, const ModesOptions& options) {
-        return listed(find_modes(simulation.get().assembly(), simulation.get().state(), options));
+      [](Runner& simulation, const ModesOptions& options) {
+        return Modes::cast(find_modes(simulation.get().assembly(), simulation.get().state(), options));
       },
       nb::arg("simulation"), nb::arg("options") = ModesOptions{},
       nb::sig("def find_modes(simulation: Simulation, options: ModesOptions = ...) -> list[VibrationMode]"),
@@ -190,9 +181,7 @@ void bind_inverse_dynamics(nb::module_& core) {
   core.def(
       "inverse_dynamics",
       [](Model& system, nb::handle times) {
-        std::vector<double> at;
-        Convert<std::vector<double>>::load(times, at, "inverse_dynamics(): times");
-        return inverse_dynamics(system.get(), at);
+        return inverse_dynamics(system.get(), read<std::vector<double>>(times, "inverse_dynamics(): times"));
       },
       nb::arg("system"), nb::arg("times"),
       nb::sig(

@@ -28,8 +28,7 @@ nb::tuple verdict(const energy_test::Verdict& found) {
 }
 
 energy_test::Coordinates coordinates(nb::handle from, const char* where) {
-  std::vector<double> numbers;
-  Convert<std::vector<double>>::load(from, numbers, where);
+  const auto numbers = read<std::vector<double>>(from, where);
   if (numbers.size() < 2 || numbers.size() > 3) refuse(where, "two or three numbers", from);
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0.0};
 }
@@ -96,8 +95,8 @@ std::vector<energy_test::RefinedTrace> refined(nb::handle given) {
               if (!nb::isinstance<nb::tuple>(item) || nb::len(item) != 2)
                 refuse(where, "a step and a trace", item);
               energy_test::RefinedTrace trace;
-              Convert<double>::load(item[0], trace.step, where + "[0]");
-              Convert<EnergyTrace>::load(item[1], trace.trace, where + "[1]");
+              trace.step = read<double>(item[0], where + "[0]");
+              trace.trace = read<EnergyTrace>(item[1], where + "[1]");
               traces.push_back(std::move(trace));
             });
   return traces;

@@ -3,7 +3,6 @@
 #include <nanobind/ndarray.h>
 
 #include <cstring>
-#include <sstream>
 
 namespace carom_python {
 
@@ -58,6 +57,15 @@ std::int64_t load_integer(nb::handle from, std::int64_t least, std::int64_t most
 
 void Convert<std::string>::load(nb::handle from, std::string& to, std::string_view where) {
   if (!nb::try_cast(from, to, false)) refuse(where, "a text", from);
+}
+
+std::string path_of(nb::handle from) {
+  const nb::object text = nb::steal(PyOS_FSPath(from.ptr()));
+  if (!text.is_valid()) {
+    PyErr_Clear();
+    refuse("path", "a text or a path", from);
+  }
+  return read<std::string>(text, "path");
 }
 
 void for_items(nb::handle from, std::string_view where, std::string_view expected,

@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -38,6 +39,26 @@ struct TypeNames {
 /// Reads and shows values of a type. Specialised, or found by its shape.
 template <class T, class Enable = void>
 struct Convert;
+
+/// A value of Python as T. Raises TypeError naming `where`.
+template <class T>
+T read(nb::handle from, std::string_view where) {
+  T value{};
+  Convert<T>::load(from, value, where);
+  return value;
+}
+
+/// A path, given as text or as an object with __fspath__.
+[[nodiscard]] std::string path_of(nb::handle from);
+
+/// Text of a value, as a stream prints it.
+template <class T>
+nb::str printed(const T& value) {
+  std::ostringstream text;
+  text << value;
+  const std::string all = text.str();
+  return nb::str(all.data(), all.size());
+}
 
 /// Names of the values of an enumeration, in their order; specialised where it is bound.
 template <class E>

@@ -7,21 +7,11 @@
 #include <carom/core/energy_trace.h>
 #include <carom/core/trace_comparison.h>
 
-#include <sstream>
-
 namespace carom_python {
 
 using namespace carom;
 
 namespace {
-
-template <class T>
-nb::str printed(const T& value) {
-  std::ostringstream text;
-  text << value;
-  const std::string all = text.str();
-  return nb::str(all.data(), all.size());
-}
 
 // Every term by name, in the order of tables; zero or not.
 nb::dict terms_of(const EnergyLedger& ledger) {
@@ -48,18 +38,14 @@ void bind_ledger(nb::module_& core) {
       .def(
           "stored",
           [](const EnergyLedger& self, nb::handle term) {
-            StoredEnergy which{};
-            Convert<StoredEnergy>::load(term, which, "stored(): term");
-            return self.stored(which);
+            return self.stored(read<StoredEnergy>(term, "stored(): term"));
           },
           nb::arg("term"), nb::sig("def stored(self, term: StoredEnergy | str) -> float"),
           "Stored energy of one form now [J].")
       .def(
           "flow",
           [](const EnergyLedger& self, nb::handle term) {
-            EnergyFlow which{};
-            Convert<EnergyFlow>::load(term, which, "flow(): term");
-            return self.flow(which);
+            return self.flow(read<EnergyFlow>(term, "flow(): term"));
           },
           nb::arg("term"), nb::sig("def flow(self, term: EnergyFlow | str) -> float"),
           doc("EnergyLedger.flow"))
@@ -111,7 +97,7 @@ void bind_trace(nb::module_& core) {
           [](EnergyTrace& self, double time, nb::handle text) {
             TraceEvent event;
             event.time = time;
-            Convert<std::string>::load(text, event.text, "add_event(): text");
+            event.text = read<std::string>(text, "add_event(): text");
             self.add(std::move(event));
           },
           nb::arg("time"), nb::arg("text"), nb::sig("def add_event(self, time: float, text: str) -> None"),
@@ -119,9 +105,7 @@ void bind_trace(nb::module_& core) {
       .def(
           "values",
           [](const EnergyTrace& self, nb::handle term) {
-            std::string name;
-            Convert<std::string>::load(term, name, "values(): term");
-            const std::vector<double> values = self.values(name);
+            const std::vector<double> values = self.values(read<std::string>(term, "values(): term"));
             return make_array(values.data(), values.size(), 0);
           },
           nb::arg("term"), nb::sig("def values(self, term: str) -> numpy.typing.NDArray[numpy.float64]"),
@@ -154,14 +138,11 @@ void bind_trace(nb::module_& core) {
           nb::sig("def events(self) -> list[tuple[float, str]]"), "Time [s] and text of every event.")
       .def("__len__", [](const EnergyTrace& self) { return self.rows().size(); })
       .def(
-          "save",
-          [](const EnergyTrace& self, nb::handle path) { self.save(nb::cast<std::string>(nb::str(path))); },
-          nb::arg("path"), nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
-          doc("EnergyTrace.save"))
+          "save", [](const EnergyTrace& self, nb::handle path) { self.save(path_of(path)); }, nb::arg("path"),
+          nb::sig("def save(self, path: str | os.PathLike[str]) -> None"), doc("EnergyTrace.save"))
       .def_static(
-          "load", [](nb::handle path) { return EnergyTrace::load(nb::cast<std::string>(nb::str(path))); },
-          nb::arg("path"), nb::sig("def load(path: str | os.PathLike[str]) -> EnergyTrace"),
-          doc("EnergyTrace.load"))
+          "load", [](nb::handle path) { return EnergyTrace::load(path_of(path)); }, nb::arg("path"),
+          nb::sig("def load(path: str | os.PathLike[str]) -> EnergyTrace"), doc("EnergyTrace.load"))
       .def("__repr__", &printed<EnergyTrace>);
 }
 

@@ -72,6 +72,11 @@ CAROM_PYTHON_ENUM(carom::FeatureKey::Owner, "FeatureOwner", "body", "shape", "ob
 
 #undef CAROM_PYTHON_ENUM
 
+static_assert(EnumNames<carom::Iteration>::values.size() == carom::iteration_count + 1);  // and automatic
+static_assert(EnumNames<carom::EventKind>::values.size() == carom::event_kind_count);
+static_assert(EnumNames<carom::StoredEnergy>::values.size() == carom::stored_energy_count);
+static_assert(EnumNames<carom::EnergyFlow>::values.size() == carom::energy_flow_count);
+
 /// `record_events` is a choice, or a truth as in C++.
 template <>
 struct Convert<carom::EventRecords> {

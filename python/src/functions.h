@@ -21,14 +21,6 @@ private:
   std::shared_ptr<nb::object> object_;
 };
 
-/// Result of a law as T.
-template <class T>
-T law_result(const nb::object& value, const std::string& where) {
-  T result{};
-  Convert<T>::load(value, result, "result of " + where);
-  return result;
-}
-
 /// A law in Python; takes the interpreter's lock for each call.
 template <class R, class... A>
 struct PythonLaw {
@@ -36,7 +28,7 @@ struct PythonLaw {
   std::string where;
   R operator()(A... arguments) const {
     const nb::gil_scoped_acquire lock;
-    return law_result<R>(function.get()(arguments...), where);
+    return read<R>(function.get()(arguments...), "result of " + where);
   }
 };
 /// A law by address: R is a number, or numbers that it writes behind its last argument.

@@ -20,17 +20,11 @@ void add_common(Fields<P>& fields) {
       "motion", &P::motion)("filter", &P::filter);
 }
 
-carom::Vec<2> place(nb::handle from, const char* where) {
-  carom::Vec<2> point;
-  Convert<carom::Vec<2>>::load(from, point, where);
-  return point;
-}
-
 void bind_builders(nb::module_& planar) {
   planar.def(
       "stairs",
       [](nb::handle start, int steps, double tread, double rise) {
-        return stairs(place(start, "stairs(): start"), steps, tread, rise);
+        return stairs(read<carom::Vec<2>>(start, "stairs(): start"), steps, tread, rise);
       },
       nb::arg("start"), nb::arg("steps"), nb::arg("tread"), nb::arg("rise"),
       nb::sig("def stairs(start: numpy.typing.ArrayLike, steps: int, tread: float, rise: float) -> Terrain"),
@@ -38,7 +32,8 @@ void bind_builders(nb::module_& planar) {
   planar.def(
       "hopper",
       [](nb::handle centre, double outlet, double width, double height, double radius) {
-        const auto walls = hopper(place(centre, "hopper(): centre"), outlet, width, height, radius);
+        const auto walls =
+            hopper(read<carom::Vec<2>>(centre, "hopper(): centre"), outlet, width, height, radius);
         return nb::make_tuple(walls[0], walls[1]);
       },
       nb::arg("centre"), nb::arg("outlet"), nb::arg("width"), nb::arg("height"), nb::arg("radius"),
@@ -49,7 +44,7 @@ void bind_builders(nb::module_& planar) {
   planar.def(
       "drum",
       [](nb::handle centre, double radius, double spin) {
-        return drum(place(centre, "drum(): centre"), radius, spin);
+        return drum(read<carom::Vec<2>>(centre, "drum(): centre"), radius, spin);
       },
       nb::arg("centre"), nb::arg("radius"), nb::arg("spin"),
       nb::sig("def drum(centre: numpy.typing.ArrayLike, radius: float, spin: float) -> CircleInside"),
@@ -57,7 +52,7 @@ void bind_builders(nb::module_& planar) {
   planar.def(
       "open_box",
       [](nb::handle floor, double width, double height, double thickness) {
-        return open_box(place(floor, "open_box(): floor"), width, height, thickness);
+        return open_box(read<carom::Vec<2>>(floor, "open_box(): floor"), width, height, thickness);
       },
       nb::arg("floor"), nb::arg("width"), nb::arg("height"), nb::arg("thickness"),
       nb::sig("def open_box(floor: numpy.typing.ArrayLike, width: float, height: float, thickness: float) -> "

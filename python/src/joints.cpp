@@ -34,7 +34,7 @@ void bind_on_coordinates(nb::module_& planar) {
 
 }  // namespace
 
-void bind_joints(nb::module_& /*core*/, nb::module_& planar) {
+void bind_joints(nb::module_& planar) {
   bind_part<Revolute>(planar, "Revolute", {"Revolute"}, [](auto& fields) {
     fields("from", &Revolute::from, required)("to", &Revolute::to, required)("zero_angle",
                                                                              &Revolute::zero_angle);

@@ -8,7 +8,7 @@
 
 namespace carom_python {
 
-void bind_laws(nb::module_& /*core*/, nb::module_& planar) {
+void bind_laws(nb::module_& planar) {
   using namespace carom::planar;
   bind_element_laws<2>(planar);
   bind_part<RotaryActuator>(planar, "RotaryActuator", {"RotaryActuator"}, [](auto& fields) {

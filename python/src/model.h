@@ -27,7 +27,7 @@ struct LawEntry {
   carom::Surface surface;
 };
 
-/// What was put into a system.
+/// Parts, materials and laws of a system, in the order in which they were given.
 struct Journal {
   std::vector<Entry> entries;
   std::vector<std::string> materials;

@@ -13,8 +13,8 @@ NB_MODULE(_core, core) {
   bind_options(core);
   bind_bodies(planar);
   bind_elements(planar);
-  bind_laws(core, planar);
-  bind_joints(core, planar);
+  bind_laws(planar);
+  bind_joints(planar);
   bind_ground(planar);
   bind_spatial(spatial);
   bind_system(core);

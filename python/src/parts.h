@@ -10,7 +10,7 @@
 
 namespace carom_python {
 
-/// What a system does with parts of one type.
+/// Parts of one type, as a system takes them.
 struct PartType {
   carom::Role role = carom::Role::body;
   const Record* record = nullptr;

@@ -27,8 +27,7 @@ nb::object numbers_of(std::span<const double> numbers) {
 }
 
 std::vector<double> impulse_of(const ContactProblem& problem, nb::handle given, const char* where) {
-  std::vector<double> impulse;
-  Convert<std::vector<double>>::load(given, impulse, where);
+  auto impulse = read<std::vector<double>>(given, where);
   if (impulse.size() != static_cast<std::size_t>(problem.rows())) {
     throw nb::type_error((std::string(where) + " must be " + std::to_string(problem.rows()) +
                           " numbers, one a row, not " + std::to_string(impulse.size()))
@@ -38,12 +37,9 @@ std::vector<double> impulse_of(const ContactProblem& problem, nb::handle given, 
 }
 
 ContactProblem make_problem(nb::handle matrix, nb::handle vector, nb::handle sets) {
-  std::vector<std::vector<double>> w;
-  std::vector<double> b;
-  std::vector<RowSet> of_rows;
-  Convert<std::vector<std::vector<double>>>::load(matrix, w, "ContactProblem: argument 'matrix'");
-  Convert<std::vector<double>>::load(vector, b, "ContactProblem: argument 'vector'");
-  Convert<std::vector<RowSet>>::load(sets, of_rows, "ContactProblem: argument 'sets'");
+  const auto w = read<std::vector<std::vector<double>>>(matrix, "ContactProblem: argument 'matrix'");
+  const auto b = read<std::vector<double>>(vector, "ContactProblem: argument 'vector'");
+  const auto of_rows = read<std::vector<RowSet>>(sets, "ContactProblem: argument 'sets'");
   const std::size_t rows = b.size();
   const auto wrong = [&](const std::string& what) {
     throw nb::type_error(
@@ -157,8 +153,7 @@ void bind_solvers(nb::module_& core) {
       .def(
           "solve_with",
           [](SolverChain& self, nb::handle solver, const ContactProblem& problem) {
-            SolverId which{};
-            Convert<SolverId>::load(solver, which, "solve_with(): solver");
+            const auto which = read<SolverId>(solver, "solve_with(): solver");
             std::vector<double> impulse(static_cast<std::size_t>(problem.rows()));
             return answer(self.solve_with(which, problem, impulse), impulse);
           },

@@ -10,7 +10,7 @@ using namespace carom;
 
 namespace {
 
-/// What an element sees during a call; it forgets it afterwards.
+/// View of the state that an element is lent for one call; it shows nothing afterwards.
 template <int D>
 struct View {
   const ElementView<D>* at = nullptr;
@@ -28,22 +28,9 @@ struct LoadsOut {
   }
 };
 
-template <int D>
-End<D> end_of(nb::handle from, const char* where) {
-  End<D> end;
-  Convert<End<D>>::load(from, end, where);
-  return end;
-}
-BodyId body_of(nb::handle from, const char* where) {
-  BodyId body;
-  Convert<BodyId>::load(from, body, where);
-  return body;
-}
-
 std::vector<double> breaks_of(nb::handle part) {
-  std::vector<double> breaks;
-  if (nb::hasattr(part, "breaks")) Convert<std::vector<double>>::load(part.attr("breaks"), breaks, "breaks");
-  return breaks;
+  if (!nb::hasattr(part, "breaks")) return {};
+  return read<std::vector<double>>(part.attr("breaks"), "breaks");
 }
 
 }  // namespace
@@ -73,7 +60,7 @@ double PythonElement<D>::potential(const ElementView<D>& at) const {
   View<D> view{&at};
   nb::object seen = nb::cast(&view, nb::rv_policy::copy);
   try {
-    const double value = law_result<double>(object.get().attr("potential")(seen), "potential()");
+    const double value = read<double>(object.get().attr("potential")(seen), "result of potential()");
     nb::inst_ptr<View<D>>(seen)->at = nullptr;
     return value;
   } catch (...) {
@@ -86,9 +73,7 @@ template <int D>
 void PythonElement<D>::fingerprint(Fingerprint& print) const {
   const nb::gil_scoped_acquire lock;
   if (!nb::hasattr(object.get(), "fingerprint")) return;
-  std::vector<double> numbers;
-  Convert<std::vector<double>>::load(object.get().attr("fingerprint")(), numbers, "result of fingerprint()");
-  print.add(numbers);
+  print.add(read<std::vector<double>>(object.get().attr("fingerprint")(), "result of fingerprint()"));
 }
 
 template struct PythonElement<2>;
@@ -104,7 +89,7 @@ template <int D>
 nb::object add_element(System& system, nb::handle part, std::string name) {
   PythonElement<D> element;
   element.object = Shared(nb::borrow(part));
-  Convert<std::vector<BodyId>>::load(part.attr("bodies")(), element.ends, "result of bodies()");
+  element.ends = read<std::vector<BodyId>>(part.attr("bodies")(), "result of bodies()");
   element.breaks = breaks_of(part);
   return nb::cast(system.add(element, std::move(name)));
 }
@@ -113,34 +98,40 @@ template <int D>
 void bind_element(nb::module_& module) {
   using V = View<D>;
   using L = LoadsOut<D>;
-  using Array = nb::object;
-  const auto where = [](auto&& call) { return call; };
   auto view = nb::class_<V>(module, "ElementView", doc("ElementView"));
   view.def_prop_ro(
           "time", [](const V& self) { return self.get().time(); }, "Time [s].")
-      .def("position", where([](const V& self, nb::handle end) -> Array {
-             return Convert<Vec<D>>::cast(self.get().position(end_of<D>(end, "position(): end")));
-           }),
-           nb::arg("end"),
-           nb::sig("def position(self, end: carom._core.BodyId | tuple[carom._core.BodyId, "
-                   "numpy.typing.ArrayLike]) -> numpy.typing.NDArray[numpy.float64]"),
-           doc("ElementView.position"))
-      .def("velocity", where([](const V& self, nb::handle end) -> Array {
-             return Convert<Vec<D>>::cast(self.get().velocity(end_of<D>(end, "velocity(): end")));
-           }),
-           nb::arg("end"),
-           nb::sig("def velocity(self, end: carom._core.BodyId | tuple[carom._core.BodyId, "
-                   "numpy.typing.ArrayLike]) -> numpy.typing.NDArray[numpy.float64]"),
-           doc("ElementView.velocity"));
+      .def(
+          "position",
+          [](const V& self, nb::handle end) {
+            return Convert<Vec<D>>::cast(self.get().position(read<End<D>>(end, "position(): end")));
+          },
+          nb::arg("end"),
+          nb::sig("def position(self, end: carom._core.BodyId | tuple[carom._core.BodyId, "
+                  "numpy.typing.ArrayLike]) -> numpy.typing.NDArray[numpy.float64]"),
+          doc("ElementView.position"))
+      .def(
+          "velocity",
+          [](const V& self, nb::handle end) {
+            return Convert<Vec<D>>::cast(self.get().velocity(read<End<D>>(end, "velocity(): end")));
+          },
+          nb::arg("end"),
+          nb::sig("def velocity(self, end: carom._core.BodyId | tuple[carom._core.BodyId, "
+                  "numpy.typing.ArrayLike]) -> numpy.typing.NDArray[numpy.float64]"),
+          doc("ElementView.velocity"));
   if constexpr (D == 2) {
     view.def(
             "angle",
-            [](const V& self, nb::handle body) { return self.get().angle(body_of(body, "angle(): body")); },
+            [](const V& self, nb::handle body) {
+              return self.get().angle(read<BodyId>(body, "angle(): body"));
+            },
             nb::arg("body"), nb::sig("def angle(self, body: carom._core.BodyId) -> float"),
             doc("ElementView.angle"))
         .def(
             "spin",
-            [](const V& self, nb::handle body) { return self.get().spin(body_of(body, "spin(): body")); },
+            [](const V& self, nb::handle body) {
+              return self.get().spin(read<BodyId>(body, "spin(): body"));
+            },
             nb::arg("body"), nb::sig("def spin(self, body: carom._core.BodyId) -> float"),
             doc("ElementView.spin"));
   }
@@ -152,9 +143,8 @@ void bind_element(nb::module_& module) {
     loads.def(
         name,
         [add](const L& self, nb::handle end, nb::handle value) {
-          Vec<D> vector;
-          Convert<Vec<D>>::load(value, vector, "force of an element");
-          (self.get().*add)(end_of<D>(end, "end of an element"), vector);
+          (self.get().*add)(read<End<D>>(end, "end of an element"),
+                            read<Vec<D>>(value, "force of an element"));
         },
         nb::arg("end"), nb::arg("force"), nb::sig(signature.c_str()),
         doc(std::string("ElementLoads.") + name));
@@ -169,9 +159,8 @@ void bind_element(nb::module_& module) {
       loads.def(
           name,
           [add](const L& self, nb::handle body, nb::handle value) {
-            double number = 0.0;
-            Convert<double>::load(value, number, "torque of an element");
-            (self.get().*add)(body_of(body, "body of an element"), number);
+            (self.get().*add)(read<BodyId>(body, "body of an element"),
+                              read<double>(value, "torque of an element"));
           },
           nb::arg("body"), nb::arg("torque"), nb::sig(signature.c_str()),
           doc(std::string("ElementLoads.") + name));

@@ -31,7 +31,7 @@ void bind_recorders(nb::module_& core) {
       [](CsvRecorder* self, Runner& simulation, nb::handle path, nb::handle bodies, int every_steps,
          bool energies) {
         CsvRecorder::Options options;
-        Convert<std::vector<BodyId>>::load(bodies, options.bodies, "CsvRecorder: argument 'bodies'");
+        options.bodies = read<std::vector<BodyId>>(bodies, "CsvRecorder: argument 'bodies'");
         options.every_steps = every_steps;
         options.energies = energies;
         new (self) CsvRecorder(simulation.get(), path_of(path), options);
@@ -67,9 +67,7 @@ void bind_recorders(nb::module_& core) {
   core.def(
       "record_at",
       [](Runner& simulation, nb::handle times) {
-        std::vector<double> at;
-        Convert<std::vector<double>>::load(times, at, "record_at(): times");
-        return record_at(simulation.get(), at);
+        return record_at(simulation.get(), read<std::vector<double>>(times, "record_at(): times"));
       },
       nb::arg("simulation"), nb::arg("times"),
       nb::sig("def record_at(simulation: Simulation, times: collections.abc.Sequence[float]) -> EnergyTrace"),

@@ -6,8 +6,6 @@
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/integrators/contact_forces.h>
 
-#include <sstream>
-
 namespace carom_python {
 
 using namespace carom;
@@ -124,11 +122,7 @@ void bind_statistics(nb::module_& core) {
         "forces_not_unique", &P::forces_not_unique)("degenerate", &P::degenerate)(
         "no_solution", &P::no_solution)("not_solved", &P::not_solved)("accepted_at_cap", &P::accepted_at_cap)(
         "certified", &P::certified)("worst_residual", &P::worst_residual);
-  }).def("__str__", [](const ChainStatistics& self) {
-    std::ostringstream text;
-    text << self;
-    return nb::str(text.str().c_str());
-  });
+  }).def("__str__", &printed<ChainStatistics>);
   bind_record<PartForce>(core, "PartForce", {"PartForce"}, false, [](auto& fields) {
     using P = PartForce;
     fields("impulse", &P::impulse)("angular_impulse", &P::angular_impulse)(

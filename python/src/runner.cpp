@@ -10,17 +10,6 @@ namespace carom_python {
 
 using namespace carom;
 
-std::string path_of(nb::handle from) {
-  const nb::object text = nb::steal(PyOS_FSPath(from.ptr()));
-  if (!text.is_valid()) {
-    PyErr_Clear();
-    refuse("path", "a text or a path", from);
-  }
-  std::string path;
-  Convert<std::string>::load(text, path, "path");
-  return path;
-}
-
 Mode mode_of(nb::handle from) {
   if (nb::isinstance<TimeStepping>(from)) return nb::cast<TimeStepping>(from);
   if (nb::isinstance<EventDriven>(from)) return nb::cast<EventDriven>(from);

@@ -14,9 +14,6 @@
 
 namespace carom_python {
 
-/// A path, given as text or as an object with __fspath__.
-[[nodiscard]] std::string path_of(nb::handle from);
-
 /// A mode from its options. Raises TypeError.
 [[nodiscard]] carom::Mode mode_of(nb::handle from);
 /// Throws ModelError for functions in Python that several threads would call.

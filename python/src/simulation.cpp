@@ -43,8 +43,7 @@ void set_log(Runner& self, nb::handle sink, nb::handle level) {
     return;
   }
   if (PyCallable_Check(sink.ptr()) == 0) refuse("set_log(): sink", "a function of a level and a text", sink);
-  LogLevel least{};
-  Convert<LogLevel>::load(level, least, "set_log(): level");
+  const auto least = read<LogLevel>(level, "set_log(): level");
   const std::size_t number = self.keep(sink);
   self.get().log() = Log(
       [&self, number](LogLevel of, std::string_view text) {
@@ -55,13 +54,13 @@ void set_log(Runner& self, nb::handle sink, nb::handle level) {
 }
 
 // Numbers of all bodies, in the order in which they were added; `bodies` says which.
-enum class What { positions, velocities, angles, spins };
+enum class Gathered { positions, velocities, angles, spins };
 
-nb::object gather(Runner& self, What what) {
+nb::object gather(Runner& self, Gathered what) {
   const State& state = self.get().state();
   const auto& slots = self.slots();
-  const bool of_angle = what == What::angles || what == What::spins;
-  const bool of_q = what == What::positions || what == What::angles;
+  const bool of_angle = what == Gathered::angles || what == Gathered::spins;
+  const bool of_q = what == Gathered::positions || what == Gathered::angles;
   const std::size_t width = state.layout()->dimension() == 3 ? 3 : 2, columns = of_angle ? 1 : width;
   std::vector<double> numbers(slots.size() * columns, std::numeric_limits<double>::quiet_NaN());
   const double* const from = of_q ? state.q.data() : state.v.data();
@@ -109,8 +108,7 @@ void bind_runs(Class& type) {
       .def(
           "run_until",
           [](Runner& self, nb::handle time) {
-            double until = 0.0;
-            Convert<double>::load(time, until, "run_until(): time");
+            const auto until = read<double>(time, "run_until(): time");
             self.run([until](Simulation& simulation) { simulation.run_until(until); });
           },
           nb::arg("time"), nb::sig("def run_until(self, time: float) -> None"), doc("Simulation.run_until"))
@@ -128,9 +126,7 @@ void bind_runs(Class& type) {
       .def(
           "stop_when",
           [](Runner& self, nb::handle stop) {
-            StopFunction function;
-            Convert<StopFunction>::load(stop, function, "stop_when(): stop");
-            self.stop_when(std::move(function));
+            self.stop_when(read<StopFunction>(stop, "stop_when(): stop"));
           },
           nb::arg("stop").none(),
           nb::sig("def stop_when(self, stop: collections.abc.Callable[[], bool] | None) -> None"),
@@ -241,16 +237,16 @@ void bind_results(Class& type) {
 }
 
 void bind_arrays(Class& type) {
-  const auto add = [&](const char* name, What what, const char* text) {
+  const auto add = [&](const char* name, Gathered what, const char* text) {
     const std::string signature = "def " + std::string(name) + "(self) -> " + array;
     type.def(
         name, [what](Runner& self) { return gather(self, what); }, nb::sig(signature.c_str()), text);
   };
-  add("positions", What::positions,
+  add("positions", Gathered::positions,
       "Positions of all bodies, a row each, in the order in which they were added [m]: a copy.");
-  add("velocities", What::velocities, "Velocities of all bodies, likewise [m/s].");
-  add("angles", What::angles, "Angles of all bodies, likewise; NaN of particles [rad].");
-  add("spins", What::spins, "Spins of all bodies, likewise; NaN of particles [rad/s].");
+  add("velocities", Gathered::velocities, "Velocities of all bodies, likewise [m/s].");
+  add("angles", Gathered::angles, "Angles of all bodies, likewise; NaN of particles [rad].");
+  add("spins", Gathered::spins, "Spins of all bodies, likewise; NaN of particles [rad/s].");
   type.def(
       "bodies",
       [](Runner& self) {

@@ -132,13 +132,6 @@ void bind_for(nb::class_<Model>& type) {
           "__contains__", [](Model& self, Id id) { return self.get().contains(id); }, doc("System.contains"));
 }
 
-template <class Id>
-nb::list listed(const std::vector<Id>& ids) {
-  nb::list list;
-  for (const Id id : ids) list.append(nb::cast(id));
-  return list;
-}
-
 void bind_queries(nb::class_<Model>& type) {
   type.def(
           "body", [](Model& self, const std::string& name) { return self.get().body(name); }, nb::arg("name"),
@@ -165,19 +158,21 @@ void bind_queries(nb::class_<Model>& type) {
           "has_orientation", [](Model& self, BodyId id) { return self.get().has_orientation(id); },
           nb::arg("body"), doc("System.has_orientation"))
       .def(
-          "bodies", [](Model& self) { return listed(self.get().bodies()); },
+          "bodies", [](Model& self) { return Convert<std::vector<BodyId>>::cast(self.get().bodies()); },
           nb::sig("def bodies(self) -> list[BodyId]"), doc("System.bodies"))
       .def(
-          "elements", [](Model& self) { return listed(self.get().elements()); },
+          "elements",
+          [](Model& self) { return Convert<std::vector<ElementId>>::cast(self.get().elements()); },
           nb::sig("def elements(self) -> list[ElementId]"), doc("System.bodies"))
       .def(
-          "joints", [](Model& self) { return listed(self.get().joints()); },
+          "joints", [](Model& self) { return Convert<std::vector<JointId>>::cast(self.get().joints()); },
           nb::sig("def joints(self) -> list[JointId]"), doc("System.bodies"))
       .def(
-          "shapes", [](Model& self) { return listed(self.get().shapes()); },
+          "shapes", [](Model& self) { return Convert<std::vector<ShapeId>>::cast(self.get().shapes()); },
           nb::sig("def shapes(self) -> list[ShapeId]"), doc("System.bodies"))
       .def(
-          "obstacles", [](Model& self) { return listed(self.get().obstacles()); },
+          "obstacles",
+          [](Model& self) { return Convert<std::vector<ObstacleId>>::cast(self.get().obstacles()); },
           nb::sig("def obstacles(self) -> list[ObstacleId]"), doc("System.bodies"))
       .def(
           "dimension", [](Model& self) { return self.get().dimension(); }, doc("System.dimension"))

@@ -23,24 +23,10 @@ void define(nb::module_& planar, const char* name, Mass (*make)(double, double),
       name,
       [make, where = std::string(name) + "(): ", size = std::string(size)](nb::handle mass,
                                                                            nb::handle length) {
-        double m = 0.0, l = 0.0;
-        Convert<double>::load(mass, m, where + "mass");
-        Convert<double>::load(length, l, where + size);
-        return make(m, l);
+        const auto m = read<double>(mass, where + "mass");
+        return make(m, read<double>(length, where + size));
       },
       nb::arg("mass"), nb::arg(size), nb::sig(signature.c_str()), doc(name));
-}
-
-std::vector<Vec<2>> points_of(nb::handle from, const char* where) {
-  std::vector<Vec<2>> points;
-  Convert<std::vector<Vec<2>>>::load(from, points, where);
-  return points;
-}
-
-Vec<2> vector_of(nb::handle from, const char* where) {
-  Vec<2> vector;
-  Convert<Vec<2>>::load(from, vector, where);
-  return vector;
 }
 
 void bind_masses(nb::module_& planar) {
@@ -56,7 +42,7 @@ void bind_masses(nb::module_& planar) {
   planar.def(
       "polygon",
       [](double mass, nb::handle vertices) {
-        return planar::polygon(mass, points_of(vertices, "polygon(): vertices"));
+        return planar::polygon(mass, read<std::vector<Vec<2>>>(vertices, "polygon(): vertices"));
       },
       nb::arg("mass"), nb::arg("vertices"),
       nb::sig("def polygon(mass: float, vertices: collections.abc.Sequence[numpy.typing.ArrayLike]) -> "
@@ -66,9 +52,8 @@ void bind_masses(nb::module_& planar) {
   planar.def(
       "compose",
       [](nb::handle parts) {
-        std::vector<Mass> read;
-        Convert<std::vector<Mass>>::load(parts, read, "compose(): parts");
-        return planar::compose(std::span<const Mass>(read));
+        const auto given = read<std::vector<Mass>>(parts, "compose(): parts");
+        return planar::compose(std::span<const Mass>(given));
       },
       nb::arg("parts"),
       nb::sig("def compose(parts: collections.abc.Sequence[MassProperties]) -> MassProperties"),
@@ -76,7 +61,7 @@ void bind_masses(nb::module_& planar) {
   planar.def(
       "shifted",
       [](const Mass& properties, nb::handle offset) {
-        return planar::shifted(properties, vector_of(offset, "shifted(): offset"));
+        return planar::shifted(properties, read<Vec<2>>(offset, "shifted(): offset"));
       },
       nb::arg("properties"), nb::arg("offset"),
       nb::sig("def shifted(properties: MassProperties, offset: numpy.typing.ArrayLike) -> MassProperties"),
@@ -85,7 +70,7 @@ void bind_masses(nb::module_& planar) {
   planar.def(
       "inertia_about",
       [](const Mass& properties, nb::handle point) {
-        return planar::inertia_about(properties, vector_of(point, "inertia_about(): point"));
+        return planar::inertia_about(properties, read<Vec<2>>(point, "inertia_about(): point"));
       },
       nb::arg("properties"), nb::arg("point"),
       nb::sig("def inertia_about(properties: MassProperties, point: numpy.typing.ArrayLike) -> float"),

@@ -228,6 +228,32 @@ def test_lock_is_released_while_nothing_in_python_is_called():
     assert simulation.time() == 1.0
 
 
+def test_ctrl_c_ends_a_run_of_time_stepping():
+    import os
+    import signal
+
+    system, _ = ball()
+    simulation = Simulation(system, TimeStepping(step=1e-6))
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulation.run_until(1e3)
+    timer.join()
+    reached = simulation.time()
+    simulation.step()
+    assert 0.0 < reached < simulation.time() < 1e3
+
+
+def test_paths_of_traces_are_texts_or_paths(tmp_path):
+    system, _ = ball()
+    simulation = Simulation(system, TimeStepping(step=1e-2))
+    trace = carom.record_at(simulation, [0.1, 0.2])
+    trace.save(tmp_path / "trace.csv")
+    assert len(carom.EnergyTrace.load(tmp_path / "trace.csv")) == len(trace) == 3  # the start too
+    with pytest.raises(TypeError, match="path must be a text or a path, not 3"):
+        trace.save(3)
+
+
 def test_solver_errors_have_data():
     system = System()
     body = system.add(Particle(mass=1.0, position=(2.0, 0.0), contact=False), name="ball")
