@@ -68,10 +68,6 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
 
 /// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
-  if (constraints.size() == 1 && constraints.front().bodies == 1) {
-    struck_.push_back(constraints.front().body());
-    return;
-  }
   bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
@@ -136,10 +132,6 @@ void ContactStage::put_struck_in_order() {
 
 std::span<const Index> ContactStage::struck(Range bodies) const {
   if (struck_.empty()) return {};
-  if (struck_.front() == bodies.begin && struck_.back() + 1 == bodies.end &&
-      struck_.size() == bodies.size()) {
-    return struck_;
-  }
   const auto first = std::lower_bound(struck_.begin(), struck_.end(), bodies.begin);
   return {first, std::lower_bound(first, struck_.end(), bodies.end)};
 }
