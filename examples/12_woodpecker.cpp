@@ -157,8 +157,9 @@ int main(int count, char** arguments) try {
     errors[i] = difference(steps.state(), at_compared);
     std::cout << "  " << step << " s by " << errors[i] << '\n';
   }
-  const bool closes = std::abs(simulation.energy().residual()) < 1e-9;
-  const bool pecks_on = pecks.size() > 12 && longest - shortest < 0.01 * longest;
+  // 1e-9 of the energy lost, and of the period, come from the tolerance of a step; the cycle was reached.
+  const bool closes = std::abs(simulation.energy().residual()) < 1e-9 * simulation.energy().lost();
+  const bool pecks_on = pecks.size() > 12 && longest - shortest < 1e-9 * longest;
   return closes && pecks_on && errors[1] < 0.5 * errors[0] ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& error) {
   std::cerr << "12_woodpecker: " << error.what() << "\n";
