@@ -96,13 +96,20 @@ void load_numbers(nb::handle from, double* to, std::size_t count, std::string_vi
   std::memcpy(to, read.data(), count * sizeof(double));
 }
 
+nb::object new_array(std::size_t rows, std::size_t columns, double*& numbers) {
+  const std::size_t count = columns == 0 ? rows : rows * columns;
+  numbers = new double[count > 0 ? count : 1];
+  const nb::capsule owner(numbers, [](void* memory) noexcept { delete[] static_cast<double*>(memory); });
+  const std::array<std::size_t, 2> shape{rows, columns};
+  return nb::cast(nb::ndarray<nb::numpy, double>(numbers, columns == 0 ? 1 : 2, shape.data(), owner));
+}
+
 nb::object make_array(const double* values, std::size_t rows, std::size_t columns) {
   const std::size_t count = columns == 0 ? rows : rows * columns;
-  auto* const copy = new double[count > 0 ? count : 1];
-  const nb::capsule owner(copy, [](void* memory) noexcept { delete[] static_cast<double*>(memory); });
-  if (count > 0) std::memcpy(copy, values, count * sizeof(double));
-  const std::array<std::size_t, 2> shape{rows, columns};
-  return nb::cast(nb::ndarray<nb::numpy, double>(copy, columns == 0 ? 1 : 2, shape.data(), owner));
+  double* numbers = nullptr;
+  nb::object array = new_array(rows, columns, numbers);
+  if (count > 0) std::memcpy(numbers, values, count * sizeof(double));
+  return array;
 }
 
 void Convert<carom::Mat<3>>::load(nb::handle from, carom::Mat<3>& to, std::string_view where) {

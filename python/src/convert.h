@@ -102,7 +102,10 @@ struct Convert<std::string_view> {
 /// Reads `count` numbers from a sequence or an array.
 void load_numbers(nb::handle from, double* to, std::size_t count, std::string_view where,
                   std::string_view expected);
-/// A NumPy array of its own memory. \param columns 0: of one dimension
+/// A NumPy array of its own memory, to be filled. \param columns 0: of one dimension
+/// \param numbers receives its first number
+nb::object new_array(std::size_t rows, std::size_t columns, double*& numbers);
+/// A NumPy array of its own memory, a copy of numbers.
 nb::object make_array(const double* values, std::size_t rows, std::size_t columns);
 
 template <int D>

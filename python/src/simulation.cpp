@@ -62,19 +62,19 @@ nb::object gather(Runner& self, Gathered what) {
   const bool of_angle = what == Gathered::angles || what == Gathered::spins;
   const bool of_q = what == Gathered::positions || what == Gathered::angles;
   const std::size_t width = state.layout()->dimension() == 3 ? 3 : 2, columns = of_angle ? 1 : width;
-  std::vector<double> numbers(slots.size() * columns, std::numeric_limits<double>::quiet_NaN());
   const double* const from = of_q ? state.q.data() : state.v.data();
-  double* to = numbers.data();
+  double* to = nullptr;
+  nb::object array = new_array(slots.size(), of_angle ? 0 : columns, to);
   for (const auto& [body, slot] : slots) {
     const double* const own = from + (of_q ? slot.q : slot.v);
     if (!of_angle) {
       for (std::size_t i = 0; i < columns; ++i) to[i] = own[i];
-    } else if (slot.rotation != none && width == 2) {
-      to[0] = own[2];
+    } else {
+      to[0] = slot.rotation != none && width == 2 ? own[2] : std::numeric_limits<double>::quiet_NaN();
     }
     to += columns;
   }
-  return make_array(numbers.data(), slots.size(), of_angle ? 0 : columns);
+  return array;
 }
 
 nb::object mode_object(const Simulation& simulation) {
