@@ -28,8 +28,6 @@ void StepBalance::begin(const StepInput& in) {
 bool StepBalance::book_couplings(const StepInput& in, Index component, const StepTrial& trial) {
   const Component& all = assembly_->components()[component];
   StoredEnergies& stored = result_.stored;
-  for (std::size_t i = 0; i < stored_energy_count; ++i)
-    stored.values[i] += trial.account.potentials.values[i];
   double total = 0.0, dissipative = 0.0, external = 0.0;
   for (const BlockWorks& works : trial.account.works) {
     stored[StoredEnergy::kinetic] += works.kinetic;
@@ -37,6 +35,9 @@ bool StepBalance::book_couplings(const StepInput& in, Index component, const Ste
     dissipative += works.dissipative;
     external += works.external;
   }
+  // Last: they are written just before, one by one, and are not at hand at once.
+  for (std::size_t i = 0; i < stored_energy_count; ++i)
+    stored.values[i] += trial.account.potentials.values[i];
   double inside = 0.0;
   if (!all.z.empty()) {
     inside = trial.with_step(in, component,
