@@ -3,7 +3,6 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/integrators/run/failure_file.h>
-#include <carom/integrators/run/impact_options.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -84,12 +83,12 @@ void check_options(const TimeStepping& options) {
   if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
     refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
   }
-  check_options(impact_options(options), "time stepping");
-  if (options.impacts == ImpactTimes::located &&
-      (options.impact_order != ImpactOrder::simultaneous || options.limit_energy_gain)) {
+  check_rules(options.impact_rules, "time stepping");
+  if (options.impacts == ImpactTimes::located && (options.impact_rules.order != ImpactOrder::simultaneous ||
+                                                  options.impact_rules.energy_gain == EnergyGain::limit)) {
     throw ModelError(
-        "time stepping: impacts is located; allowed where impact_order is sequential or "
-        "limit_energy_gain is true: at_step_start");
+        "time stepping: impacts is located; allowed where impact_rules.order is sequential or "
+        "impact_rules.energy_gain is limit: at_step_start");
   }
   check_failure_directory(options.failure_directory, "time stepping");
 }
@@ -287,7 +286,7 @@ void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) co
 void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {
   SolverFailure failure = failure_of(problem);
   std::string message = place(in_) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
-                        " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+                        " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)";
   throw SolverError(message, std::move(failure));
 }
 

@@ -286,7 +286,7 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 void TimeStepper::book_contact_problem(const IslandProblem& problem, const double* after, double time,
                                        const StepInput& in) {
   const double gain = balance_.book_contacts(problem, after, time, in, parts_.trial);
-  if (gain > 0.0 && parts_.options.refuse_energy_gain) {
+  if (gain > 0.0 && parts_.options.impact_rules.energy_gain == EnergyGain::refuse) {
     parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()))
         .refuse_gain(problem, gain);
   }
