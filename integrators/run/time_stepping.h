@@ -103,6 +103,11 @@ struct TimeStepping {
   /// Excludes refuse_energy_gain.
   bool limit_energy_gain = false;
 
+  /// Refuse, with a SolverError that names them, contacts that jam a body and have no answer by the law of
+  /// impact (docs/contact_law.md). Else their island is solved with e = 0 in that step, which
+  /// ImpactNote::restitution_factor says.
+  bool refuse_jams = false;
+
   ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
   /// Of impacts that are located: the most of one body in one step, >= 1, and as many slow ones. After them
   /// contacts that close act to the end of the step as they do where impacts are not located; so the step
@@ -113,11 +118,26 @@ struct TimeStepping {
   /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does
   /// the step.
   Iteration iteration = Iteration::automatic;
-  /// Move bodies out of shapes on ground at the end of each step, by the smallest displacement in the mass
-  /// norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that closes
-  /// within the step is detected at its end and takes part in the next. Bodies with joints move along their
-  /// joints. The change of the potential energy is booked as `projection`.
+  /// Let nothing pass through anything in the plane, however fast: a step in which a body would come deeper
+  /// into another one, or into a shape on ground, than an eighth of the radii of the largest circles in both
+  /// ends there, and the rest of it is another step, which begins with their impact (docs/method.md, section
+  /// 6). What closes faster than `capture_speed` is then resolved at the start of steps, as sequential
+  /// impacts are; a contact that closes more slowly does not rebound. Half-planes cannot be passed in any
+  /// case. Excludes `control`, and impacts that are located.
+  bool never_tunnel = false;
+  /// Move bodies out of shapes on ground, and apart, at the end of each step, by the smallest displacement in
+  /// the mass norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that
+  /// closes within the step is detected at its end and takes part in the next. Bodies with joints move along
+  /// their joints. The change of the potential energy is booked as `projection`.
   bool project_gaps = false;
+  /// At the start, after set_state() and after an edit: a body that stands deeper than this in another one or
+  /// in a shape on ground is refused with a ModelError that names the pair and the depth; >= 0 [m]. If not
+  /// given, what overlaps is in contact, goes no deeper, and is not moved apart. Of no effect where
+  /// separate_start is set.
+  std::optional<double> largest_overlap{};
+  /// Move bodies that overlap then apart, and out of the ground, by the smallest displacement in the
+  /// mass norm, along their joints: no gap is left below rounding. StepReport::projected has its size.
+  bool separate_start = false;
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
 

@@ -31,13 +31,53 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+[[noreturn]] void refuse(const char* option, double value, const char* allowed) {
+  throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
+                   "; allowed: " + allowed_instead(value, allowed));
+}
+
+void check_control(const StepControl& control, double step) {
+  if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
+    refuse("control.tolerance", control.tolerance, "finite and > 0 m");
+  }
+  if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
+    refuse("control.smallest", control.smallest, "finite and > 0 s");
+  }
+  if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
+    refuse("control.largest", control.largest, "finite and >= control.smallest");
+  }
+  if (!(step >= control.smallest && step <= control.largest)) {
+    refuse("step", step, "between control.smallest and control.largest");
+  }
+}
+
+void check_budget(const SweepBudget& budget) {
+  if (!(is_admissible(budget.residual) && budget.residual > 0.0)) {
+    refuse("contact_budget.residual", budget.residual, "finite and > 0");
+  }
+  if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
+  if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
+    refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
+  }
+}
+
+/// Options that do not go together.
+void check_exclusions(const TimeStepping& options) {
+  if (options.impacts == ImpactTimes::located &&
+      (options.impact_order != ImpactOrder::simultaneous || options.limit_energy_gain)) {
+    throw ModelError(
+        "time stepping: impacts is located; allowed where impact_order is sequential or "
+        "limit_energy_gain is true: at_step_start");
+  }
+  if (options.never_tunnel && (options.control || options.impacts == ImpactTimes::located)) {
+    throw ModelError(std::string("time stepping: never_tunnel is true; allowed where ") +
+                     (options.control ? "control is given" : "impacts is located") + ": false");
+  }
+}
+
 }  // namespace
 
 void check_options(const TimeStepping& options) {
-  const auto refuse = [](const char* option, double value, const char* allowed) {
-    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
-                     "; allowed: " + allowed_instead(value, allowed));
-  };
   if (!(is_admissible(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
   if (!(is_admissible(options.tolerance) && options.tolerance >= 0.0)) {
     refuse("tolerance", options.tolerance, "finite and >= 0 m");
@@ -58,39 +98,17 @@ void check_options(const TimeStepping& options) {
   if (options.threads > 1 && !Workers::several_available()) {
     refuse("threads", options.threads, "1, for the library was built without oneTBB (CAROM_WITH_TBB)");
   }
-  if (options.control) {
-    const StepControl& control = *options.control;
-    if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
-      refuse("control.tolerance", control.tolerance, "finite and > 0 m");
-    }
-    if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
-      refuse("control.smallest", control.smallest, "finite and > 0 s");
-    }
-    if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
-      refuse("control.largest", control.largest, "finite and >= control.smallest");
-    }
-    if (!(options.step >= control.smallest && options.step <= control.largest)) {
-      refuse("step", options.step, "between control.smallest and control.largest");
-    }
-  }
+  if (options.control) check_control(*options.control, options.step);
   if (!(is_admissible(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
-  const SweepBudget& budget = options.contact_budget;
-  if (!(is_admissible(budget.residual) && budget.residual > 0.0)) {
-    refuse("contact_budget.residual", budget.residual, "finite and > 0");
+  if (options.largest_overlap &&
+      !(is_admissible(*options.largest_overlap) && *options.largest_overlap >= 0.0)) {
+    refuse("largest_overlap", *options.largest_overlap, "finite and >= 0 m");
   }
-  if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
-  if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
-    refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
-  }
+  check_budget(options.contact_budget);
   check_options(impact_options(options), "time stepping");
-  if (options.impacts == ImpactTimes::located &&
-      (options.impact_order != ImpactOrder::simultaneous || options.limit_energy_gain)) {
-    throw ModelError(
-        "time stepping: impacts is located; allowed where impact_order is sequential or "
-        "limit_energy_gain is true: at_step_start");
-  }
+  check_exclusions(options);
   check_failure_directory(options.failure_directory, "time stepping");
 }
 
@@ -216,6 +234,11 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
     message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_);
+    if (options_.refuse_jams && problem.constraints().size() > 1) {
+      message +=
+          "; allowed: contacts with an answer (refuse_jams is set; use one e for surfaces between which a "
+          "body jams)";
+    }
   }
   throw SolverError(message, std::move(failure));
 }

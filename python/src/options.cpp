@@ -21,10 +21,12 @@ void bind_options(nb::module_& core) {
     fields("step", &T::step)("tolerance", &T::tolerance)("max_sweeps", &T::max_sweeps)(
         "capture_speed", &T::capture_speed)("refuse_energy_gain", &T::refuse_energy_gain)(
         "impact_order", &T::impact_order)("sequence_limit", &T::sequence_limit)(
-        "limit_energy_gain", &T::limit_energy_gain)("impacts", &T::impacts)("most_impacts", &T::most_impacts)(
-        "force_rule", &T::force_rule)("iteration", &T::iteration)("project_gaps", &T::project_gaps)(
-        "control", &T::control)("threads", &T::threads)("failure_directory", &T::failure_directory)(
-        "contact_budget", &T::contact_budget);
+        "limit_energy_gain", &T::limit_energy_gain)("refuse_jams", &T::refuse_jams)("impacts", &T::impacts)(
+        "most_impacts", &T::most_impacts)("force_rule", &T::force_rule)("iteration", &T::iteration)(
+        "project_gaps", &T::project_gaps)("largest_overlap", &T::largest_overlap)(
+        "separate_start", &T::separate_start)("never_tunnel", &T::never_tunnel)("control", &T::control)(
+        "threads", &T::threads)("failure_directory", &T::failure_directory)("contact_budget",
+                                                                            &T::contact_budget);
   });
   bind_record<EventDriven>(core, "EventDriven", {"EventDriven"}, true, [](auto& fields) {
     using T = EventDriven;
