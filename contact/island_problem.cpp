@@ -132,10 +132,20 @@ bool remove_restitution(std::span<const double> before, std::span<double> restit
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = jammed_ = false;
-  if (constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_)) {
-    return take_one_planar(constraints[0], velocity_before);
+  if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
+    return build_any(velocity_before);
   }
-  build_any(velocity_before);
+  // The hot path: one planar contact after another, so that only its numbers need to be filled in.
+  const Constraint& contact = constraints[0];
+  problem_.sets()[1].coefficient = contact.friction;
+  restitution_[0] = contact.law.normal_restitution;
+  restitution_[1] = contact.law.tangential_restitution;
+  for (int i = 0; i < 2; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    directions_[row].constraint = &contact;
+    before_[row] = contact.velocity(i, velocity_before);
+    answer_.impulse[row] = 0.0;
+  }
 }
 
 void IslandProblem::build_any(const double* velocity_before) {
@@ -179,19 +189,6 @@ void IslandProblem::build_any(const double* velocity_before) {
     }
   }
   if (!factored) problem_.group();  // factors are still to be written
-}
-
-/// The hot path: one planar contact after another, so that only its numbers need to be filled in.
-void IslandProblem::take_one_planar(const Constraint& contact, const double* velocity_before) {
-  problem_.sets()[1].coefficient = contact.friction;
-  restitution_[0] = contact.law.normal_restitution;
-  restitution_[1] = contact.law.tangential_restitution;
-  for (int i = 0; i < 2; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    directions_[row].constraint = &contact;
-    before_[row] = contact.velocity(i, velocity_before);
-    answer_.impulse[row] = 0.0;
-  }
 }
 
 void IslandProblem::respond(BodyResponse& response) {

@@ -104,7 +104,6 @@ public:
   }
 
 private:
-  void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
 
   // Solver of impacts by another law.

@@ -100,8 +100,9 @@ double PassageSearch::allowed(const Constraint& contact) const {
 
 /// How much nearer the pair of a contact may come along its normal over a whole step [m].
 double PassageSearch::approach(const Constraint& contact) const {
-  constexpr double caution = 2.0;  // ground may go faster than it does now
-  double sum = caution * std::max(contact.surface_velocity[0], 0.0) * step_;
+  constexpr double caution = 2.0;  // in between ground may go faster than it does now and at the end
+  const double speed = contact.surface_velocity[0], change = contact.surface_velocity_after[0] - speed;
+  double sum = (speed + caution * std::abs(change)) * step_;
   const double* row = contact.row(0);
   for (int b = 0; b < contact.bodies; ++b) {
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
@@ -129,7 +130,7 @@ double PassageSearch::most_approach(const State& start, const State& end) {
   }
   most *= 2.0;
   if (!detector_->has_moving_ground()) return most;
-  // Of ground twice what its speed makes of it, as in approach().
+  // Of ground twice what its speed at either end makes of it.
   double fastest = 0.0;
   const GroundPieces& pieces = detector_->pieces().pieces();
   for (const GroundOutline& outline : pieces.outlines()) {
@@ -154,7 +155,7 @@ void PassageSearch::look(const State& start, double share) {
   evaluate_positions(*assembly_, at_.view(), evaluation_);
   detector_->place(at_.time, places_);
   contacts_.clear();
-  const ContactQuery query{at_.view(), evaluation_, places_, nullptr, margin_};
+  const ContactQuery query{at_.view(), evaluation_, places_, &places_at_end_, margin_};
   detector_->find({0, static_cast<Index>(assembly_->components().size())}, query, contacts_);
   if (detector_->bodies_touch()) detector_->bodies().find(query, search_, contacts_);
   std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
@@ -166,6 +167,7 @@ PassageSearch::Passage PassageSearch::first(const State& start, const State& end
   const double most = most_approach(start, end);
   if (!(most > thinnest_)) return {};
   at_.v = start.v;
+  detector_->place(end.time, places_at_end_);
   margin_ = most;
   look(start, 0.0);
   depth_at_start_.clear();

@@ -9,7 +9,7 @@
 /// largest rate at which they come nearer along n: that of their translation, and for each turning one the
 /// size of its spin times its reach. So looks from one such time to the next miss nothing (conservative
 /// advancement: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, Berkeley 1996, chapter
-/// 2). Of moving ground twice its speed at the look is taken.
+/// 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the step's end.
 
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/detector.h>
@@ -58,7 +58,7 @@ private:
   double thinnest_ = 0.0;                   // depth that any pair may have [m]
   State at_;
   Evaluation evaluation_;
-  GroundPlaces places_;
+  GroundPlaces places_, places_at_end_;
   BodyContactSearch search_;
   std::vector<Constraint> contacts_;
   std::vector<double> displacement_;       // over all velocities, of the whole step

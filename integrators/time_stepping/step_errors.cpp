@@ -31,6 +31,19 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// Obstacles of a problem that move along the normal of a contact: a body that they press has no room.
+std::string pressed_by(const System& system, const IslandProblem& problem) {
+  std::vector<std::string> names;
+  for (const Constraint& contact : problem.constraints()) {
+    const FeatureKey& ground = contact.key.b;
+    if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
+    if (contact.surface_velocity_after[0] == 0.0) continue;
+    const std::string name = system.name(ObstacleId{ground.serial, system.token()});
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names.empty() ? std::string() : "; bodies are pressed by the motion of " + listed(names);
+}
+
 [[noreturn]] void refuse(const char* option, double value, const char* allowed) {
   throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
                    "; allowed: " + allowed_instead(value, allowed));
@@ -233,7 +246,8 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   } else {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
-    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_);
+    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_) +
+               pressed_by(system(), problem);
     if (options_.refuse_jams && problem.constraints().size() > 1) {
       message +=
           "; allowed: contacts with an answer (refuse_jams is set; use one e for surfaces between which a "
