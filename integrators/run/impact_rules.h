@@ -29,6 +29,10 @@ struct ImpactRules {
   /// problem with e = 0 ends them; its loss is booked as `accumulation`.
   int sequence_limit = 1000;
   EnergyGain energy_gain = EnergyGain::report;  ///< of an impact that would add energy
+  /// Refuse, with a SolverError that names them, contacts that jam a body and have no answer by the law of
+  /// impact (docs/contact_law.md). Else time stepping solves their island with e = 0 in that step, which
+  /// ImpactNote::restitution_factor says; the event-driven mode refuses them in any case.
+  bool refuse_jams = false;
 };
 
 /// Throws ModelError naming the option that is not allowed. \param mode name of the mode, for the message

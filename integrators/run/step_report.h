@@ -124,6 +124,7 @@ struct ContactCounts {
   double lasting_gained = 0.0;         ///< sum of those gains [J]
   std::int64_t cut_sequences = 0;      ///< sequential impacts that ImpactRules::sequence_limit ended
   std::int64_t scaled_impacts = 0;     ///< impacts whose restitution EnergyGain::limit scaled
+  std::int64_t plastic_jams = 0;       ///< contact problems without an answer, solved with e = 0
   double deepest_gap = 0.0;            ///< the most negative gap found [m]
   double worst_residual = 0.0;         ///< the largest certificate of a contact problem
 };

@@ -6,6 +6,7 @@
 #include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/impact_rules.h>
+#include <carom/integrators/run/overlap_rules.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -104,11 +105,12 @@ struct TimeStepping {
   /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does
   /// the step.
   Iteration iteration = Iteration::automatic;
-  /// Move bodies out of shapes on ground at the end of each step, by the smallest displacement in the mass
-  /// norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that closes
-  /// within the step is detected at its end and takes part in the next. Bodies with joints move along their
-  /// joints. The change of the potential energy is booked as `projection`.
+  /// Move bodies out of shapes on ground, and apart, at the end of each step, by the smallest displacement in
+  /// the mass norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that
+  /// closes within the step is detected at its end and takes part in the next. Bodies with joints move along
+  /// their joints. The change of the potential energy is booked as `projection`.
   bool project_gaps = false;
+  OverlapRules overlaps{};  ///< bodies that stand in something at the start, or are fast enough to pass it
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
 

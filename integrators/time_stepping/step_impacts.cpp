@@ -20,8 +20,9 @@ StepImpacts::StepImpacts(StepParts& parts)
     : parts_(&parts),
       on_(parts.options.impact_rules.order == ImpactOrder::sequential ||
           parts.options.impact_rules.energy_gain == EnergyGain::limit ||
-          has_other_impact_law(parts.constraints.detector())),
+          parts.options.overlaps.never_tunnel || has_other_impact_law(parts.constraints.detector())),
       balance_(*parts.assembly, parts.options),
+      problem_(IslandOptions{.plastic_jams = !parts.options.impact_rules.refuse_jams}),
       response_(*parts.assembly) {
   if (parts.options.impacts == ImpactTimes::located && resists_rolling(parts.constraints.detector())) {
     throw ModelError(
@@ -144,10 +145,12 @@ void StepImpacts::solve_by_law(const StepInput& in, ImpactNote& note) {
   }
   if (law && *law != ImpactLaw::newton && !note.cut_sequence) problem_.use(&by_law_, *law);
   if (!solve()) errors().fail_contact(problem_);
-  if (parts_->options.impact_rules.energy_gain != EnergyGain::limit) return;
-  const auto again = [&] { return solve(); };
-  note.restitution_factor = limit_gain(problem_, touching_, again);
-  if (!problem_.report().usable()) errors().fail_contact(problem_);
+  if (parts_->options.impact_rules.energy_gain == EnergyGain::limit) {
+    const auto again = [&] { return solve(); };
+    note.restitution_factor = limit_gain(problem_, touching_, again);
+    if (!problem_.report().usable()) errors().fail_contact(problem_);
+  }
+  note.restitution_factor *= problem_.restitution_factor();
 }
 
 double StepImpacts::kinetic_energy(const StepInput& in) const {

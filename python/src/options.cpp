@@ -18,7 +18,11 @@ void bind_options(nb::module_& core) {
   });
   bind_record<ImpactRules>(core, "ImpactRules", {"ImpactRules"}, true, [](auto& fields) {
     fields("order", &ImpactRules::order)("sequence_limit", &ImpactRules::sequence_limit)(
-        "energy_gain", &ImpactRules::energy_gain);
+        "energy_gain", &ImpactRules::energy_gain)("refuse_jams", &ImpactRules::refuse_jams);
+  });
+  bind_record<OverlapRules>(core, "OverlapRules", {"OverlapRules"}, true, [](auto& fields) {
+    fields("largest_at_start", &OverlapRules::largest_at_start)(
+        "separate_at_start", &OverlapRules::separate_at_start)("never_tunnel", &OverlapRules::never_tunnel);
   });
   bind_record<TimeStepping>(core, "TimeStepping", {"TimeStepping"}, true, [](auto& fields) {
     using T = TimeStepping;

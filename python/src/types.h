@@ -40,6 +40,8 @@ struct Convert<carom::StepControl> : BoundRecord<carom::StepControl> {};
 template <>
 struct Convert<carom::ImpactRules> : BoundRecord<carom::ImpactRules> {};
 template <>
+struct Convert<carom::OverlapRules> : BoundRecord<carom::OverlapRules> {};
+template <>
 struct Convert<carom::SweepBudget> : BoundRecord<carom::SweepBudget> {};
 template <>
 struct Convert<carom::TimeStepping> : BoundRecord<carom::TimeStepping> {};
