@@ -5,6 +5,7 @@
 #include "tests/integrators/throws.h"
 #include "tests/random.h"
 #include "tests/reference/reference_data.h"
+#include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
 
@@ -119,6 +120,11 @@ TEST(ImpactLaws, SequenceEndsAtItsLimit) {
   stepping.step();
   for (const BodyId disc : near.discs) EXPECT_NEAR(stepping.state().velocity(disc)[0], 0.2, 1e-13);
   EXPECT_EQ(stepping.statistics().cut_sequences, 1);
+  const TemporaryFolder folder;
+  stepping.save(folder / "checkpoint");
+  Simulation again(near.system, TimeStepping{});
+  again.load(folder / "checkpoint");
+  EXPECT_EQ(again.statistics().cut_sequences, 1);
 }
 
 /// A box in a box, which strikes walls with its corners: with e_n > e_t some impacts gain energy.
