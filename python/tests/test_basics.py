@@ -135,6 +135,15 @@ def test_wrong_arguments_are_named(make, text):
         make()
 
 
+def test_fields_are_read_and_written():
+    part = RigidBody(mass=planar.disc(2.0, 0.5), position=(1.0, 2.0))
+    assert part.mass.mass == 2.0 and list(part.position) == [1.0, 2.0] and part.angle == 0.0
+    part.position, part.angle = (3.0, 4.0), 0.5
+    assert list(part.position) == [3.0, 4.0] and part.angle == 0.5
+    with pytest.raises(TypeError, match="RigidBody.angle must be a number, not 'x'"):
+        part.angle = "x"
+
+
 def test_identities_of_another_system_are_refused():
     system, body = ball()
     with pytest.raises(ModelError):
