@@ -292,6 +292,30 @@ def test_inverse_dynamics_of_a_driven_bar():
     assert result.samples[0].forces[0] == pytest.approx(4.0 / 3.0, rel=1e-12)
 
 
+def test_parts_are_listed_as_they_were_added():
+    system, body = ball()
+    magnet = Magnet(body, 4.0)
+    removed = system.add(Particle(mass=1.0), "removed")
+    system.add(magnet, "magnet")
+    system.remove(removed)
+    wood, brass = system.material("wood"), system.material("brass")
+    system.between(wood, brass, Surface(friction=0.2, normal_restitution=0.0))
+    listed = system.parts()
+    assert [(item.role, item.name) for item in listed] == [
+        ("element", ""),
+        ("obstacle", "floor"),
+        ("body", "ball"),
+        ("element", "magnet"),
+    ]
+    assert listed[2].id == body and list(listed[2].part.position) == [0.0, 1.0]
+    assert listed[1].surface.friction == 0.5 and listed[2].surface is None
+    assert listed[3].part is magnet
+    # What is given out is a copy.
+    listed[2].part.mass = 5.0
+    assert listed[2].part.mass == system.parts()[2].part.mass == 1.0
+    assert [(a, b, law.friction) for a, b, law in system.laws()] == [("wood", "brass", 0.2)]
+
+
 def test_example_runs():
     import pathlib
     import runpy
