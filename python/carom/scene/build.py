@@ -7,7 +7,7 @@ import re
 from typing import Any, Callable, Optional, TypeVar, Union
 
 from .. import _core
-from .errors import Path, SceneError, nearest, shown
+from .errors import Path, SceneError, one_of, shown
 from .forms import Form, List, Number, RecordForm, Text, demand_fields, parts, records
 from .references import SECTIONS, Names
 
@@ -160,13 +160,6 @@ def _object(value: Any, path: Path) -> Data:
     return value
 
 
-def _word(value: Any, allowed: Any, path: Path) -> str:
-    if not isinstance(value, str) or value not in allowed:
-        hint = nearest(value if isinstance(value, str) else "", allowed)
-        raise SceneError(f"must be one of {', '.join(allowed)}, not {shown(value)}{hint}", path)
-    return value
-
-
 def _field_in(quantity: str, forms: dict[str, Form], value: Data) -> Path:
     """The field that an error of the library speaks of: "moment of inertia" is of ("mass", "inertia")."""
     for name in sorted(value.keys() & forms.keys(), key=len, reverse=True):
@@ -227,7 +220,7 @@ def _list(data: Data, key: str) -> list[Any]:
 def _read_part(value: Any, section: str, space: str, path: Path, system: _core.System, names: Names) -> None:
     if "type" not in _object(value, path):
         raise SceneError("a part needs the field 'type'", path)
-    form = parts(space)[section][_word(value["type"], parts(space)[section], (*path, "type"))]
+    form = parts(space)[section][one_of(value["type"], parts(space)[section], (*path, "type"))]
     beside = ("type", "name", "surface") if section == "obstacles" else ("type", "name")
     part = form.read(value, path, names, beside)
     name = Text().read(value.get("name", ""), (*path, "name"), names)
@@ -257,7 +250,7 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
 def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
     path: Path = ("simulation",)
     demand_fields(_object(value, path), ("mode", "options", "until"), ("mode",), path, "the simulation")
-    word = _word(value["mode"], MODES, (*path, "mode"))
+    word = one_of(value["mode"], MODES, (*path, "mode"))
     mode = record(MODES[word]).read(value.get("options", {}), (*path, "options"), names)
     until = value.get("until")
     if "until" in value:
@@ -282,7 +275,7 @@ def from_dict(data: Any) -> Scene:
             f"the file is of version {version}; this carom reads versions up to {VERSION}", ("carom",)
         )
     demand_fields(data, KEYS, (), (), "a scene")
-    space = _word(data.get("space", SPACES[0]), SPACES, ("space",))
+    space = one_of(data.get("space", SPACES[0]), SPACES, ("space",))
     system, names = _core.System(), Names()
     _read_laws(data, system, names)
     for section in SECTIONS.values():

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from .. import _core
-from .errors import Path, SceneError, nearest, shown
+from .errors import Path, SceneError, nearest, one_of, shown
 from .references import Names
 
 Schema = dict[str, Any]
@@ -95,10 +95,7 @@ class Enumerator(Form):
         return {"enum": self._names}
 
     def read(self, value: Any, path: Path, names: Names) -> str:
-        if not isinstance(value, str) or value not in self._names:
-            hint = nearest(value if isinstance(value, str) else "", self._names)
-            raise SceneError(f"must be one of {', '.join(self._names)}, not {shown(value)}{hint}", path)
-        return value
+        return one_of(value, self._names, path)
 
     def write(self, value: Any, path: Path, names: Names) -> str:
         return value.name
