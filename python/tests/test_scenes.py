@@ -6,7 +6,7 @@ import pytest
 
 import carom
 from carom import ModelError, SceneError, Surface, System, TimeStepping, ground, planar, scene, spatial
-from carom.planar import Disc, Gravity, HalfPlane, Particle, RigidBody
+from carom.planar import Disc, Particle, RigidBody
 
 # What the slow ones run, so that each takes less than half a second.
 SHORT = {"discs_in_a_box": 0.05, "bars_in_a_drum": 0.2}

@@ -6,15 +6,13 @@ from .files import from_text, load_scene, save_scene, to_text
 from .schema import schema
 
 __all__ = [
-    *(
-        "Scene",
-        "SceneError",
-        "from_dict",
-        "from_text",
-        "load_scene",
-        "save_scene",
-        "schema",
-        "to_dict",
-        "to_text",
-    ),
+    "Scene",
+    "SceneError",
+    "from_dict",
+    "from_text",
+    "load_scene",
+    "save_scene",
+    "schema",
+    "to_dict",
+    "to_text",
 ]

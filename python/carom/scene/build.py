@@ -8,7 +8,8 @@ from typing import Any, Callable, Optional, TypeVar, Union
 
 from .. import _core
 from .errors import Path, SceneError, one_of, shown
-from .forms import Form, List, Number, RecordForm, Text, demand_fields, parts, records
+from .forms import Boolean, Form, List, Number, Text, demand_fields
+from .records import RecordForm, parts, records
 from .references import SECTIONS, Names
 
 VERSION = 1
@@ -240,7 +241,7 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
                 f"must be a list of two bodies, not {shown(item['between'])}", (*path, "between")
             )
         a, b = (names.find("bodies", each, (*path, "between", k)) for k, each in enumerate(item["between"]))
-        allowed = Form().read(item["allowed"], (*path, "allowed"), names)
+        allowed = Boolean().read(item["allowed"], (*path, "allowed"), names)
         _attempt(path, system.allow_contact, a, b, allowed)
     for i, reference in enumerate(_list(data, "keep_place")):
         body = names.find("bodies", reference, ("keep_place", i))
