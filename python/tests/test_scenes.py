@@ -182,6 +182,16 @@ ERRORS = [
     ('"friction": 0.5', '"friction": -0.5', "10: obstacles[0].surface.friction: half-plane"),
     ('"event-driven"', '"events"', '12: simulation.mode: is "events"; allowed: time-stepping, event-driven'),
     ('"interval": 0.1', '"step": 0.1', "12: simulation.options.step: EventDriven has no such field"),
+    (
+        '"interval": 0.1',
+        '"interval": 0',
+        "12: simulation.options.interval: event-driven mode: interval is 0; allowed",
+    ),
+    (
+        '"event-driven", "options": {"interval": 0.1}',
+        '"time-stepping", "options": {"contact_budget": {"sweeps": -1}}',
+        "12: simulation.options.contact_budget.sweeps: time stepping: contact_budget.sweeps is -1; allowed",
+    ),
     ('"interval": 0.1', '"event_limit": []', "12: simulation.options.event_limit: must be a number"),
     ('"carom": 1', '"carom": 2', "2: carom: the file is of version 2; this carom reads versions up to 1"),
     ('"carom": 1', '"carom": 1.0', "2: carom: must be the version"),

@@ -186,7 +186,7 @@ def _attempt(
         return action(*arguments)
     except (_core.Error, TypeError) as error:
         inner: Path = ()
-        said = re.search(r"(?:'|#\d+): (.*?) is ", str(error))
+        said = re.search(r"(?:'|#\d+|^time stepping|^event-driven mode): (.*?) is ", str(error))
         if said and form is not None:
             inner = _field_in(said.group(1), {**form.forms, "surface": record("Surface")}, value)
         raise SceneError(str(error), (*path, *inner)) from error
@@ -252,7 +252,12 @@ def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
     path: Path = ("simulation",)
     demand_fields(_object(value, path), ("mode", "options", "until"), ("mode",), path, "the simulation")
     word = one_of(value["mode"], MODES, (*path, "mode"))
-    mode = record(MODES[word]).read(value.get("options", {}), (*path, "options"), names)
+    form, options = record(MODES[word]), value.get("options", {})
+    mode = form.read(options, (*path, "options"), names)
+    # Options are checked where a simulation is made; the smallest there is.
+    trial = _core.System()
+    trial.add(_core.planar.Particle(mass=1.0, contact=False))
+    _attempt((*path, "options"), _core.Simulation, trial, mode, form=form, value=options)
     until = value.get("until")
     if "until" in value:
         until = Number().read(until, (*path, "until"), names)
