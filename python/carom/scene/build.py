@@ -17,21 +17,9 @@ VERSION = 1
 
 MODES = {"time-stepping": "TimeStepping", "event-driven": "EventDriven"}
 SPACES = ("planar", "spatial")
-KEYS = (
-    *(
-        "carom",
-        "space",
-        "materials",
-        "laws",
-        "default_law",
-        "bodies",
-        "joints",
-        "elements",
-        "shapes",
-        "obstacles",
-    ),
-    *("contacts", "keep_place", "simulation"),
-)
+_FIRST = ("carom", "space", "materials", "laws", "default_law")
+KEYS = (*_FIRST, *SECTIONS.values(), "contacts", "keep_place", "simulation")
+
 
 Mode = Union[_core.TimeStepping, _core.EventDriven]
 Data = dict[str, Any]
@@ -225,10 +213,10 @@ def _read_part(value: Any, section: str, space: str, path: Path, system: _core.S
     beside = ("type", "name", "surface") if section == "obstacles" else ("type", "name")
     part = form.read(value, path, names, beside)
     name = Text().read(value.get("name", ""), (*path, "name"), names)
-    surface = None
+    given = [part, name]
     if "surface" in value:
-        surface = record("Surface").read(value["surface"], (*path, "surface"), names)
-    identity = _attempt(path, system.add, part, surface, name, form=form, value=value)
+        given.insert(1, record("Surface").read(value["surface"], (*path, "surface"), names))
+    identity = _attempt(path, system.add, *given, form=form, value=value)
     names.add(section, identity, name)
 
 
