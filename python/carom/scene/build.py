@@ -112,7 +112,7 @@ def to_dict(
     data: Data = {"carom": VERSION, "space": SPACES[1] if scene.dimension() == 3 else SPACES[0]}
     if scene.materials:
         data["materials"] = list(scene.materials)
-    for i, name in enumerate(scene.materials):
+    for name in scene.materials:
         names.add("materials", scene.material(name), name)
     surface = record("Surface")
     laws = []
