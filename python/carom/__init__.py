@@ -6,6 +6,7 @@ attributes. `from` is a word of Python: that argument is `from_`.
 
 from . import planar, spatial
 from ._core import *  # noqa: F403
+from .scene import Scene, SceneError, load_scene, save_scene
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]
