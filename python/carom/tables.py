@@ -7,7 +7,6 @@ simulation.energy()                 shown as a table by itself; so are reports, 
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -34,6 +33,8 @@ class Table:
         return [*self.rows[:half], [left_out, *[""] * (len(self.header) - 1)], *self.rows[-half:]]
 
     def _repr_html_(self) -> str:
+        import html  # not needed elsewhere, and some milliseconds of every import
+
         def line(cells: Sequence[str], tag: str) -> str:
             return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
 
