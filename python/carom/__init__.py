@@ -4,7 +4,7 @@ Names, defaults and units are those of the C++ library; functions stay functions
 attributes. `from` is a word of Python: that argument is `from_`.
 """
 
-from . import planar, spatial
+from . import planar, spatial, tables
 from ._core import *  # noqa: F403
 from .scene import Scene, SceneError, load_scene, save_scene
 
