@@ -8,7 +8,7 @@ What the laws do: examples/09_newtons_cradle.cpp.
 import pathlib
 import sys
 
-from carom import CsvRecorder, EventDriven, ImpactOrder, Simulation, Surface, System
+from carom import CsvRecorder, EventDriven, ImpactOrder, ImpactRules, Simulation, Surface, System
 from carom.planar import Disc, RigidBody, disc
 
 COUNT, RADIUS, DISTANCE = 6, 0.05, 0.3  # discs; [m]; of the first from the others [m]
@@ -24,7 +24,7 @@ def run(order: ImpactOrder, restitution: float, folder: pathlib.Path) -> None:
         body = RigidBody(mass=disc(1.0, RADIUS), position=(x, 0.0), velocity=(1.0 if i == 0 else 0.0, 0.0))
         discs.append(system.add(body, f"disc {i + 1}"))
         system.add(Disc(body=discs[-1], radius=RADIUS))
-    simulation = Simulation(system, EventDriven(impact_order=order))
+    simulation = Simulation(system, EventDriven(impact_rules=ImpactRules(order=order)))
     recorder = CsvRecorder(simulation, folder / f"{order.name}_{restitution:g}.csv")
     simulation.run_until(END)
     recorder.detach(simulation)

@@ -151,7 +151,7 @@ def newtons_cradle() -> Scene:
         velocity = (1.0 if i == 0 else 0.0, 0.0)
         part = RigidBody(mass=planar.disc(1.0, radius), position=position, velocity=velocity)
         system.add(planar.Disc(body=system.add(part, name=f"disc {i + 1}"), radius=radius))
-    return Scene(system, EventDriven(impact_order="sequential"), 0.8)
+    return Scene(system, EventDriven(impact_rules=carom.ImpactRules(order="sequential")), 0.8)
 
 
 def rocking_block() -> Scene:

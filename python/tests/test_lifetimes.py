@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 import carom
-from carom import ModelError, Simulation, SolverError, Surface, System, TimeStepping, ground, planar
+from carom import ImpactRules, ModelError, Simulation, SolverError, Surface, System, TimeStepping, ground, planar
 from carom.planar import (
     Disc,
     Gravity,
@@ -225,7 +225,7 @@ def test_solver_error_has_the_problem() -> None:
     mass = MassProperties(mass=1.0, inertia=1.0)
     body = system.add(RigidBody(mass=mass, position=(0.0, 1.0), velocity=(1.0, -2.0)), "body")
     system.add(Point(body=body, position=(-1.0, -1.0)))
-    simulation = Simulation(system, TimeStepping(refuse_energy_gain=True))
+    simulation = Simulation(system, TimeStepping(impact_rules=ImpactRules(energy_gain="refuse")))
     with pytest.raises(SolverError, match="body 'body'.*half-plane 'floor'") as caught:
         simulation.step()
     error = caught.value
