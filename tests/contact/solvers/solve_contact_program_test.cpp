@@ -73,7 +73,7 @@ protected:
   ~SolveContactProgram() override { std::filesystem::remove(path_); }
 
   void save_gaining() const { save_failure(gaining_, {.refuse_energy_gain = true}, path_); }
-  void save_jammed() const { save_failure(jammed_, {}, path_); }
+  void save_jammed() const { save_failure(jammed_, {.refuse_jams = true}, path_); }
   [[nodiscard]] std::string file() const { return "'" + path_ + "'"; }
 
   std::string path_;
