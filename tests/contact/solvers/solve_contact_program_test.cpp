@@ -75,7 +75,7 @@ protected:
   void save_gaining() const {
     save_failure(gaining_, {.impact_rules = {.energy_gain = EnergyGain::refuse}}, path_);
   }
-  void save_jammed() const { save_failure(jammed_, {}, path_); }
+  void save_jammed() const { save_failure(jammed_, {.impact_rules = {.refuse_jams = true}}, path_); }
   [[nodiscard]] std::string file() const { return "'" + path_ + "'"; }
 
   std::string path_;

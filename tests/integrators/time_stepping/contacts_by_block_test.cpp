@@ -177,12 +177,16 @@ TEST(ContactsByBlock, AContactWithoutSolutionIsNamed) {
   system.add(SpringDamper{.from = dot, .to = corner, .stiffness = 1.0, .free_length = 49.0});
   for (const int threads : {1, 2}) {
     if (threads > 1 && !Workers::several_available()) continue;
-    Simulation simulation(system, TimeStepping{.step = 1e-4, .tolerance = tolerance, .threads = threads});
+    Simulation simulation(
+        system, TimeStepping{.step = 1e-4, .tolerance = tolerance, .refuse_jams = true, .threads = threads});
     ASSERT_EQ(simulation.assembly().components().size(), 1U);
     const auto before = carom_test::bits_of(simulation);
     EXPECT_THROWS(SolverError, simulation.step(), "particle 'dot' on half-plane 'left'", "'right'",
                   "no solution");
     EXPECT_EQ(carom_test::bits_of(simulation), before);
+    simulation.switch_to(TimeStepping{.step = 1e-4, .tolerance = tolerance, .threads = threads});
+    simulation.step();
+    EXPECT_EQ(simulation.statistics().plastic_jams, 1);
   }
 }
 

@@ -3,12 +3,14 @@
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/throws.h"
 #include "tests/model_error.h"
+#include "tests/random.h"
 
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -148,6 +150,46 @@ TEST(NeverTunnel, ABarThatTurns) {
     EXPECT_LT(simulation.state().velocity(stone)[0], -0.1 * spin) << spin;
     EXPECT_TRUE(ledger_closes(simulation.energy()));
   }
+}
+
+TEST(NeverTunnel, ShapesInABoxOfThinWalls) {
+  // Discs, capsules, bricks and triangles fly about in a box of 1 m whose walls are 2 mm thick.
+  std::int64_t impacts = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    carom_test::Random random(seed);
+    System system;
+    system.set_default_law({.friction = random.uniform(0.0, 0.5), .normal_restitution = 0.6});
+    const std::vector<Vec<2>> corners{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      system.add(Wall{.from = corners[i], .to = corners[(i + 1) % 4], .radius = 1e-3});
+    }
+    const double speed = std::pow(10.0, random.uniform(1.0, 4.0));
+    for (int i = 0; i < 4; ++i) {
+      const BodyId body = system.add(RigidBody{.mass = box(random.uniform(0.5, 2.0), 0.1, 0.06),
+                                               .position = {0.4 * (i % 2) - 0.2, 0.4 * (i / 2) - 0.2},
+                                               .angle = random.uniform(-3.0, 3.0),
+                                               .velocity = random.vec<2>(speed),
+                                               .spin = random.uniform(-speed, speed)});
+      if (i == 0) system.add(Disc{.body = body, .radius = 0.05});
+      if (i == 1) system.add(Segment{.body = body, .from = {-0.05, 0.0}, .to = {0.05, 0.0}, .radius = 0.01});
+      if (i == 2) {
+        system.add(
+            Polygon{.body = body, .vertices = {{-0.05, -0.03}, {0.05, -0.03}, {0.05, 0.03}, {-0.05, 0.03}}});
+      }
+      if (i == 3) system.add(Polygon{.body = body, .vertices = {{-0.04, -0.03}, {0.05, 0.0}, {-0.04, 0.03}}});
+    }
+    Simulation simulation(system, safe);
+    for (int i = 0; i < 30; ++i) {
+      ASSERT_NO_THROW(simulation.step());
+      for (const BodyId body : simulation.system().bodies()) {
+        EXPECT_LT(simulation.state().position(body).lpNorm<Eigen::Infinity>(), 0.5);
+      }
+    }
+    impacts += simulation.statistics().impacts;
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+  EXPECT_GT(impacts, 1000);  // else hardly anything was tried
 }
 
 TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {

@@ -1,7 +1,7 @@
 // Bodies that overlap at the start: named with their depth, or moved apart by the least displacement.
 
-#include "tests/integrators/mixed_scenes.h"
 #include "tests/model_error.h"
+#include "tests/random.h"
 
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
