@@ -188,9 +188,10 @@ bool ActiveSet::add_reactions(const Assembly& assembly, double* acceleration) {
 }
 
 void ActiveSet::margins(std::vector<ForceMargin>& out) {
+  out.clear();
+  if (contacts_.empty()) return;  // no reactions were asked for; null vectors are those of other contacts
   for (ActiveContact& contact : contacts_) contact.sets_margin = true;
   margins_.distribute(contacts_, least_);
-  out.clear();
   for_groups([&](std::size_t first, std::size_t last) {
     out.push_back({first, last, margins_.least({contacts_.data() + first, last - first})});
   });

@@ -16,20 +16,24 @@ namespace {
 // e = 1 in a corner.
 constexpr int most_impacts_at_once = 10000;
 
+// Closings of slow contacts at one instant. Each stops contacts that part slowly too; where contacts jam that
+// makes others approach, and so on. After these only what approaches is stopped, which ends.
+constexpr int most_closings_at_once = 16;
+
 }  // namespace
 
 bool ImpactStage::resolve(EventInstant& at) {
   bool struck = false;
   // An island that has begun a sequence goes on with it, however slow.
-  std::vector<int>& sequence = memory_->sequence;
-  sequence.assign(at.islands.size(), 0);
+  std::vector<ImpactCounts>& counts = memory_->counts;
+  counts.assign(at.islands.size(), {});
   for (int round = 0; round < most_impacts_at_once; ++round) {
     bool any = false;
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
       const std::span<const Index> pairs = at.islands.pairs(island);
       const double fastest = fastest_approach(pairs, at);
       if (!(fastest > at.scales.speed_noise)) continue;
-      resolve_island(pairs, fastest, sequence[island], at);
+      resolve_island(pairs, fastest, counts[island], at);
       any = struck = true;
     }
     if (!any) return struck;
@@ -52,26 +56,28 @@ double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventIn
   return fastest;
 }
 
-/// \param sequence impacts of the island at this instant before, counted where they are sequential
-void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, int& sequence,
+/// \param counts of the island at this instant before
+void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts,
                                  EventInstant& at) {
   list_touching(pairs, at);
   std::vector<Constraint>& touching = memory_->touching;
   const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
-  const bool captured = fastest <= options_->capture_speed && sequence == 0;
+  const bool captured = fastest <= options_->capture_speed && counts.sequence == 0;
   memory_->note = {};
-  memory_->note.cut_sequence = sequential && !captured && sequence >= options_->impact_rules.sequence_limit;
+  memory_->note.cut_sequence =
+      sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
   if (sequential && !captured && !memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
-  if (sequential && !captured) ++sequence;
+  if (sequential && !captured) ++counts.sequence;
   share_impact_restitution(touching, at.velocities(), 0.0);
   if (captured) add_captured(pairs, at);
   if (captured || memory_->note.cut_sequence) remove_restitution();
   IslandProblem& problem = memory_->problem;
   problem.use(nullptr, ImpactLaw::newton);
   if (!captured && !memory_->note.cut_sequence) choose_law(problem);
+  const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
   if (!solve(problem, at)) {
-    if (!captured) fail_unsolved(at);
+    if (!closes_slow) fail_unsolved(at);
     // Slower than the capture speed all that touches closes anyway.
     problem.forget_impulses();
   } else if (options_->impact_rules.energy_gain == EnergyGain::limit && !captured) {
@@ -81,7 +87,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, i
   }
   const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
-  if (captured) close_captured(at);
+  if (closes_slow) close_captured(at);
 }
 
 bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
@@ -114,12 +120,14 @@ void ImpactStage::remove_restitution() {
 void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Constraint>& touching = memory_->touching;
   touching.clear();
+  memory_->places.clear();
   for (const Index i : pairs) {
     if (!at.touches(i)) continue;
     // Friction in a joint that is bound by a constant has no impulse.
     if (at.contacts[i].has_dry_friction() && !at.motion.joints().depends_on_joint_force(at.contacts[i]))
       continue;
     Constraint& contact = touching.emplace_back(at.contacts[i]);
+    memory_->places.push_back(i);
     contact.friction_bound = 0.0;
     contact.friction = contact.law.friction_at(contact.sliding_speed(at.velocities()));
     // Before the jump of a driver it did not approach: there is nothing to give back.
@@ -183,7 +191,9 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
     if (contact.gap > options_->gap_tolerance) continue;
     const double speed = contact.normal_velocity(at.velocities());
     const double fall = contact.normal_acceleration(at.now.acceleration.data());
-    if (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit) memory_->touching.push_back(contact);
+    if (!(fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit)) continue;
+    memory_->touching.push_back(contact);
+    memory_->places.push_back(i);
   }
 }
 
@@ -196,34 +206,53 @@ void ImpactStage::close_captured(EventInstant& at) {
     fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
   }
   const double slow = std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
-  // To stop one may be to move another, in almost singular positions: then it may not be stopped.
-  if (!close_captured(true, slow, at)) close_captured(false, slow, at);
+  memory_->before_closing.assign(at.y.begin(), at.y.end());
+  // To stop one may be to move another, in almost singular positions: then it may not be stopped. And bodies
+  // that slide may have to part, however slowly, where others guide them.
+  for (const Closing closing : {Closing::with_sliding, Closing::all, Closing::pressed}) {
+    if (close_captured(closing, slow, at)) return;
+    std::copy(memory_->before_closing.begin(), memory_->before_closing.end(), at.y.begin());
+    at.update();
+  }
 }
 
-/// Closes captured contacts; where `stopping` those that slide slower than `slow` are stopped with them.
-/// False if some do not close.
-bool ImpactStage::close_captured(bool stopping, double slow, EventInstant& at) {
+/// Closes captured contacts. False if some do not close; the state is of no use then.
+/// \param slow sliding speed up to which `with_sliding` stops sliding too [m/s]
+bool ImpactStage::close_captured(Closing closing, double slow, EventInstant& at) {
+  constexpr int most_projections = 3;  // a shift turns rows
+  const double fastest = closing == Closing::pressed ? at.scales.speed_noise : options_->capture_speed;
   std::vector<ActiveContact>& list = memory_->captured;
   list.clear();
-  for (const Constraint& contact : memory_->touching) {
-    if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > options_->capture_speed)
-      continue;
+  for (std::size_t i = 0; i < memory_->touching.size(); ++i) {
+    const Constraint& contact = memory_->touching[i];
+    if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > fastest) continue;
     ActiveContact& closed = list.emplace_back();
-    const bool stops = stopping && contact.rows > 1 && contact.sliding_speed(at.velocities()) <= slow;
+    const bool stops = closing == Closing::with_sliding && contact.rows > 1 &&
+                       contact.sliding_speed(at.velocities()) <= slow;
     closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
     closed.at = contact;
+    closed.place = memory_->places[i];
   }
-  std::vector<ActiveContact>& active = at.motion.active().list();
-  active.swap(list);
-  const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
-  active.swap(list);
-  at.balance.flows[EnergyFlow::accumulation] += projection.lost;
-  at.balance.shift = std::max(at.balance.shift, projection.shift);
-  if (!projection.changed) return true;
-  at.update();
-  return std::all_of(list.begin(), list.end(), [&](const ActiveContact& closed) {
+  const auto is_closed = [&](const ActiveContact& closed) {
     return std::abs(closed.at.normal_velocity(at.velocities())) <= at.scales.speed_noise;
-  });
+  };
+  std::vector<ActiveContact>& active = at.motion.active().list();
+  double lost = 0.0, shift = 0.0;
+  for (int i = 0; i < most_projections; ++i) {
+    active.swap(list);
+    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
+    active.swap(list);
+    lost += projection.lost;
+    shift += projection.shift;
+    if (projection.changed) at.update();
+    for (ActiveContact& closed : list) closed.at = at.contacts[closed.place];
+    if (!projection.changed || std::all_of(list.begin(), list.end(), is_closed)) {
+      at.balance.flows[EnergyFlow::accumulation] += lost;
+      at.balance.shift = std::max(at.balance.shift, shift);
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace carom

@@ -15,18 +15,27 @@
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/run/impact_note.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace carom {
 
+/// Impacts of an island at one instant so far.
+struct ImpactCounts {
+  int sequence = 0;  ///< where they are sequential: impacts,
+  int closings = 0;  ///< and of those that were slow: projections that closed contacts
+};
+
 /// Memory of impacts, shared by clock groups.
 struct ImpactMemory {
   IslandProblem problem;
-  std::vector<Constraint> touching;  ///< constraints of the problem
+  std::vector<Constraint> touching;  ///< constraints of the problem,
+  std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
-  std::vector<int> sequence;  ///< by island: impacts of the instant
+  std::vector<double> before_closing;  ///< state
+  std::vector<ImpactCounts> counts;    ///< by island
   ImpactSolver by_law;
   ImpactNote note;  ///< of the impact at hand
 };
@@ -51,14 +60,17 @@ public:
 
 private:
   [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
-  void resolve_island(std::span<const Index> pairs, double fastest, int& sequence, EventInstant& at);
+  void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
   [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
   void choose_law(IslandProblem& problem) const;
   void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(EventInstant& at);
-  bool close_captured(bool stopping, double slow, EventInstant& at);
+  // What a projection closes: contacts that part slower than the capture speed, and those that slide slowly
+  // are stopped with them; these without that; or those only that do not part.
+  enum class Closing : std::uint8_t { with_sliding, all, pressed };
+  [[nodiscard]] bool close_captured(Closing closing, double slow, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
   [[noreturn]] void fail_unsolved(const EventInstant& at) const;
 

@@ -30,21 +30,10 @@ bool share_restitution(std::vector<Constraint>& contacts) {
 void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, ImpactStage& impacts,
                                      const GroupFailure& failure, SolverChain& chain, EventInstant& at) {
   list_touching(candidates, at);
-  bool solved = false;
-  // With unequal restitution there may be no solution, with an equal one there is: e_n means nothing without
-  // speed.
-  do {
-    solved = solve(chain, at);
-  } while ((!solved || best_ == solutions_.size()) && share_restitution(touching_));
-  if (!solved) {
-    failure.fail("no forces keep the contact and the impact without collision is not solved",
-                 failure.names(touching_), &problem_);
-  }
-  if (best_ == solutions_.size()) {
+  if (!find_listed(chain, at) && !find_limit(candidates, chain, at)) {
     failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
                  &problem_);
   }
-  problem_.set_impulses(solutions_.impulse(best_));
   const std::size_t first = at.balance.events.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
   for (std::size_t i = first; i < at.balance.events.size(); ++i) {
@@ -55,6 +44,19 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
   at.update();
   // It may throw the body against something else.
   if (impacts.resolve(at)) at.update();
+}
+
+/// Of the answers that are listed the most dissipative one. With unequal restitution there may be none, with
+/// an equal one there is: e_n means nothing without speed.
+bool ImpactWithoutCollision::find_listed(SolverChain& chain, EventInstant& at) {
+  if (touching_.size() > static_cast<std::size_t>(enumeration_groups)) return false;
+  bool solved = false;
+  do {
+    solved = solve(chain, at);
+  } while ((!solved || best_ == solutions_.size()) && share_restitution(touching_));
+  if (!solved || best_ == solutions_.size()) return false;
+  problem_.set_impulses(solutions_.impulse(best_));
+  return true;
 }
 
 void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates, const EventInstant& at) {
@@ -79,6 +81,68 @@ bool ImpactWithoutCollision::solve(SolverChain& chain, EventInstant& at) {
       problem_.solve(chain).usable() && solutions_.enumerate(problem_.problem()) != Outcome::not_solved;
   best_ = solved ? most_dissipative_solution(at.scales.speed_noise) : solutions_.size();
   return solved;
+}
+
+/// Shorter and shorter steps, for a jam of what slides slowly leaves impulses small against those of a longer
+/// step.
+bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, SolverChain& chain,
+                                        EventInstant& at) {
+  constexpr double longest = 1e-3, shorter = 1e-2, shortest = 1e-3;
+  double fastest = 0.0, slowest = std::numeric_limits<double>::infinity(), pull = 0.0;
+  for (std::size_t c = 0; c < touching_.size(); ++c) {
+    Constraint& contact = touching_[c];
+    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    for (int row = 0; row < contact.rows; ++row)
+      pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
+    const double slip = std::abs(candidates[taking_part_[c]].slip);
+    fastest = std::max(fastest, slip);
+    if (slip > 0.0) slowest = std::min(slowest, slip);
+  }
+  if (!(pull > 0.0) || fastest == 0.0) return false;
+  for (double change = longest * fastest; change >= shortest * shorter * slowest; change *= shorter) {
+    if (take_limit(chain, change / pull, at) && changes(at.scales.speed_noise)) return true;
+  }
+  return false;
+}
+
+/// Impulses of a step [s] without restitution: b = gamma + step a.
+bool ImpactWithoutCollision::solve_step(double step, SolverChain& chain, EventInstant& at) {
+  change_.assign(at.now.state.v.begin(), at.now.state.v.end());
+  for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += step * at.now.acceleration[i];
+  for (Constraint& contact : touching_) {
+    for (std::size_t row = 0; row < Constraint::max_rows; ++row)
+      contact.surface_velocity_after[row] = contact.surface_velocity[row] - step * contact.drift[row];
+  }
+  at.motion.joints().build(problem_, touching_, at.velocities());
+  problem_.set_free_velocity(change_.data());
+  return problem_.solve(chain).usable();
+}
+
+/// The limit of the impulses: they are linear in the step as long as no mode changes.
+bool ImpactWithoutCollision::take_limit(SolverChain& chain, double step, EventInstant& at) {
+  constexpr int most_improvements = 3;
+  if (!solve_step(step, chain, at)) return false;
+  limit_.assign(problem_.impulses().begin(), problem_.impulses().end());
+  if (!solve_step(0.5 * step, chain, at)) return false;
+  for (std::size_t row = 0; row < limit_.size(); ++row)
+    limit_[row] = 2.0 * problem_.impulses()[row] - limit_[row];
+  for (Constraint& contact : touching_) contact.surface_velocity_after = contact.surface_velocity;
+  problem_.set_free_velocity(at.velocities());
+  if (!(polish_.improve(problem_.problem(), limit_, most_improvements).value <= tolerated_residual))
+    return false;
+  problem_.set_impulses(limit_);
+  return true;
+}
+
+/// True if the impulses at hand change a velocity.
+bool ImpactWithoutCollision::changes(double speed_noise) {
+  xi_.resize(limit_.size());
+  problem_.problem().velocities(problem_.impulses(), xi_);
+  double change = 0.0;
+  for (std::size_t row = 0; row < xi_.size(); ++row) {
+    change = std::max(change, std::abs(xi_[row] - problem_.before()[row]));
+  }
+  return change > speed_noise;
 }
 
 /// Of the solutions listed those with impulses that change something count; the number of the one that takes

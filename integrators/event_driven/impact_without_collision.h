@@ -4,6 +4,7 @@
 /// The impact of contacts that no forces keep (Painleve): the limit of an impact at vanishing speed.
 
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
@@ -22,22 +23,32 @@ namespace carom {
 /// Such impacts; memory that clock groups share.
 class CAROM_API ImpactWithoutCollision {
 public:
-  /// Of all answers with impulses that change something takes the one that takes most energy; applies it,
-  /// books and records it by `impacts`, and resolves the impacts that follow. Fails where there is none.
-  /// \param candidates contacts of one mechanism without forces that keep them
+  /// Up to enumeration_groups contacts: of all answers with impulses that change something takes the one that
+  /// takes most energy. Of more, or where there is none: the limit for vanishing eps of the impulses of an
+  /// impact with e = 0 and b = gamma + eps a, which exists wherever forces do not. Applies it, books and
+  /// records it by `impacts`, and resolves the impacts that follow. Fails where there is none.
+  /// \param candidates contacts of one island without forces that keep them
   void resolve(std::span<const Candidate> candidates, ImpactStage& impacts, const GroupFailure& failure,
                SolverChain& chain, EventInstant& at);
 
 private:
   void list_touching(std::span<const Candidate> candidates, const EventInstant& at);
+  [[nodiscard]] bool find_listed(SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool solve(SolverChain& chain, EventInstant& at);
+  [[nodiscard]] bool find_limit(std::span<const Candidate> candidates, SolverChain& chain, EventInstant& at);
+  [[nodiscard]] bool solve_step(double step, SolverChain& chain, EventInstant& at);
+  [[nodiscard]] bool take_limit(SolverChain& chain, double step, EventInstant& at);
+  [[nodiscard]] bool changes(double speed_noise);
   [[nodiscard]] std::size_t most_dissipative_solution(double speed_noise) const;
 
   IslandProblem problem_;
   SolutionList solutions_;
+  NewtonPolish polish_;
   std::vector<Constraint> touching_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::size_t best_ = 0;                  // of the solutions; their number if none
+  std::vector<double> limit_, xi_;        // impulses and velocities of the limit
+  std::vector<double> change_;            // of velocities, in a step
 };
 
 }  // namespace carom

@@ -9,8 +9,7 @@ namespace carom {
 
 namespace {
 
-// An acceleration this small against those without contact is zero, and a force against those around it.
-constexpr double no_acceleration = 1e-11, no_force = 1e-11;
+constexpr double no_force = 1e-11;  // against those around it
 
 // Contacts that start slipping or open change the problem of the others; more rounds than this do not end it.
 constexpr int most_rounds = 20;
@@ -19,25 +18,22 @@ constexpr int most_rounds = 20;
 
 Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                               SolverChain& chain) {
-  slides_.assign(candidates.size(), {});
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& candidate = candidates[i];
-    if (candidate.frictionless) {
-      slides_[i].sign = 1.0;
-    } else if (candidate.slip != 0.0) {
-      slides_[i].sign = std::copysign(1.0, candidate.slip);
-    } else if (candidate.starts_slipping) {
-      slides_[i].sign = -std::copysign(1.0, candidate.exhausted_friction);
-    }
-    slides_[i].open = candidate.releases;
-  }
+  slips_.start(candidates);
   zero_.resize(now.acceleration.size());  // never written
   acceleration_.resize(now.acceleration.size());
+  const Decision decision = repeat(&ModeDecision::solve, motion, now, candidates, chain);
+  if (decision != Decision::failed) return decision;
+  return repeat(&ModeDecision::solve_as_limit, motion, now, candidates, chain);
+}
+
+/// Solves until the answer changes nothing any more.
+Decision ModeDecision::repeat(Solve once, SmoothMotion& motion, MotionSample& now,
+                              std::span<Candidate> candidates, SolverChain& chain) {
   Decision decision = Decision::failed;
   for (int round = 0; round < most_rounds; ++round) {
-    decision = solve(motion, now, candidates, chain);
+    decision = (this->*once)(motion, now, candidates, chain);
     if (decision == Decision::impossible || decision == Decision::failed) return decision;
-    if (!revise(candidates)) return decision;
+    if (!slips_.revise(candidates, problem_.problem(), size_, acceleration_.data())) return decision;
   }
   return decision;
 }
@@ -50,13 +46,13 @@ void ModeDecision::take_accelerations(const SmoothMotion& motion, const MotionSa
   });
 }
 
-Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
-                             SolverChain& chain) {
+/// Lists the contacts that take part, stated for accelerations.
+void ModeDecision::list_contacts(std::span<Candidate> candidates) {
   contacts_.clear();
   taking_part_.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
-    if (slides_[i].open) continue;
+    if (slips_[i].open) continue;
     Constraint& contact = contacts_.emplace_back(candidates[i].at);
     taking_part_.push_back(i);
     // In accelerations minus the drift stands for the velocity of the shape on ground.
@@ -64,9 +60,21 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    contact.friction = slides_[i].sign == 0.0 ? contact.law.sticking_friction()
-                                              : contact.law.sliding_friction(std::abs(candidates[i].slip));
+    contact.friction = slips_[i].sign == 0.0 ? contact.law.sticking_friction()
+                                             : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
+}
+
+bool ModeDecision::bounds_follow(SmoothMotion& motion) const {
+  const JointReactions& joints = motion.joints();
+  return !joints.friction_bounds().empty() &&
+         std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const Constraint& contact) { return joints.depends_on_joint_force(contact); });
+}
+
+Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                             SolverChain& chain) {
+  list_contacts(candidates);
   if (contacts_.empty()) {
     take_accelerations(motion, now);
     return Decision::made;
@@ -74,24 +82,23 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   JointReactions& joints = motion.joints();
   joints.build(problem_, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const double sign = slides_[taking_part_[c]].sign;
+    const double sign = slips_[taking_part_[c]].sign;
     if (sign != 0.0 && contacts_[c].type != ConstraintType::limit)
       problem_.slide(c, -sign * contacts_[c].friction);
   }
   problem_.set_free_velocity(now.acceleration.data());
-  const bool bounds_follow = !joints.friction_bounds().empty() &&
-                             std::any_of(contacts_.begin(), contacts_.end(), [&](const Constraint& contact) {
-                               return joints.depends_on_joint_force(contact);
-                             });
-  const bool solved = bounds_follow ? converge_friction_bounds(motion, now, candidates, chain)
-                                    : problem_.solve(chain).usable();
+  size_ = 0.0;
+  for (const double b : problem_.problem().vector()) size_ = std::max(size_, std::abs(b));
+  const bool follow = bounds_follow(motion);
+  const bool solved =
+      follow ? converge_friction_bounds(motion, now, candidates, chain) : problem_.solve(chain).usable();
   const ContactReport& report = problem_.report();
   if (!solved || report.outcome == Outcome::no_solution) {
     name_cause(candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
   Decision decision = Decision::made;
-  if (!bounds_follow) read_modes(candidates, problem_.impulses());
+  if (!follow) read_modes(candidates, problem_.impulses());
   if (report.outcome == Outcome::several_solutions) {
     name_cause(candidates);
     take_present(candidates);
@@ -99,7 +106,52 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   }
   take_accelerations(motion, now);
   problem_.map().add_velocities(acceleration_.data());
+  if (!follow && decision == Decision::made) settle_modes(motion, now, candidates);
   return decision;
+}
+
+/// The limit of impacts of vanishing time eps, with b = gamma + eps a and e = 0: a problem whose matrix is
+/// copositive, so that it has an answer where that of accelerations with given directions of slip has none,
+/// or none that solvers find. Divided by eps, contacts that slip have a velocity gamma/eps without bound.
+/// Where they go on slipping the impulses divided by eps are the forces; else impulses of the size of gamma
+/// stop some of them, and there are no forces.
+Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
+                                      std::span<Candidate> candidates, SolverChain& chain) {
+  constexpr double unbounded = 1e6;  // against the accelerations without contact
+  list_contacts(candidates);
+  if (contacts_.empty() || bounds_follow(motion)) return Decision::failed;
+  size_ = 0.0;
+  for (const Constraint& contact : contacts_) {
+    for (int row = 0; row < contact.rows; ++row)
+      size_ = std::max(size_, std::abs(contact.acceleration(row, now.acceleration.data())));
+  }
+  const double fast = unbounded * size_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const double sign = slips_[taking_part_[c]].sign;
+    if (contacts_[c].type == ConstraintType::limit || contacts_[c].friction == 0.0) continue;
+    contacts_[c].surface_velocity_after[static_cast<std::size_t>(contacts_[c].tangent_row())] -= sign * fast;
+  }
+  motion.joints().build(problem_, contacts_, zero_.data());
+  problem_.set_free_velocity(now.acceleration.data());
+  const bool solved = problem_.solve(chain).usable();
+  name_cause(candidates);
+  if (!solved) return Decision::failed;
+  take_accelerations(motion, now);
+  problem_.map().add_velocities(acceleration_.data());
+  bool stops = false, reverts = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    SlipDirection& slide = slips_[taking_part_[c]];
+    const Candidate& candidate = candidates[taking_part_[c]];
+    if (slide.sign == 0.0 || contacts_[c].friction == 0.0) continue;
+    if (slide.sign * candidate.at.tangential_acceleration(acceleration_.data()) > -0.5 * fast) continue;
+    (candidate.slip != 0.0 ? stops : reverts) = true;
+    if (candidate.slip == 0.0) slide = {.reverted = true};  // it has no velocity that impulses could stop
+  }
+  if (reverts) return solve_as_limit(motion, now, candidates, chain);
+  if (stops) return Decision::impossible;
+  read_modes(candidates, problem_.impulses());
+  settle_modes(motion, now, candidates);
+  return Decision::made;
 }
 
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {
@@ -108,61 +160,19 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
     const ContactMode found = problem_.modes()[c];
     // Friction in a joint never opens.
     const bool has_dry_friction = contacts_[c].has_dry_friction();
-    if (has_dry_friction && slides_[i].sign == 0.0) {
+    if (has_dry_friction && slips_[i].sign == 0.0) {
       candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
       continue;
     }
     const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
-    if (slides_[i].sign != 0.0) {
-      candidates[i].mode = !(normal > 0.0)         ? ContactMode::open
-                           : slides_[i].sign > 0.0 ? ContactMode::slip_positive
-                                                   : ContactMode::slip_negative;
+    if (slips_[i].sign != 0.0) {
+      candidates[i].mode = !(normal > 0.0)        ? ContactMode::open
+                           : slips_[i].sign > 0.0 ? ContactMode::slip_positive
+                                                  : ContactMode::slip_negative;
     } else {
       candidates[i].mode = found;
     }
   }
-}
-
-/// Changes by the first answer: contacts that start slipping have their sliding friction; those that were
-/// taken to open or slip and do not, since another one that slips took them along, are put back. True if the
-/// problem is to be solved anew.
-bool ModeDecision::revise(std::span<Candidate> candidates) {
-  bool changed = false;
-  double size = 0.0, farthest = 0.0;
-  for (const double b : problem_.problem().vector()) size = std::max(size, std::abs(b));
-  // Accelerations by friction that is exhausted to within its rounding only.
-  double stiffest = 0.0, exhausted = 0.0;
-  for (int row = 0; row < problem_.problem().rows(); ++row) {
-    stiffest = std::max(stiffest, problem_.problem().w(row, row));
-  }
-  for (const Candidate& candidate : candidates) exhausted += candidate.noise * stiffest;
-  Slide* astray = nullptr;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& candidate = candidates[i];
-    Slide& slide = slides_[i];
-    const double opening = candidate.at.normal_acceleration(acceleration_.data());
-    const double slides = candidate.at.tangential_acceleration(acceleration_.data());
-    if (slide.open) {
-      if (opening >= -no_acceleration * std::max(size, std::abs(opening))) continue;
-      slide.open = false;
-      changed = true;
-    } else if (slide.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
-                                     candidate.mode == ContactMode::slip_negative)) {
-      slide.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
-      changed = true;
-    } else if (candidate.slip == 0.0 && !candidate.frictionless && !slide.reverted &&
-               candidate.mode != ContactMode::open &&
-               slide.sign * slides < -std::max(no_acceleration * size, exhausted)) {
-      // One at a time: it may be what takes the others along.
-      if (astray != nullptr && std::abs(slides) <= farthest) continue;
-      astray = &slide;
-      farthest = std::abs(slides);
-    }
-  }
-  if (changed || astray == nullptr) return changed;
-  astray->sign = 0.0;
-  astray->reverted = true;
-  return true;
 }
 
 void ModeDecision::name_cause(std::span<Candidate> candidates) {
@@ -171,7 +181,7 @@ void ModeDecision::name_cause(std::span<Candidate> candidates) {
     const std::size_t i = taking_part_[c];
     if (contacts_[c].has_dry_friction()) continue;
     const int row = problem_.first_row(c);
-    const double ratio = -slides_[i].sign * contacts_[c].friction;
+    const double ratio = -slips_[i].sign * contacts_[c].friction;
     candidates[i].stiffness = problem.w(row, row);
     if (contacts_[c].rows > 1) candidates[i].stiffness += ratio * problem.w(row, row + 1);
     candidates[i].free_acceleration = problem.vector()[static_cast<std::size_t>(row)];
@@ -205,6 +215,26 @@ void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
   read_modes(candidates, problem_.impulses());
 }
 
+/// Modes by accelerations instead of forces. Where forces are not unique, solvers answer with extreme ones:
+/// friction at its bound although nothing slips, or nothing on a contact that others relieve; and forces that
+/// are zero may be rounding above it although the contact parts. Taken by their forces, such contacts would
+/// change their modes from event to event.
+void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
+  const double small = SlipDirections::no_acceleration * size_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    Candidate& candidate = candidates[taking_part_[c]];
+    const Constraint& contact = contacts_[c];
+    if (candidate.mode == ContactMode::open || contact.has_dry_friction()) continue;
+    if (contact.normal_acceleration(acceleration_.data()) > small) candidate.mode = ContactMode::open;
+    const bool may_stick = candidate.slip == 0.0 && !candidate.starts_slipping && !candidate.frictionless;
+    if (candidate.mode == ContactMode::open || !may_stick) continue;
+    if (contact.rows < 2 || contact.friction == 0.0) continue;
+    if (std::abs(contact.tangential_acceleration(acceleration_.data())) <= small)
+      candidate.mode = ContactMode::stick;
+  }
+  complete_modes(motion, now, candidates);
+}
+
 /// The contacts that stay closed, in their modes.
 void ModeDecision::list_closed(std::span<const Candidate> candidates) {
   active_.clear();
@@ -224,8 +254,6 @@ void ModeDecision::list_closed(std::span<const Candidate> candidates) {
 /// Modes that do not follow from the answer. Contacts without force that do not part stay closed where they
 /// can carry some: of redundant contacts solvers load any.
 void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
-  double size = 0.0;
-  for (const double b : problem_.problem().vector()) size = std::max(size, std::abs(b));
   std::vector<std::size_t> added;  // candidates
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Constraint& contact = contacts_[c];
@@ -234,19 +262,21 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
       // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
       // bound is zero the force does not determine the mode.
       const double along = contact.tangential_acceleration(acceleration_.data());
-      if (std::abs(along) <= no_acceleration * size) {
+      if (std::abs(along) <= SlipDirections::no_acceleration * size_) {
         candidates[i].mode = ContactMode::stick;
-      } else if (slides_[i].sign == 0.0) {
+      } else if (slips_[i].sign == 0.0) {
         candidates[i].mode = along > 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
       }
     }
     if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
     const int normal = problem_.first_row(c);
     if (problem_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
-    if (contact.normal_acceleration(acceleration_.data()) > no_acceleration * size) continue;
+    if (contact.normal_acceleration(acceleration_.data()) > SlipDirections::no_acceleration * size_) continue;
     const double along = contact.rows > 1 ? contact.tangential_acceleration(acceleration_.data()) : 0.0;
-    double sign = slides_[i].sign;
-    if (sign == 0.0 && std::abs(along) > no_acceleration * size) sign = along;
+    double sign = slips_[i].sign;
+    if (sign == 0.0 && std::abs(along) > SlipDirections::no_acceleration * size_) sign = along;
+    // Where forces are not unique its friction would change the motion that was decided.
+    if (sign != 0.0 && contact.friction != 0.0 && !bounds_follow(motion)) continue;
     candidates[i].mode = sign == 0.0  ? ContactMode::stick
                          : sign > 0.0 ? ContactMode::slip_positive
                                       : ContactMode::slip_negative;

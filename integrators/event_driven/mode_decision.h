@@ -11,30 +11,13 @@
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/export.h>
+#include <carom/integrators/event_driven/slip_directions.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
 #include <span>
 #include <vector>
 
 namespace carom {
-
-/// A contact that touches without normal speed.
-struct Candidate {
-  ContactPair pair;
-  Index place = none;  ///< of the pair among those of the motion
-  Constraint at;
-  double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
-  ContactMode present = ContactMode::open;  ///< before the decision
-  ContactMode mode = ContactMode::open;     ///< decided
-  bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
-  bool frictionless = false;        ///< without friction
-  bool releases = false;            ///< its force has come to an end: it opens, unless that cannot be
-  double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N],
-  double noise = 0.0;               ///< to this much
-  // Where the problem was Painleve's:
-  double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
-  double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
-};
 
 /// Result of a decision.
 enum class Decision : std::uint8_t {
@@ -54,21 +37,23 @@ public:
   [[nodiscard]] const IslandProblem& problem() const { return problem_; }
 
 private:
-  struct Slide {
-    double sign = 0.0;      // of the sliding velocity, 0: may stick
-    bool open = false;      // taken as open
-    bool reverted = false;  // was taken to start slipping or slip and did not
-  };
   void take_accelerations(const SmoothMotion& motion, const MotionSample& now);
+  using Solve = Decision (ModeDecision::*)(SmoothMotion&, MotionSample&, std::span<Candidate>, SolverChain&);
+  Decision repeat(Solve once, SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                  SolverChain& chain);
+  void list_contacts(std::span<Candidate> candidates);
+  [[nodiscard]] bool bounds_follow(SmoothMotion& motion) const;
   Decision solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                  SolverChain& chain);
-  bool revise(std::span<Candidate> candidates);
+  Decision solve_as_limit(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                          SolverChain& chain);
   void name_cause(std::span<Candidate> candidates);
   bool take_present(std::span<Candidate> candidates);
   void take(std::span<Candidate> candidates, std::size_t solution);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
   bool converge_friction_bounds(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                                 SolverChain& chain);
+  void settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
@@ -76,8 +61,9 @@ private:
   SolutionList solutions_;
   std::vector<Constraint> contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
-  std::vector<Slide> slides_;
+  SlipDirections slips_;
   std::vector<double> zero_, acceleration_;
+  double size_ = 0.0;                  // of accelerations along rows, without contact [m/s^2]
   std::vector<ActiveContact> active_;  // those that stay, in the order of contacts_
   std::vector<ForceMargin> margins_;
 };

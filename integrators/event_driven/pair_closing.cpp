@@ -4,6 +4,7 @@
 #include <carom/core/numerics/fall_search.h>
 #include <carom/integrators/event_driven/pair_closing.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,7 +32,9 @@ struct FeatureLook {
 };
 
 /// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
-/// bound of the rate, which holds for the margins too, shows that the gap does not close in them.
+/// bound of the rate, which holds for the margins too, shows that the gap does not close in them. Where
+/// bodies rest on each other at the border of two features for the whole step, no interval would end that:
+/// there a gap that hardly moves counts as smooth, and looks are counted.
 class KinkedSearch {
 public:
   KinkedSearch(PairPath& path, const PairGap& pair, const FallRule& rule, double until)
@@ -41,6 +44,7 @@ public:
 
 private:
   [[nodiscard]] FeatureLook look(double time) {
+    ++looks_;
     const MotionSample& at = path_->sample(time);
     const FeatureRegions regions(
         outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places));
@@ -56,7 +60,7 @@ private:
     const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
     if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;
     const bool smooth = from.feature == to.feature && from.margin + to.margin > way;
-    if (smooth || depth == deepest) {
+    if (smooth || depth == deepest || looks_ > most_looks || hardly_moves(from.gap, to.gap)) {
       QuantityOf gap([&](double time) -> QuantityLook {
         return {time, gap_in(*pair_, path_->sample(time)), 0.0};
       });
@@ -67,10 +71,18 @@ private:
     return first < never ? first : between(middle, to, depth + 1);
   }
 
+  // True of a gap that moves by less than what counts as found, by its values and rates at two looks.
+  [[nodiscard]] bool hardly_moves(const QuantityLook& from, const QuantityLook& to) const {
+    const double rate = std::max(std::abs(from.at.first), std::abs(to.at.first));
+    return std::abs(to.at.value - from.at.value) + rate * (to.time - from.time) <= rule_.fine;
+  }
+
+  static constexpr int most_looks = 10000;  // some hundred isolated kinks
   PairPath* path_;
   const PairGap* pair_;
   FallRule rule_;
   double until_;
+  int looks_ = 0;
 };
 
 }  // namespace

@@ -186,7 +186,7 @@ TEST(RandomScenesLong, JammedContactWithUnequalRestitutionIsSolvedOrSaidToHaveNo
   int without = 0;
   for (std::uint64_t seed = 20000; seed < 24000; ++seed) {
     Simulation simulation(random_scene(seed, Jamming::allowed),
-                          TimeStepping{.step = 1e-3, .refuse_jams = true});
+                          TimeStepping{.step = 1e-3, .impact_rules = {.refuse_jams = true}});
     State last = simulation.state();
     simulation.observe([&](const Simulation& now) { last = now.state(); });
     try {

@@ -12,6 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace {
@@ -107,6 +112,57 @@ TEST(EventMeetings, TheSameBitsWhateverRanBefore) {
   Simulation second(system, mode);
   second.run_until(0.7);
   EXPECT_EQ(bits_of(first), bits_of(second));
+}
+
+/// A load on a body that fails from a time on while it is armed: no number, or an exception.
+struct Fault {
+  double time = 0.0;
+  bool throws = false;
+  bool armed = true;
+
+  [[nodiscard]] Vec<2> force(double now) const {
+    if (!armed || now <= time) return Vec<2>::Zero();
+    if (throws) throw std::runtime_error("the load is out of range");
+    return Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+};
+
+// Groups have been joined and have parted before the failure. What is left is the state that observers saw
+// last, and the run goes on from it as one that never failed. Steps look ahead by 0.1 s at most
+// (longest_step).
+TEST(EventMeetings, AFailureLeavesTheLastGoodState) {
+  for (const double time : {0.42, 0.46, 0.58}) {
+    for (const bool throws : {false, true}) {
+      SCOPED_TRACE(to_text(time) + (throws ? ", an exception" : ", no number"));
+      const auto fault = std::make_shared<Fault>(Fault{time, throws});
+      System system = poured(6, 0.3, 0.5);
+      system.add(
+          AppliedForce{.on = system.bodies()[1], .force = [fault](double t) { return fault->force(t); }});
+      Simulation good(system, tight()), failing(system, tight());
+      auto last = bits_of(failing);
+      std::size_t events = 0;
+      failing.observe([&](const Simulation& now) {
+        last = bits_of(now);
+        events = now.events().size();
+      });
+      for (int again = 0; again < 2; ++again) {
+        EXPECT_THROW(failing.run_until(0.7), std::exception);
+        EXPECT_EQ(bits_of(failing), last);
+        EXPECT_EQ(failing.events().size(), events);
+      }
+      EXPECT_GT(failing.time(), 0.3);
+      EXPECT_LE(failing.time(), time);
+      EXPECT_GT(failing.statistics().impacts, 0);
+      fault->armed = false;
+      good.run_until(0.65);
+      failing.run_until(0.65);
+      // Two hundred tolerances for each of the impacts that follow, which magnify errors.
+      for (const BodyId body : system.bodies()) {
+        const Vec<2> difference = good.state().position(body) - failing.state().position(body);
+        EXPECT_LT(difference.norm(), 1e-8);
+      }
+    }
+  }
 }
 
 // From any state the same motion follows within the tolerance: groups start anew there.

@@ -48,8 +48,8 @@ protected:
 };
 
 TEST_F(FailureFile, IsWrittenWhereADirectoryWasSet) {
-  Simulation simulation(jammed(),
-                        TimeStepping{.refuse_jams = true, .failure_directory = directory_.string()});
+  Simulation simulation(jammed(), TimeStepping{.impact_rules = {.refuse_jams = true},
+                                               .failure_directory = directory_.string()});
   const std::string first = (directory_ / "contact_problem_t0.json").string();
   const std::string second = (directory_ / "contact_problem_t0_2.json").string();
   EXPECT_THROWS(SolverError, simulation.step(), "the problem is in '" + first + "'", "no solution");
@@ -77,7 +77,7 @@ TEST_F(FailureFile, AlsoOfARefusedGain) {
 }
 
 TEST_F(FailureFile, IsNotWrittenUnasked) {
-  Simulation simulation(jammed(), TimeStepping{.refuse_jams = true});
+  Simulation simulation(jammed(), TimeStepping{.impact_rules = {.refuse_jams = true}});
   try {
     simulation.step();
     ADD_FAILURE() << "the step succeeded";
@@ -91,8 +91,8 @@ TEST_F(FailureFile, ADirectoryThatIsNotThereIsRefused) {
   EXPECT_THROWS(ModelError, Simulation(jammed(), TimeStepping{.failure_directory = nowhere}),
                 "time stepping: failure_directory is '" + nowhere + "'", "an existing directory");
   // Gone in the meantime: the error is still that of the step.
-  Simulation simulation(jammed(),
-                        TimeStepping{.refuse_jams = true, .failure_directory = directory_.string()});
+  Simulation simulation(jammed(), TimeStepping{.impact_rules = {.refuse_jams = true},
+                                               .failure_directory = directory_.string()});
   std::filesystem::remove_all(directory_);
   EXPECT_THROWS(SolverError, simulation.step(), "no solution", "cannot be written");
 }
@@ -124,7 +124,7 @@ TEST(ContactStatistics, CountTheSweepsOfAcceptedSteps) {
 }
 
 TEST(ContactStatistics, AFailedStepLeavesNoTrace) {
-  Simulation simulation(jammed(), TimeStepping{.refuse_jams = true});
+  Simulation simulation(jammed(), TimeStepping{.impact_rules = {.refuse_jams = true}});
   EXPECT_THROW(simulation.step(), SolverError);
   EXPECT_EQ(simulation.contact_statistics(), ChainStatistics{});
   // The other way round the walls yield; what is counted then is what a fresh simulation counts.
@@ -135,7 +135,7 @@ TEST(ContactStatistics, AFailedStepLeavesNoTrace) {
     now.step();
   };
   turn(simulation);
-  Simulation fresh(jammed(), TimeStepping{.refuse_jams = true});
+  Simulation fresh(jammed(), TimeStepping{.impact_rules = {.refuse_jams = true}});
   turn(fresh);
   EXPECT_GT(fresh.contact_statistics().problems, 0);
   EXPECT_EQ(simulation.contact_statistics(), fresh.contact_statistics());

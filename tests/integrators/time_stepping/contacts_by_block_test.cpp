@@ -178,7 +178,9 @@ TEST(ContactsByBlock, AContactWithoutSolutionIsNamed) {
   for (const int threads : {1, 2}) {
     if (threads > 1 && !Workers::several_available()) continue;
     Simulation simulation(
-        system, TimeStepping{.step = 1e-4, .tolerance = tolerance, .refuse_jams = true, .threads = threads});
+        system,
+        TimeStepping{
+            .step = 1e-4, .tolerance = tolerance, .impact_rules = {.refuse_jams = true}, .threads = threads});
     ASSERT_EQ(simulation.assembly().components().size(), 1U);
     const auto before = carom_test::bits_of(simulation);
     EXPECT_THROWS(SolverError, simulation.step(), "particle 'dot' on half-plane 'left'", "'right'",

@@ -1,0 +1,64 @@
+// Problem: which contacts slip, and where to, while the answer says otherwise for some?
+
+#include <carom/integrators/event_driven/slip_directions.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+void SlipDirections::start(std::span<const Candidate> candidates) {
+  slips_.assign(candidates.size(), {});
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    if (candidate.frictionless) {
+      slips_[i].sign = 1.0;
+    } else if (candidate.slip != 0.0) {
+      slips_[i].sign = std::copysign(1.0, candidate.slip);
+    } else if (candidate.starts_slipping) {
+      slips_[i].sign = -std::copysign(1.0, candidate.exhausted_friction);
+    }
+    slips_[i].open = candidate.releases;
+  }
+}
+
+bool SlipDirections::revise(std::span<const Candidate> candidates, const ContactProblem& problem, double size,
+                            const double* acceleration) {
+  bool changed = false;
+  double farthest = 0.0;
+  // Accelerations by friction that is exhausted to within its rounding only.
+  double stiffest = 0.0, exhausted = 0.0;
+  for (int row = 0; row < problem.rows(); ++row) {
+    stiffest = std::max(stiffest, problem.w(row, row));
+  }
+  for (const Candidate& candidate : candidates) exhausted += candidate.noise * stiffest;
+  SlipDirection* astray = nullptr;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    SlipDirection& slip = slips_[i];
+    const double opening = candidate.at.normal_acceleration(acceleration);
+    const double along = candidate.at.tangential_acceleration(acceleration);
+    if (slip.open) {
+      if (opening >= -no_acceleration * std::max(size, std::abs(opening))) continue;
+      slip.open = false;
+      changed = true;
+    } else if (slip.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
+                                    candidate.mode == ContactMode::slip_negative)) {
+      slip.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
+      changed = changed || candidate.at.law.has_static_friction();  // else the friction is right already
+    } else if (candidate.slip == 0.0 && !candidate.frictionless && !slip.reverted &&
+               candidate.mode != ContactMode::open &&
+               slip.sign * along < -std::max(no_acceleration * size, exhausted)) {
+      // One at a time: it may be what takes the others along.
+      if (astray != nullptr && std::abs(along) <= farthest) continue;
+      astray = &slip;
+      farthest = std::abs(along);
+    }
+  }
+  if (changed || astray == nullptr) return changed;
+  astray->sign = 0.0;
+  astray->reverted = true;
+  return true;
+}
+
+}  // namespace carom

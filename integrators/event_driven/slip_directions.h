@@ -1,0 +1,66 @@
+#pragma once
+
+/// \file
+/// Contacts that touch without normal speed, and in which direction each is taken to slip while modes are
+/// decided (mode_decision.h).
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/solvers/contact_problem.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// A contact that touches without normal speed.
+struct Candidate {
+  ContactPair pair;
+  Index place = none;  ///< of the pair among those of the motion
+  Constraint at;
+  double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
+  ContactMode present = ContactMode::open;  ///< before the decision
+  ContactMode mode = ContactMode::open;     ///< decided
+  bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
+  bool frictionless = false;        ///< without friction
+  bool releases = false;            ///< its force has come to an end: it opens, unless that cannot be
+  double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N],
+  double noise = 0.0;               ///< to this much
+  // Where the problem was Painleve's:
+  double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
+  double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
+};
+
+/// What a candidate is taken for.
+struct SlipDirection {
+  double sign = 0.0;      ///< of the sliding velocity, 0: may stick
+  bool open = false;      ///< taken as open
+  bool reverted = false;  ///< was taken to start slipping or slip and did not
+};
+
+/// Those of all candidates of an island. Keeps memory only.
+class CAROM_API SlipDirections {
+public:
+  /// An acceleration this small against those without contact is zero.
+  static constexpr double no_acceleration = 1e-11;
+
+  /// Begins with what velocities say, and events that have just ended modes.
+  void start(std::span<const Candidate> candidates);
+  /// That of a candidate.
+  [[nodiscard]] SlipDirection& operator[](std::size_t candidate) { return slips_[candidate]; }
+  [[nodiscard]] const SlipDirection& operator[](std::size_t candidate) const { return slips_[candidate]; }
+  /// Changes by an answer: contacts that start slipping have their sliding friction; those that were taken to
+  /// open or slip and do not, since another one that slips took them along, are put back. True if the problem
+  /// is to be solved anew. \param candidates with their modes \param problem answered \param size of
+  /// accelerations without contact [m/s^2] \param acceleration of all bodies
+  [[nodiscard]] bool revise(std::span<const Candidate> candidates, const ContactProblem& problem, double size,
+                            const double* acceleration);
+
+private:
+  std::vector<SlipDirection> slips_;
+};
+
+}  // namespace carom
