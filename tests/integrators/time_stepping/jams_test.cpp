@@ -111,11 +111,11 @@ TEST(Jams, WhereImpactsAreLocated) {
 }
 
 TEST(Jams, WhereImpactsAreResolvedAtTheStartOfSteps) {
-  expect_jams(run_troughs(2, {.step = 1e-3, .limit_energy_gain = true}, 10));
+  expect_jams(run_troughs(2, {.step = 1e-3, .impact_rules = {.energy_gain = EnergyGain::limit}}, 10));
 }
 
 TEST(Jams, SequentialImpactsTakeOneContactAtATime) {
-  const JamRuns runs = run_troughs(2, {.step = 1e-3, .impact_order = ImpactOrder::sequential}, 10);
+  const JamRuns runs = run_troughs(2, {.step = 1e-3, .impact_rules = {.order = ImpactOrder::sequential}}, 10);
   EXPECT_EQ(runs.jams, 0);
   EXPECT_EQ(runs.refused, 0);
 }

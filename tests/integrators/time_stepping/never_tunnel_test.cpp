@@ -193,14 +193,15 @@ TEST(NeverTunnel, ShapesInABoxOfThinWalls) {
 }
 
 TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {
-  // Beside that impacts are resolved at the start of steps, as limit_energy_gain resolves them.
+  // Beside that impacts are resolved at the start of steps, as EnergyGain::limit has them.
   System system;
   system.add(Gravity{{0.0, -9.81}});
   system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
   system.add(Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}}});
   add_disc(system, 0.2, {0.0, 0.5}, {1.0, 0.0});
   add_disc(system, 0.2, {0.1, 1.1});
-  Simulation with(system, safe), without(system, TimeStepping{.step = h, .limit_energy_gain = true});
+  Simulation with(system, safe),
+      without(system, TimeStepping{.step = h, .impact_rules = {.energy_gain = EnergyGain::limit}});
   with.run_until(1.0);
   without.run_until(1.0);
   EXPECT_EQ(with.state().q, without.state().q);
