@@ -126,17 +126,17 @@ def of_events(simulation: _core.Simulation, first: int = 0) -> Table:
 
 def of_parts(system: _core.System) -> Table:
     """The parts of a system, in the order in which they were added."""
-    rows = []
-    for entry in system._parts():
-        part = entry["part"]
-        rows.append([entry["role"], type(part).__name__, entry["name"] or f"#{entry['serial']}"])
+    rows = [
+        [added.role, type(added.part).__name__, added.name or f"#{added.id.serial}"]
+        for added in system.parts()
+    ]
     return Table(["role", "type", "name"], rows, "system")
 
 
 def _of_simulation(simulation: _core.Simulation) -> Table:
     mode, energy = type(simulation.mode()).__name__, simulation.energy()
     statistics = simulation.statistics()
-    rows = [
+    rows: list[list[Any]] = [
         ["mode", mode],
         ["time [s]", simulation.time()],
         ["bodies", len(simulation.bodies())],

@@ -19,7 +19,7 @@ from carom.planar import (
     incline,
 )
 
-STEP = 1.0 / 1200  # [s], the paper's
+MODE = TimeStepping(step=1.0 / 1200)  # the paper's
 END = 3.5  # [s]
 HEIGHT, SPEED, LENGTH = 20.0, 10.0, 2.0  # at the start [m], [m/s]; of the bar and the spring [m]
 
@@ -69,7 +69,7 @@ def print_impacts(simulation: Simulation) -> None:
 
 def run(title: str, system: System, file: pathlib.Path) -> None:
     print(title)
-    simulation = Simulation(system, TimeStepping(step=STEP))
+    simulation = Simulation(system, MODE)
     recorder = CsvRecorder(simulation, file)
     simulation.observe(print_impacts)
     simulation.run_until(END)

@@ -11,12 +11,13 @@ from carom import CsvRecorder, Simulation, Surface, System, TimeStepping
 from carom.planar import Disc, Gravity, HalfPlane, RigidBody, solid_sphere
 
 RADIUS, DISTANCE = 0.0131, 0.530  # of the ball, between the tables [m]
-STEP = 0.000309  # [s], the paper's
+SPEEDS = (5.444387434554974, 6.18975)  # thrown at, to the right [m/s]
+MODE = TimeStepping(step=0.000309)  # the paper's
 END = 11 * 0.0309  # [s], twelve flashes
 
 
-def run(tangential_restitution: float, speed: float, folder: pathlib.Path) -> None:
-    print(f"e_t = {tangential_restitution}, thrown at {speed:.5g} m/s")
+def ball_between_tables(tangential_restitution: float, speed: float) -> System:
+    """The tables, which differ in friction, and the ball."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
     for height, normal, friction, name in (
@@ -31,8 +32,13 @@ def run(tangential_restitution: float, speed: float, folder: pathlib.Path) -> No
         RigidBody(mass=solid_sphere(0.00859, RADIUS), position=(0.0, 0.25), velocity=(speed, -5.0)), "ball"
     )
     system.add(Disc(body=ball, radius=RADIUS), "ball")
+    return system
 
-    simulation = Simulation(system, TimeStepping(step=STEP))
+
+def run(tangential_restitution: float, speed: float, folder: pathlib.Path) -> None:
+    print(f"e_t = {tangential_restitution}, thrown at {speed:.5g} m/s")
+    simulation = Simulation(ball_between_tables(tangential_restitution, speed), MODE)
+    ball = simulation.system().body("ball")
     recorder = CsvRecorder(simulation, folder / f"tables_et{tangential_restitution:g}_vx{speed:.2f}.csv")
 
     def print_impacts(now: Simulation) -> None:
@@ -57,7 +63,7 @@ def run(tangential_restitution: float, speed: float, folder: pathlib.Path) -> No
 
 def main(folder: pathlib.Path) -> None:
     for tangential_restitution in (0.91, 0.68):
-        for speed in (5.444387434554974, 6.18975):
+        for speed in SPEEDS:
             run(tangential_restitution, speed, folder)
 
 

@@ -14,10 +14,11 @@ from carom import CsvRecorder, EventDriven, EventKind, Simulation, State, Surfac
 from carom.planar import Disc, Gravity, HalfPlane, RigidBody, disc, incline
 
 SLOPE, LEAN = 0.2, 0.15  # of the floor, of the walls from upright [rad]
+MODE = EventDriven(interval=2e-3)
 END = 3.2  # [s]
 
 
-def box() -> System:
+def ball_in_a_box() -> System:
     """The floor falls to the right, the walls lean outwards; the ball is a disc of uniform density."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
@@ -36,7 +37,7 @@ def box() -> System:
 def run(
     title: str, mode: EventDriven | TimeStepping, file: pathlib.Path, events: pathlib.Path | None
 ) -> State:
-    simulation = Simulation(box(), mode)
+    simulation = Simulation(ball_in_a_box(), mode)
     recorder = CsvRecorder(simulation, file)
     simulation.run_until(END)
     recorder.flush()
@@ -58,9 +59,7 @@ def run(
 
 
 def main(folder: pathlib.Path) -> None:
-    exact = run(
-        "Event-driven", EventDriven(interval=2e-3), folder / "event_driven.csv", folder / "events.csv"
-    )
+    exact = run("Event-driven", MODE, folder / "event_driven.csv", folder / "events.csv")
     stepped = run("Time stepping", TimeStepping(step=1e-3), folder / "time_stepping.csv", None)
     apart = math.hypot(exact.q[0] - stepped.q[0], exact.q[1] - stepped.q[1])
     print(f"The modes end {apart:.7g} m apart.")

@@ -11,7 +11,17 @@ import pathlib
 import sys
 
 from carom import EventDriven, Simulation, State, Surface, System, TimeStepping
-from carom.planar import Gravity, HalfPlane, Polygon, PrescribedMotion, RigidBody, box, incline
+from carom.planar import (
+    Gravity,
+    HalfPlane,
+    Polygon,
+    PrescribedMotion,
+    RigidBody,
+    VectorHarmonic,
+    VectorLaw,
+    box,
+    incline,
+)
 
 from table import Table
 
@@ -21,6 +31,7 @@ OMEGA = 2.0 * math.pi * 2.0  # [1/s]
 WIDTH, HEIGHT = 0.1, 0.025  # half those of the block [m]
 NORMAL = incline(SLOPE)
 TANGENT = (float(NORMAL[1]), -float(NORMAL[0]))
+MODE = EventDriven(interval=2e-3)
 END = 3.0  # [s]
 
 
@@ -44,14 +55,39 @@ def along(value: float) -> tuple[float, float]:
     return (value * TANGENT[0], value * TANGENT[1])
 
 
-def shaker() -> System:
-    system = System()
-    system.add(Gravity((0.0, -9.81)))
-    motion = PrescribedMotion(
+def by_functions() -> PrescribedMotion:
+    """The motion of the plane, rounded as the C++ example rounds it."""
+    return PrescribedMotion(
         displacement=lambda t: along(displacement(t)),
         velocity=lambda t: along(speed(t)),
         acceleration=lambda t: along(acceleration(t)),
     )
+
+
+def by_numbers() -> PrescribedMotion:
+    """The same motion as a scene file can have it: up to rounding, cosines being sines a quarter later."""
+    quarter = 0.5 * math.pi
+    return PrescribedMotion(
+        displacement=VectorLaw(harmonics=[VectorHarmonic(frequency=OMEGA, growth=along(GROWTH))]),
+        velocity=VectorLaw(
+            harmonics=[
+                VectorHarmonic(along(GROWTH), frequency=OMEGA),
+                VectorHarmonic(frequency=OMEGA, phase=quarter, growth=along(GROWTH * OMEGA)),
+            ]
+        ),
+        acceleration=VectorLaw(
+            harmonics=[
+                VectorHarmonic(along(2.0 * GROWTH * OMEGA), frequency=OMEGA, phase=quarter),
+                VectorHarmonic(frequency=OMEGA, growth=along(-GROWTH * OMEGA * OMEGA)),
+            ]
+        ),
+    )
+
+
+def block_on_a_moving_plane(motion: PrescribedMotion) -> System:
+    """The plane with its motion, and the block, which lies on two corners."""
+    system = System()
+    system.add(Gravity((0.0, -9.81)))
     system.add(
         HalfPlane(normal=NORMAL, motion=motion),
         Surface(friction=0.3, normal_restitution=0.0, static_friction=0.4),
@@ -67,7 +103,7 @@ def shaker() -> System:
 def run(
     title: str, mode: EventDriven | TimeStepping, file: pathlib.Path, events: pathlib.Path | None
 ) -> State:
-    simulation = Simulation(shaker(), mode)
+    simulation = Simulation(block_on_a_moving_plane(by_functions()), mode)
     block = simulation.system().body("block")
     header = "time [s],velocity of the block [m/s],velocity of the plane [m/s],slipped [m]"
     with Table(file, header) as table:
@@ -94,9 +130,7 @@ def run(
 
 
 def main(folder: pathlib.Path) -> None:
-    exact = run(
-        "Event-driven", EventDriven(interval=2e-3), folder / "event_driven.csv", folder / "events.csv"
-    )
+    exact = run("Event-driven", MODE, folder / "event_driven.csv", folder / "events.csv")
     stepped = run("Time stepping", TimeStepping(step=1e-3), folder / "time_stepping.csv", None)
     apart = math.hypot(exact.q[0] - stepped.q[0], exact.q[1] - stepped.q[1])
     print(f"The modes end {apart:.7g} m apart.")

@@ -44,6 +44,7 @@ REFERENCE = (
 NAMES = ("beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon")
 MASSES = (0.04325, 0.00365, 0.02373, 0.00706, 0.0705, 0.00706, 0.05498)  # K1 to K7 [kg]
 INERTIAS = (2.194e-6, 4.41e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5)  # [kg m^2]
+MODE = EventDriven(relative_tolerance=1e-12, absolute_tolerance=1e-12)
 END, INTERVAL = 0.03, 5e-5  # [s]
 OUTLINES = 7
 
@@ -95,7 +96,7 @@ class Mechanism:
                 from_=(ground, c), to=(k3, (sd - sb, sa - sc)), stiffness=4530.0, free_length=0.07785
             )
         )
-        self.system.add(AppliedTorque(on=k1, torque=lambda time: 0.033))
+        self.system.add(AppliedTorque(on=k1, torque=0.033))
 
     def place(self, angle: float, point: Vector, at: Vector, outline: list[Vector]) -> BodyId:
         """Adds the next body by the place `at` of one of its points."""
@@ -154,7 +155,7 @@ def run(title: str, mode: EventDriven | TimeStepping, folder: pathlib.Path | Non
 
 
 def main(folder: pathlib.Path) -> None:
-    run("Event-driven", EventDriven(relative_tolerance=1e-12, absolute_tolerance=1e-12), folder)
+    run("Event-driven", MODE, folder)
     run("Time stepping", TimeStepping(step=1e-5), None)
 
 

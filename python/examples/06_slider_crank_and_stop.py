@@ -10,17 +10,18 @@ import math
 import pathlib
 import sys
 
-from carom import EventDriven, EventKind, Simulation, State, System, TimeStepping, ground
+from carom import EventDriven, EventKind, Law, Simulation, State, System, TimeStepping, ground
 from carom.planar import Gravity, Motor, Prismatic, Revolute, RigidBody, Stop, box, rod
 
 from table import Table
 
 CRANK, ROD = 0.153, 0.306  # lengths [m]
 REACH = 0.42  # of the slider, where the stop is [m]
+MODE = EventDriven()
 INTERVAL, END = 1e-3, 1.5  # [s]
 
 
-def mechanism() -> System:
+def slider_crank_and_stop() -> System:
     system = System()
     system.add(Gravity((0.0, -9.81)))
     # Upright: the slider stands where the rod reaches.
@@ -39,7 +40,7 @@ def mechanism() -> System:
     system.add(Revolute(from_=(crank, (0.5 * CRANK, 0.0)), to=(link, (-0.5 * ROD, 0.0))))
     system.add(Revolute(from_=(link, (0.5 * ROD, 0.0)), to=slider))
     guide = system.add(Prismatic(from_=ground, to=slider, axis=(1.0, 0.0), zero_distance=0.0), "guide")
-    system.add(Motor(joint=bearing, torque=lambda time, angle, rate: -0.05 - 0.001 * rate))
+    system.add(Motor(joint=bearing, torque=Law([-0.05], slopes=[0.0, -0.001])), "motor")
     system.add(Stop(joint=guide, upper=REACH, restitution=0.6), "stop")
     return system
 
@@ -47,7 +48,7 @@ def mechanism() -> System:
 def run(
     title: str, mode: EventDriven | TimeStepping, file: pathlib.Path, events: pathlib.Path | None
 ) -> State:
-    simulation = Simulation(mechanism(), mode)
+    simulation = Simulation(slider_crank_and_stop(), mode)
     bearing, guide = simulation.system().joint("main bearing"), simulation.system().joint("guide")
     header = (
         "time [s],slider [m],crank [rad],speed of the crank [rad/s],kinetic [J],gravity [J],"
@@ -84,7 +85,7 @@ def run(
 
 
 def main(folder: pathlib.Path) -> None:
-    exact = run("Event-driven", EventDriven(), folder / "event_driven.csv", folder / "events.csv")
+    exact = run("Event-driven", MODE, folder / "event_driven.csv", folder / "events.csv")
     stepped = run("Time stepping", TimeStepping(step=1e-5), folder / "time_stepping.csv", None)
     print(f"The modes end {abs(exact.q[2] - stepped.q[2]):.7g} rad of the crank apart.")
 

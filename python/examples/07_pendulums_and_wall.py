@@ -17,6 +17,7 @@ from table import Table
 
 LENGTH, MASS = 1.0, 1.0  # of a rod [m], [kg]
 WALL = -0.25  # [m]
+MODE = EventDriven(relative_tolerance=1e-10)
 INTERVAL, END = 0.005, 6.0  # [s]
 SHOWN = 8  # impacts
 
@@ -42,7 +43,7 @@ def pendulum(links: int) -> tuple[System, list[BodyId]]:
 
 def run(title: str, links: int, folder: pathlib.Path, file: str) -> None:
     system, rods = pendulum(links)
-    simulation = Simulation(system, EventDriven(relative_tolerance=1e-10))
+    simulation = Simulation(system, MODE)
     places = "".join(f",x{i} [m],y{i} [m]" for i in range(1, links + 1))
     lowest = -9.81 * MASS * LENGTH * 0.5 * links * links  # all rods hanging
     with Table(folder / f"{file}.csv", f"time [s]{places},energy [J],lost in impacts [J]") as rows:

@@ -19,8 +19,9 @@ from table import Table
 
 COUNT, WIDTH, DENSITY = 500, 2.0, 1000.0  # [m], [kg/m^3]
 RADIUS, SPREAD = 0.05, 0.1  # [m], to either side
-STEP = 1e-3  # [s]
-TIMES = (0.2, 0.5, 0.8, 3.0)  # [s], of the pictures; the last is the end
+MODE = TimeStepping(step=1e-3)
+TIMES = (0.2, 0.5, 0.8, 3.0)  # [s], of the pictures
+END = TIMES[-1]  # [s]
 
 
 def radius_of(i: int) -> float:
@@ -54,7 +55,7 @@ def write_discs(now: Simulation, discs: list[BodyId], path: pathlib.Path) -> Non
     """Writes where the discs are, and the largest normal force on each, averaged over the step."""
     force = {body: 0.0 for body in discs}
     for contact in now.report().contacts:
-        size = float(contact.impulse[0]) / STEP
+        size = float(contact.impulse[0]) / MODE.step
         for body in (contact.body, contact.other):
             if body.valid():
                 force[body] = max(force[body], size)
@@ -66,7 +67,7 @@ def write_discs(now: Simulation, discs: list[BodyId], path: pathlib.Path) -> Non
 
 def main(folder: pathlib.Path) -> None:
     system, discs = discs_in_a_box()
-    simulation = Simulation(system, TimeStepping(step=STEP))
+    simulation = Simulation(system, MODE)
     header = "time [s],kinetic [J],potential [J],lost normal [J],lost tangential [J],contacts,residual"
     with Table(folder / "course.csv", header) as course:
 

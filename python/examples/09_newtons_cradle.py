@@ -5,17 +5,20 @@ sequential_0.9.csv with the places of the discs over time there, and prints the 
 What the laws do: examples/09_newtons_cradle.cpp.
 """
 
+from __future__ import annotations
+
 import pathlib
 import sys
 
-from carom import CsvRecorder, EventDriven, ImpactOrder, ImpactRules, Simulation, Surface, System
+from carom import BodyId, CsvRecorder, EventDriven, ImpactOrder, ImpactRules, Simulation, Surface, System
 from carom.planar import Disc, RigidBody, disc
 
 COUNT, RADIUS, DISTANCE = 6, 0.05, 0.3  # discs; [m]; of the first from the others [m]
 END = 0.8  # [s]
 
 
-def run(order: ImpactOrder, restitution: float, folder: pathlib.Path) -> None:
+def newtons_cradle(restitution: float) -> tuple[System, list[BodyId]]:
+    """Discs in a row that touch, and a first that flies at them."""
     system = System()
     system.set_default_law(Surface(friction=0.0, normal_restitution=restitution))
     discs = []
@@ -24,7 +27,16 @@ def run(order: ImpactOrder, restitution: float, folder: pathlib.Path) -> None:
         body = RigidBody(mass=disc(1.0, RADIUS), position=(x, 0.0), velocity=(1.0 if i == 0 else 0.0, 0.0))
         discs.append(system.add(body, f"disc {i + 1}"))
         system.add(Disc(body=discs[-1], radius=RADIUS))
-    simulation = Simulation(system, EventDriven(impact_rules=ImpactRules(order=order)))
+    return system, discs
+
+
+def mode(order: ImpactOrder) -> EventDriven:
+    return EventDriven(impact_rules=ImpactRules(order=order))
+
+
+def run(order: ImpactOrder, restitution: float, folder: pathlib.Path) -> None:
+    system, discs = newtons_cradle(restitution)
+    simulation = Simulation(system, mode(order))
     recorder = CsvRecorder(simulation, folder / f"{order.name}_{restitution:g}.csv")
     simulation.run_until(END)
     recorder.detach(simulation)

@@ -20,6 +20,8 @@ B, H, G = 0.2, 0.8, 9.81  # half width and height [m], [m/s^2]
 ALPHA = math.atan2(B, H)
 TILT = 0.5 * ALPHA  # at the start [rad]
 COMPARED = 30  # impacts
+MODE = EventDriven(relative_tolerance=1e-12, absolute_tolerance=1e-14)
+END = 12.0  # [s]
 
 
 def rocking_block() -> System:
@@ -39,11 +41,9 @@ def main(folder: pathlib.Path) -> None:
     ratio = 1.0 - 1.5 * math.sin(ALPHA) * math.sin(ALPHA)
     first = p * math.sqrt(2.0 * (math.cos(ALPHA - TILT) - math.cos(ALPHA)))
 
-    simulation = Simulation(
-        rocking_block(), EventDriven(relative_tolerance=1e-12, absolute_tolerance=1e-14)
-    )
+    simulation = Simulation(rocking_block(), MODE)
     recorder = CsvRecorder(simulation, folder / "course.csv")
-    simulation.run_until(12.0)
+    simulation.run_until(END)
     recorder.detach(simulation)
     simulation.write_events(folder / "events.csv")
 

@@ -19,7 +19,9 @@ from table import Table
 
 RADIUS, SPIN, SIZE = 1.0, 1.5, 0.08  # of the drum [m], [rad/s]; half the length of a bar [m]
 LIFTERS = 2  # walls that turn with the drum
-TIMES = (0.3, 1.0, 2.0, 4.0)  # [s], of the pictures; the last is the end
+MODE = TimeStepping(step=1e-3)
+TIMES = (0.3, 1.0, 2.0, 4.0)  # [s], of the pictures
+END = TIMES[-1]  # [s]
 
 
 class Outline(NamedTuple):
@@ -50,7 +52,7 @@ def add_body(system: System, i: int, place: tuple[float, float]) -> Outline:
     return Outline(body, vertices, 0.0)
 
 
-def drum_with_bodies() -> tuple[System, list[Outline]]:
+def bars_in_a_drum() -> tuple[System, list[Outline]]:
     """The drum with its lifters, and bodies row by row from below."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
@@ -92,8 +94,8 @@ def write_bodies(now: Simulation, bodies: list[Outline], path: pathlib.Path) -> 
 
 
 def main(folder: pathlib.Path) -> None:
-    system, bodies = drum_with_bodies()
-    simulation = Simulation(system, TimeStepping(step=1e-3))
+    system, bodies = bars_in_a_drum()
+    simulation = Simulation(system, MODE)
     header = "time [s],kinetic [J],potential [J],work [J],lost [J],residual [J],contacts"
     with Table(folder / "course.csv", header) as course:
 

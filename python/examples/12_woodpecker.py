@@ -32,6 +32,7 @@ HINGE = 1e-2  # from the middle of the sleeve to the spring [m]
 ARM = 1.5e-2  # from the spring to the bird's centre of mass [m]
 BACK, UP = 2.01e-2, 2e-2  # the beak, from there [m]
 LEAST_PAUSE = 0.05  # between the pecks of two cycles, longer than within one [s]
+MODE = EventDriven(interval=1e-3)
 COMPARED, END = 0.1, 2.5  # time stepping is, until then; of the run [s]
 
 
@@ -100,7 +101,7 @@ def first_pecks(simulation: Simulation) -> list[Peck]:
 
 
 def main(folder: pathlib.Path) -> None:
-    simulation = Simulation(woodpecker(), EventDriven(interval=1e-3))
+    simulation = Simulation(woodpecker(), MODE)
     recorder = CsvRecorder(simulation, folder / "course.csv")
     simulation.run_until(COMPARED)
     at_compared = simulation.state()

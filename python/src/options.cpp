@@ -30,7 +30,8 @@ void bind_options(nb::module_& core) {
         "capture_speed", &T::capture_speed)("impact_rules", &T::impact_rules)("impacts", &T::impacts)(
         "most_impacts", &T::most_impacts)("force_rule", &T::force_rule)("iteration", &T::iteration)(
         "project_gaps", &T::project_gaps)("control", &T::control)("threads", &T::threads)(
-        "failure_directory", &T::failure_directory)("contact_budget", &T::contact_budget);
+        "failure_directory", &T::failure_directory)("contact_budget", &T::contact_budget)("overlaps",
+                                                                                          &T::overlaps);
   });
   bind_record<EventDriven>(core, "EventDriven", {"EventDriven"}, true, [](auto& fields) {
     using T = EventDriven;

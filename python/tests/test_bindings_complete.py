@@ -14,8 +14,10 @@ sys.path.insert(0, str(PYTHON / "tools"))
 from members import Headers  # noqa: E402
 
 HEADERS = Headers(PYTHON.parent)
-# Members that are not bound on purpose, by their struct; each with its reason.
-LEFT_OUT: dict[str, set[str]] = {}
+# Members that are not bound on purpose, by the name in Python; each with its reason.
+LEFT_OUT: dict[str, set[str]] = {
+    "VectorLaw": {"slopes"},  # of actuators, whose laws give numbers
+}
 
 
 def struct_of(record: dict) -> str:
@@ -32,7 +34,7 @@ def test_every_member_is_bound(record: dict) -> None:
     struct = struct_of(record)
     bound = {field["name"] for field in record["fields"]}
     members = set(HEADERS.members(struct))
-    left_out = LEFT_OUT.get(struct, set())
+    left_out = LEFT_OUT.get(record["name"], set())
     assert members, f"no members of {struct} were found in the headers"
     assert members - bound == left_out and left_out <= members
     assert bound <= members

@@ -1,4 +1,4 @@
-"""Reads the data members of structs and the values of enumerations from public headers.
+"""Reads the data members of structs and the values of enumerations from headers.
 
 The test of the bindings compares them with what the package binds, so that no list can go stale.
 """
@@ -16,10 +16,14 @@ NO_DATA = re.compile(
 )
 
 
-def public_headers(root: pathlib.Path) -> list[pathlib.Path]:
-    """The headers that cmake/CaromPublicHeaders.cmake lists."""
+OF_THE_PACKAGE = ["python/src/number_law.h"]  # structs that the library does not have
+
+
+def bound_headers(root: pathlib.Path) -> list[pathlib.Path]:
+    """The headers that cmake/CaromPublicHeaders.cmake lists, and those of the package's own structs."""
     listed = (root / "cmake" / "CaromPublicHeaders.cmake").read_text(encoding="utf-8")
-    return [root / name for name in re.findall(r"^\s+([\w/]+\.h)$", listed, re.MULTILINE)]
+    names = re.findall(r"^\s+([\w/]+\.h)$", listed, re.MULTILINE)
+    return [root / name for name in [*names, *OF_THE_PACKAGE]]
 
 
 def code_of(text: str) -> str:
@@ -88,7 +92,7 @@ def names_in(statement: str) -> list[str]:
 
 
 class Headers:
-    """Types of the public headers: own members, bases, values of enumerations.
+    """Types of the headers: own members, bases, values of enumerations.
 
     A type that is written apart for the plane and for space is "HalfSpace<2>" and "HalfSpace<3>".
     """
@@ -97,7 +101,7 @@ class Headers:
         self.own: dict[str, list[str]] = {}
         self.bases: dict[str, list[str]] = {}
         self.enumerations: dict[str, list[str]] = {}
-        for header in public_headers(root):
+        for header in bound_headers(root):
             code = code_of(header.read_text(encoding="utf-8"))
             end = 0
             for found in TYPE.finditer(code):

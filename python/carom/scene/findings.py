@@ -103,7 +103,7 @@ def examine(scene: Scene) -> Examined:
     except _core.Error as error:
         return Examined(None, [*found, str(error)])
     for redundant in mobility.redundant:
-        others = ", ".join(system.name(joint) for joint in getattr(redundant, "with"))
+        others = ", ".join(system.name(joint) for joint in redundant.with_)
         found.append(
             f"{system.name(redundant.joint)} is redundant with {others}: their forces are not unique"
         )
