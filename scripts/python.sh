@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python package over build/release, installs it in a virtual environment under build/, checks the types of
-# its examples and runs its tests; the last line is "N passed, M failed".
+# Builds the Python package over build/release, installs it in a virtual environment under build/, checks its types and
+# those of its examples and runs its tests; the last line is "N passed, M failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -11,12 +11,13 @@ scripts/setup.sh --python
 cmake --preset release >/dev/null
 cmake --build build/release --target carom all_examples reference_runs --parallel "$(nproc)"
 
-venv=build/python-test
+venv="$PWD/build/python-test"
 python3 -m venv --clear "$venv"
 "$venv/bin/pip" -q install pytest jsonschema mypy nbclient nbformat ipykernel
 "$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
 
 status=0
+(cd build && "$venv/bin/mypy" --strict --no-error-summary --cache-dir mypy -p carom) || status=1
 for example in python/examples/*.py python/tests/typical_use.py; do
   MYPYPATH=python/examples "$venv/bin/mypy" --strict --no-error-summary --cache-dir build/mypy "$example" || status=1
 done

@@ -20,7 +20,7 @@ from carom import (
     System,
     TimeStepping,
 )
-from carom import planar, tables, testing
+from carom import command, planar, scene, tables, testing
 
 if TYPE_CHECKING:
     if sys.version_info >= (3, 11):
@@ -57,6 +57,24 @@ if TYPE_CHECKING:
         print(tables.of_events(simulation))
         testing.ledger_closes(simulation.energy(), 1e-12)
 
+    def scenes(path: pathlib.Path, system: System) -> None:
+        read = carom.load_scene(path)
+        assert_type(read, carom.Scene)
+        assert_type(read.system, System)
+        assert_type(read.until, float | None)
+        assert_type(read.simulation(), Simulation)
+        carom.save_scene(read, path)
+        rules = carom.ImpactRules(order="sequential", energy_gain=carom.EnergyGain.refuse)
+        carom.save_scene(system, path, mode=TimeStepping(impact_rules=rules), until=1.0)
+        assert_type(scene.to_text(read), str)
+        assert_type(scene.load_urdf(path, plane="xz"), carom.Scene)
+        assert_type(command.main(["check", str(path)]), int)
+        try:
+            scene.from_text("")
+        except carom.SceneError as error:
+            assert_type(error.line, int | None)
+            assert_type(error.field, str)
+
     def errors(simulation: Simulation) -> None:
         try:
             simulation.step()
@@ -72,3 +90,5 @@ if TYPE_CHECKING:
         planar.Disc(body=joint, radius=0.1)  # type: ignore[arg-type]
         planar.Particle(masse=1.0)  # type: ignore[call-arg]
         Simulation(system, "event_driven")  # type: ignore[arg-type]
+        TimeStepping(impact_order="sequential")  # type: ignore[call-arg]
+        carom.save_scene(system, 3)  # type: ignore[arg-type]
