@@ -53,6 +53,22 @@ void add(CheckpointWriter& out, const ContactHistory& history) {
   }
 }
 
+/// Changes of loads in the last steps; that of the last one may have to be computed first.
+void add_changes(CheckpointWriter& out, const Companion& companion) {
+  const LoadHistory& history = companion.history;
+  LoadHistory last;
+  const bool pending = history.known > 0 && history.pending;
+  if (pending) {
+    const std::size_t size = companion.loads.total.size();
+    last.go_on(history.step, size);
+    last.record_change({0, static_cast<Index>(size)}, history.before.data(), companion.loads.total.data());
+  }
+  for (int i = 0; i < history.known; ++i) {
+    const LoadHistory& from = i == 0 && pending ? last : history;
+    out.add(from.changes[static_cast<std::size_t>(i)]);
+  }
+}
+
 std::uint64_t checksum(std::string_view bytes) {
   Fingerprint print;
   print.add(bytes);
@@ -76,17 +92,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
-  LoadHistory last;
-  const bool pending = companion.history.known > 0 && companion.history.pending;
-  if (pending) {
-    last.go_on(companion.history.step, state.v.size());
-    last.record_change({0, static_cast<Index>(state.v.size())}, companion.history.before.data(),
-                       companion.loads.total.data());
-  }
-  for (int i = 0; i < companion.history.known; ++i) {
-    const LoadHistory& from = i == 0 && pending ? last : companion.history;
-    out.add(from.changes[static_cast<std::size_t>(i)]);
-  }
+  add_changes(out, companion);
   out.add(std::uint64_t{companion.history.sweeps.size()});
   for (const int sweeps : companion.history.sweeps) out.add(sweeps);
   out.add(std::uint64_t{companion.iterations.entries().size()});

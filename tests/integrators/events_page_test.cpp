@@ -94,7 +94,7 @@ TEST(EventsPage, NamesEveryOptionAndMethod) {
   EXPECT_EQ(
       expect_all("integrators/run/event_driven.h", "struct EventDriven {",
                  std::regex(R"(\n  (?:double|bool|EventRecords|FlowMethod|std::int64_t|std::string) (\w+))")),
-      16);
+      14);
   EXPECT_EQ(expect_all("integrators/flow/flow_method.h", "enum class FlowMethod",
                        std::regex(R"(\n  (\w+),? +///<)")),
             4);
