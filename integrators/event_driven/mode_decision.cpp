@@ -216,15 +216,21 @@ void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
 }
 
 /// Modes by accelerations instead of forces. Where forces are not unique, solvers answer with extreme ones:
-/// friction at its bound although nothing slips, or nothing on a contact that others relieve. Taken for
-/// slipping and open, such contacts would change their modes from event to event.
+/// friction at its bound although nothing slips, or nothing on a contact that others relieve; and forces that
+/// are zero may be rounding above it although the contact parts. Taken by their forces, such contacts would
+/// change their modes from event to event.
 void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
+  const double small = SlipDirections::no_acceleration * size_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Candidate& candidate = candidates[taking_part_[c]];
-    if (candidate.mode == ContactMode::open || candidate.slip != 0.0 || candidate.starts_slipping) continue;
-    if (candidate.frictionless || contacts_[c].rows < 2 || contacts_[c].friction == 0.0) continue;
-    const double along = contacts_[c].tangential_acceleration(acceleration_.data());
-    if (std::abs(along) <= SlipDirections::no_acceleration * size_) candidate.mode = ContactMode::stick;
+    const Constraint& contact = contacts_[c];
+    if (candidate.mode == ContactMode::open || contact.has_dry_friction()) continue;
+    if (contact.normal_acceleration(acceleration_.data()) > small) candidate.mode = ContactMode::open;
+    const bool may_stick = candidate.slip == 0.0 && !candidate.starts_slipping && !candidate.frictionless;
+    if (candidate.mode == ContactMode::open || !may_stick) continue;
+    if (contact.rows < 2 || contact.friction == 0.0) continue;
+    if (std::abs(contact.tangential_acceleration(acceleration_.data())) <= small)
+      candidate.mode = ContactMode::stick;
   }
   complete_modes(motion, now, candidates);
 }
