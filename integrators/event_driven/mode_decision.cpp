@@ -22,7 +22,9 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
   zero_.resize(now.acceleration.size());  // never written
   acceleration_.resize(now.acceleration.size());
   const Decision decision = repeat(&ModeDecision::solve, motion, now, candidates, chain);
-  if (decision != Decision::failed) return decision;
+  // Few contacts are enumerated: what is neither solved nor refuted there is for the caller to decide.
+  const bool enumerated = candidates.size() <= static_cast<std::size_t>(enumeration_groups);
+  if (decision != Decision::failed || enumerated) return decision;
   return repeat(&ModeDecision::solve_as_limit, motion, now, candidates, chain);
 }
 
