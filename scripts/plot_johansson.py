@@ -45,7 +45,7 @@ def figure5_horak(data):
         axes.plot(line["before"], line["after"], color=color, label=label)
         axes.plot(points["before"], points["after"], "x", color=color, markersize=4)
     line, points = columns_of(data / "horak_rolling.csv"), columns_of(data / "horak_reference_rolling.csv")
-    axes.plot(line["before"], line["after"], "--", color=ORANGE, label="the same with rolling resistance, ρ = 2 mm")
+    axes.plot(line["before"], line["after"], "--", color=ORANGE, label="μ = 0.24, $e_n$ = $e_t$ = 0.82, rolling resistance ρ = 2 mm")
     axes.plot(points["before"], points["after"], "x", color=ORANGE, markersize=4)
     meaning(axes, "run", "x", "exact solution of the law")
     axes.plot([0, 200], [0, 200], ":", color="0.6", label="spin after = spin before")
