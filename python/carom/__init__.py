@@ -6,6 +6,8 @@ attributes. `from` is a word of Python: that argument is `from_`.
 
 from . import planar, spatial
 from ._core import *  # noqa: F403
+from .recording import Recorder, Recording, load_recording
+from .viewer import write_view
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]
