@@ -55,6 +55,14 @@ def _bounds(recording: Recording, drawing: Drawing, size: float) -> list[float]:
     if len(every) == 0:
         return [-1.0, -1.0, 1.0, 1.0]
     low, high = every.min(axis=0), every.max(axis=0)
+    for pose, flat in drawing.lines:
+        local = numpy.asarray(flat).reshape(-1, 2)
+        if pose in poses and numpy.ptp(local, axis=0).max() >= size:  # a half-plane: its point below what is seen
+            along = (local[-1] - local[0]) / numpy.linalg.norm(local[-1] - local[0])
+            start = local[0] + poses[pose]
+            foot = start + along * float(along @ (0.5 * (low + high) - start))
+            if numpy.abs(foot - 0.5 * (low + high)).max() < 2.0 * (high - low).max():
+                low, high = numpy.minimum(low, foot), numpy.maximum(high, foot)
     margin = max([0.06 * float((high - low).max()), *(capsule[5] for capsule in drawing.capsules)] or [0.0]) or 0.5
     return [*(low - margin).tolist(), *(high + margin).tolist()]
 
@@ -124,11 +132,10 @@ def _page(recording: Recording, title: str, every: int) -> str:
     }
     # "<" would end the element of the page, wherever a name has it.
     text = json.dumps(description, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    page = _template()
-    for mark, value in (("/*DESCRIPTION*/", text), ("/*ARRAYS*/", arrays.base64())):
-        before, _, after = page.partition(mark)
-        page = before + value + after
-    return page
+    # Both marks are found before anything is put in, since texts may look like marks.
+    head, _, rest = _template().partition("/*DESCRIPTION*/")
+    middle, _, tail = rest.partition("/*ARRAYS*/")
+    return "".join((head, text, middle, arrays.base64(), tail))
 
 
 def write_view(

@@ -2,7 +2,7 @@
 // marks are in pixels; `pixel` is the length of one in the scene [m].
 
 import {
-  BufferAttribute, BufferGeometry, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
   RawShaderMaterial,
 } from "three";
 import { POSE_SHADER } from "./poses.js";
@@ -29,6 +29,7 @@ function instanced(corners, size, count, attributes) {
   for (const [name, [array, width]] of Object.entries(attributes)) {
     geometry.setAttribute(name, new InstancedBufferAttribute(array, width));
   }
+  geometry.setDrawRange(0, corners.length / size);
   geometry.instanceCount = count;
   return geometry;
 }
@@ -36,7 +37,7 @@ function instanced(corners, size, count, attributes) {
 function layer(geometry, uniforms, vertex, fragment, order) {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3, uniforms, vertexShader: HEAD + POSE_SHADER + vertex, fragmentShader: PAINT + fragment,
-    transparent: true, depthTest: false, depthWrite: false,
+    transparent: true, depthTest: false, depthWrite: false, side: DoubleSide, // triangles turn either way
   });
   const mesh = new Mesh(geometry, material);
   mesh.frustumCulled = false;
