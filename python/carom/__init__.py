@@ -8,6 +8,7 @@ from . import planar, spatial
 from ._core import *  # noqa: F403
 from .recording import Recorder, Recording, load_recording
 from .viewer import write_view
+from .scene import Scene, SceneError, load_scene, save_scene
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]

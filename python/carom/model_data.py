@@ -74,15 +74,15 @@ def describe(system: _core.System) -> dict[str, Data]:
     """
     bodies = sorted(system.bodies(), key=lambda body: body.serial)
     parts = []
-    for entry in system._parts():
-        part = entry["part"]
+    for entry in system.parts():
+        part = entry.part
         known = type(part) in _fields_by_type()
         parts.append(
             {
-                "role": entry["role"],
+                "role": entry.role,
                 "type": type(part).__name__,
-                "serial": entry["serial"],
-                "name": entry["name"],
+                "serial": entry.id.serial,
+                "name": entry.name,
                 "fields": to_data(part) if known else {},
             }
         )

@@ -1,8 +1,9 @@
 #pragma once
 
-// Functions of the user: Python functions, and functions of C by their address (of ctypes and numba).
+// Functions of the user: Python functions, functions of C by their address (of ctypes and numba), and laws
+// given by numbers.
 
-#include "convert.h"
+#include "number_law.h"
 
 #include <functional>
 #include <memory>
@@ -60,19 +61,22 @@ struct Convert<std::function<R(A...)>, std::enable_if_t<(std::is_same_v<A, doubl
     for (std::size_t i = 0; i < count; ++i) numbers += i == 0 ? "float" : ", float";
     const std::string type =
         "collections.abc.Callable[[" + numbers + "], " + Convert<R>::names().accepts + "] | None";
-    return {type, type, ""};
+    const TypeNames law = Convert<Law<R>>::names();
+    return {law.accepts + " | " + Convert<R>::names().accepts + " | " + type, law.gives + " | " + type,
+            "law " + law.accepts};
   }
   static void load(nb::handle from, std::function<R(A...)>& to, std::string_view where) {
     if (from.is_none()) {
       to = nullptr;
       return;
     }
-    if (void* address = compiled_address(from, count, std::is_same_v<R, double>, where)) {
+    if (void* const address = compiled_address(from, count, std::is_same_v<R, double>, where)) {
       to = CompiledLaw<R, A...>{Shared(nb::borrow(from)), address};
       return;
     }
-    if (PyCallable_Check(from.ptr()) == 0) {
-      refuse(where, "a function of " + std::to_string(count) + " number" + (count == 1 ? "" : "s"), from);
+    if (nb::isinstance<Law<R>>(from) || PyCallable_Check(from.ptr()) == 0) {
+      to = NumberLaw<R, A...>{read_law<R>(from, count, where)};
+      return;
     }
     to = PythonLaw<R, A...>{Shared(nb::borrow(from)), std::string(where)};
   }
@@ -82,6 +86,7 @@ struct Convert<std::function<R(A...)>, std::enable_if_t<(std::is_same_v<A, doubl
     if (const auto* law = value.template target<CompiledLaw<R, A...>>()) {
       return nb::borrow(law->function.get());
     }
+    if (const auto* law = value.template target<NumberLaw<R, A...>>()) return Convert<Law<R>>::cast(law->law);
     return nb::none();
   }
   static bool is_python(const std::function<R(A...)>& value) {

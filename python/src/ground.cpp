@@ -44,7 +44,13 @@ void bind_builders(nb::module_& planar) {
   planar.def(
       "drum",
       [](nb::handle centre, double radius, double spin) {
-        return drum(read<carom::Vec<2>>(centre, "drum(): centre"), radius, spin);
+        CircleInside made = drum(read<carom::Vec<2>>(centre, "drum(): centre"), radius, spin);
+        if (spin == 0.0) return made;
+        // The same functions by numbers, so that they can be read and written.
+        made.motion.angle = NumberLaw<double, double>{Law<double>{.polynomial = {0.0, spin}}};
+        made.motion.spin = NumberLaw<double, double>{Law<double>{.polynomial = {spin}}};
+        made.motion.angular_acceleration = NumberLaw<double, double>{Law<double>{.polynomial = {0.0}}};
+        return made;
       },
       nb::arg("centre"), nb::arg("radius"), nb::arg("spin"),
       nb::sig("def drum(centre: numpy.typing.ArrayLike, radius: float, spin: float) -> CircleInside"),

@@ -16,6 +16,7 @@ namespace carom_python {
 struct Entry {
   carom::Role role = carom::Role::body;
   carom::Index serial = carom::none;
+  nb::object id;
   nb::object part;                        ///< a copy of its own
   std::optional<carom::Surface> surface;  ///< of an obstacle
   std::string name;

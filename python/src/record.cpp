@@ -53,8 +53,10 @@ void add_property(nb::handle type, const Record& record, const Field& field) {
   const std::string getter = "def " + field.python() + "(self) -> " + field.type->names.gives;
   const std::string setter =
       "def " + field.python() + "(self, value: " + field.type->names.accepts + ") -> None";
-  nb::object read = nb::cpp_function(get, nb::is_getter(), nb::is_method(), nb::scope(type),
-                                     nb::sig(getter.c_str()), field.doc.c_str());
+  // Without a scope: in one, functions of the same name are overloads, and the setter takes the getter's
+  // place.
+  nb::object read =
+      nb::cpp_function(get, nb::is_getter(), nb::is_method(), nb::sig(getter.c_str()), field.doc.c_str());
   nb::object write = nb::none();
   if (record.writable && field.type->load != nullptr) {
     write = nb::cpp_function(
@@ -62,7 +64,7 @@ void add_property(nb::handle type, const Record& record, const Field& field) {
           if (PyObject_IsInstance(self.ptr(), record.type.ptr()) != 1) refuse("self", record.name, self);
           field.type->load(value, field.of(nb::inst_ptr<void>(self)), path);
         },
-        nb::is_method(), nb::scope(type), nb::sig(setter.c_str()), nb::arg("value").none());
+        nb::is_method(), nb::sig(setter.c_str()), nb::arg("value").none());
   }
   const nb::handle property(reinterpret_cast<PyObject*>(&PyProperty_Type));
   nb::setattr(type, field.python().c_str(), property(read, write, nb::none(), nb::str(field.doc.c_str())));

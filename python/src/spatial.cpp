@@ -2,6 +2,7 @@
 
 #include "bind.h"
 #include "element_fields.h"
+#include "types.h"
 
 #include <carom/bodies/particle.h>
 #include <carom/contact/detection/half_space.h>
@@ -15,6 +16,7 @@ void bind_spatial(nb::module_& spatial) {
         "velocity", &Particle::velocity)("contact", &Particle::contact)("material", &Particle::material)(
         "filter", &Particle::filter);
   });
+  bind_laws_by_numbers<carom::Vec<3>>(spatial, "Vector");
   bind_springs<3>(spatial);
   bind_element_laws<3>(spatial);
   bind_part<HalfSpace>(spatial, "HalfSpace", {"HalfSpace"}, [](auto& fields) {

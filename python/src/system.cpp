@@ -79,6 +79,7 @@ nb::object add(Model& model, nb::handle part, nb::handle surface, nb::handle nam
     entry.part = nb::borrow(part);
   }
   entry.serial = serial_of(id);
+  entry.id = id;
   model.entries.push_back(std::move(entry));
   return id;
 }
@@ -97,19 +98,30 @@ void between(Model& model, MaterialId a, MaterialId b, const Surface& surface) {
   model.laws.push_back({name_of(a), name_of(b), surface});
 }
 
-// Parts as scene files need them: a dictionary each.
-nb::list parts_of(const Model& model) {
-  nb::list list;
-  for (const Entry& entry : model.entries) {
-    nb::dict item;
-    item["role"] = role_name(entry.role);
-    item["serial"] = entry.serial;
-    item["name"] = entry.name;
-    item["part"] = entry.part;
-    item["surface"] = entry.surface ? nb::cast(*entry.surface) : nb::none();
-    list.append(item);
-  }
-  return list;
+// A part as it was added. What it gives out is a copy: the system keeps what it was given.
+void bind_entry(nb::module_& core) {
+  nb::class_<Entry>(core, "AddedPart", "A part of a system, as it was added.")
+      .def_prop_ro(
+          "role", [](const Entry& self) { return role_name(self.role); },
+          R"("body", "element", "joint", "shape" or "obstacle".)")
+      .def_ro("id", &Entry::id, nb::sig("def id(self) -> typing.Any"), "Its identity.")
+      .def_ro("name", &Entry::name, "Its name; empty if it was given none.")
+      .def_prop_ro(
+          "part",
+          [](const Entry& self) {
+            const PartType* const type = part_type(self.part.type());
+            return type != nullptr ? type->copy(nb::inst_ptr<void>(self.part)) : self.part;
+          },
+          nb::sig("def part(self) -> typing.Any"),
+          "The part: a copy of what was given; a force element in Python itself.")
+      .def_prop_ro(
+          "surface", [](const Entry& self) { return Convert<std::optional<Surface>>::cast(self.surface); },
+          nb::sig("def surface(self) -> Surface | None"), "The contact law that an obstacle was added with.")
+      .def("__repr__", [](const Entry& self) {
+        const std::string shown = nb::cast<std::string>(nb::repr(self.part));
+        return std::string("AddedPart(") + role_name(self.role) + ", " +
+               nb::cast<std::string>(nb::repr(nb::str(self.name.c_str()))) + ", " + shown + ")";
+      });
 }
 
 template <class Id>
@@ -181,8 +193,16 @@ void bind_queries(nb::class_<Model>& type) {
       .def(
           "check", [](Model& self) { return Convert<std::vector<ModelFinding>>::cast(self.get().check()); },
           nb::sig("def check(self) -> list[ModelFinding]"), doc("System.check"))
-      .def("_parts", &parts_of, nb::sig("def _parts(self) -> list[dict[str, typing.Any]]"),
-           "Parts as they were added.");
+      .def(
+          "parts",
+          [](Model& self) {
+            self.get();
+            nb::list list;
+            for (const Entry& entry : self.entries) list.append(nb::cast(entry));
+            return list;
+          },
+          nb::sig("def parts(self) -> list[AddedPart]"),
+          "All parts in the order in which they were added, without those removed.");
 }
 
 void bind_laws_of(nb::class_<Model>& type) {
@@ -219,15 +239,15 @@ void bind_laws_of(nb::class_<Model>& type) {
           [](const Model& self) { return Convert<std::vector<std::string>>::cast(self.materials); },
           nb::sig("def materials(self) -> list[str]"), "Names of all materials, by their serial numbers.")
       .def(
-          "_laws",
+          "laws",
           [](const Model& self) {
             nb::list list;
             for (const LawEntry& law : self.laws)
               list.append(nb::make_tuple(law.a, law.b, nb::cast(law.surface)));
             return list;
           },
-          nb::sig("def _laws(self) -> list[tuple[str, str, Surface]]"),
-          "Laws between materials as they were set.")
+          nb::sig("def laws(self) -> list[tuple[str, str, Surface]]"),
+          "Laws between materials, by their names, in the order in which they were set.")
       .def(
           "keep_place", [](Model& self, BodyId body, bool keep) { self.get().keep_place(body, keep); },
           nb::arg("body"), nb::arg("keep") = true, doc("System.keep_place"))
@@ -259,6 +279,7 @@ void bind_laws_of(nb::class_<Model>& type) {
 }  // namespace
 
 void bind_system(nb::module_& core) {
+  bind_entry(core);
   nb::class_<Model> type(core, "System", doc("System"));
   type.def(nb::init<>())
       .def("__copy__",

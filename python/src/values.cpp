@@ -95,6 +95,8 @@ void bind_values(nb::module_& core, nb::module_& planar) {
         "rolling_restitution", &Surface::rolling_restitution);
   });
   bind_masses(planar);
+  bind_laws_by_numbers<double>(core, "");
+  bind_laws_by_numbers<Vec<2>>(planar, "Vector");
   bind_record<planar::PrescribedMotion>(
       planar, "PrescribedMotion", {"PrescribedMotion"}, true, [](auto& fields) {
         using Motion = planar::PrescribedMotion;

@@ -1,6 +1,7 @@
 """Parts, systems and runs from Python."""
 
 import gc
+import math
 import threading
 import weakref
 
@@ -51,7 +52,6 @@ def test_law_in_python_acts():
 
 def test_compiled_law_is_the_same_as_the_law_in_python():
     import ctypes
-    import math
 
     sine = ctypes.CDLL("libm.so.6").sin
     sine.restype, sine.argtypes = ctypes.c_double, [ctypes.c_double]
@@ -64,6 +64,53 @@ def test_compiled_law_is_the_same_as_the_law_in_python():
         simulation.run_until(1.0)
         ends.append(simulation.angle(body))
     assert ends[0] == ends[1]
+
+
+def test_law_by_numbers_is_the_same_as_the_law_in_python():
+    law = carom.Law([0.1, 0.2, -0.3], harmonics=[carom.Harmonic(0.5, frequency=3.0, phase=0.25, growth=0.1)])
+
+    def function(time):
+        polynomial = (-0.3 * time + 0.2) * time + 0.1
+        return polynomial + (0.5 + 0.1 * time) * math.sin(3.0 * time + 0.25)
+
+    ends = []
+    for torque in (law, function):
+        system = System()
+        body = system.add(RigidBody(mass=planar.disc(1.0, 0.5)))
+        system.add(planar.AppliedTorque(on=body, torque=torque))
+        simulation = Simulation(system, TimeStepping(step=1e-2))
+        simulation.run_until(1.0)
+        ends.append(simulation.angle(body))
+    assert ends[0] == ends[1] != 0.0
+    assert law(0.7) == function(0.7)
+    assert planar.AppliedTorque(on=ground, torque=law).torque.polynomial == [0.1, 0.2, -0.3]
+    assert list(planar.AppliedForce(on=ground, force=(1.0, 2.0)).force(5.0)) == [1.0, 2.0]
+    with pytest.raises(TypeError, match="torque' must be a law with at most 0 slopes"):
+        planar.AppliedTorque(on=ground, torque=carom.Law([1.0], slopes=[1.0]))
+    with pytest.raises(TypeError, match="torque' must be a function of 1 number, a Law or a constant"):
+        planar.AppliedTorque(on=ground, torque="x")
+
+
+def test_slopes_are_of_the_further_arguments_and_threads_may_call_laws():
+    system = System()
+    body = system.add(Particle(mass=1.0, position=(2.0, 0.0), contact=False))
+    # A spring with a damper, as an actuator: m x'' = -4 (x - 1) - 0.5 x'.
+    system.add(planar.LinearActuator(from_=ground, to=body, force=carom.Law([4.0], slopes=[-4.0, -0.5])))
+    ends = []
+    for threads in (1, 2):
+        simulation = Simulation(system, TimeStepping(step=1e-3, threads=threads))
+        simulation.run_until(1.0)
+        ends.append(simulation.state().q[0])
+    # The trapezoidal rule misses x by less than h^2 omega^3 t / 12 = 7e-7 m.
+    rate, decay = (4.0 - 0.0625) ** 0.5, 0.25
+    exact = 1.0 + math.exp(-decay) * (math.cos(rate) + decay / rate * math.sin(rate))
+    assert abs(ends[0] - exact) < 7e-7
+    assert ends[0] == ends[1]
+
+
+def test_drum_has_its_motion_by_numbers():
+    motion = planar.drum((0.0, 0.0), 1.0, 1.5).motion
+    assert motion.angle(2.0) == 3.0 and motion.spin(2.0) == 1.5 and motion.angular_acceleration(2.0) == 0.0
 
 
 def test_threads_refuse_laws_in_python_by_name():
@@ -133,6 +180,15 @@ def test_exceptions_of_laws_come_out_unchanged():
 def test_wrong_arguments_are_named(make, text):
     with pytest.raises(TypeError, match=text):
         make()
+
+
+def test_fields_are_read_and_written():
+    part = RigidBody(mass=planar.disc(2.0, 0.5), position=(1.0, 2.0))
+    assert part.mass.mass == 2.0 and list(part.position) == [1.0, 2.0] and part.angle == 0.0
+    part.position, part.angle = (3.0, 4.0), 0.5
+    assert list(part.position) == [3.0, 4.0] and part.angle == 0.5
+    with pytest.raises(TypeError, match="RigidBody.angle must be a number, not 'x'"):
+        part.angle = "x"
 
 
 def test_identities_of_another_system_are_refused():
@@ -281,6 +337,30 @@ def test_inverse_dynamics_of_a_driven_bar():
     result = carom.inverse_dynamics(system, [0.0, 0.1])
     # I about the pin is m l^2 / 3, the angular acceleration 2 rad/s^2.
     assert result.samples[0].forces[0] == pytest.approx(4.0 / 3.0, rel=1e-12)
+
+
+def test_parts_are_listed_as_they_were_added():
+    system, body = ball()
+    magnet = Magnet(body, 4.0)
+    removed = system.add(Particle(mass=1.0), "removed")
+    system.add(magnet, "magnet")
+    system.remove(removed)
+    wood, brass = system.material("wood"), system.material("brass")
+    system.between(wood, brass, Surface(friction=0.2, normal_restitution=0.0))
+    listed = system.parts()
+    assert [(item.role, item.name) for item in listed] == [
+        ("element", ""),
+        ("obstacle", "floor"),
+        ("body", "ball"),
+        ("element", "magnet"),
+    ]
+    assert listed[2].id == body and list(listed[2].part.position) == [0.0, 1.0]
+    assert listed[1].surface.friction == 0.5 and listed[2].surface is None
+    assert listed[3].part is magnet
+    # What is given out is a copy.
+    listed[2].part.mass = 5.0
+    assert listed[2].part.mass == system.parts()[2].part.mass == 1.0
+    assert [(a, b, law.friction) for a, b, law in system.laws()] == [("wood", "brass", 0.2)]
 
 
 def test_example_runs():

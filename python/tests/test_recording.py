@@ -16,7 +16,7 @@ import pytest
 import carom
 from carom import EventDriven, FileError, ModelError, Recorder, Simulation, TimeStepping, load_recording
 
-from scenes import everything, falling_ball, pile
+from models import everything, falling_ball, pile
 
 pytest.importorskip("h5py", reason="h5py is optional; recordings in files need it")
 
@@ -146,7 +146,7 @@ CHILD = """
     import sys
     sys.path.insert(0, sys.argv[2])
     from carom import Recorder, Simulation, TimeStepping
-    from scenes import pile
+    from models import pile
     simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
     with Recorder(simulation, sys.argv[1], interval=0.002, flush_every=0.02):
         print("runs", flush=True)

@@ -12,7 +12,7 @@ from carom import FileError, ModelError, Recorder, Simulation, TimeStepping, vie
 from carom.drawing import Drawing
 from carom.model_data import describe
 
-from scenes import everything, falling_ball
+from models import everything, falling_ball
 
 PAGE = '<script id="description">/*DESCRIPTION*/</script><script id="arrays">/*ARRAYS*/</script>'
 

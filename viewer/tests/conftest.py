@@ -10,7 +10,7 @@ from selenium import webdriver
 sys.path.insert(0, str(Path(__file__).parents[2] / "python" / "tests"))
 
 from browser import Page, open_browser  # noqa: E402
-from scenes import everything, falling_ball, pile  # noqa: E402
+from models import everything, falling_ball, pile  # noqa: E402
 
 from carom import EventDriven, Recorder, Simulation, TimeStepping, write_view  # noqa: E402
 

@@ -12,7 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "python" / "tests"))
 
 from browser import Page, open_browser  # noqa: E402
-from scenes import pile  # noqa: E402
+from models import pile  # noqa: E402
 
 from carom import Recorder, Simulation, TimeStepping, write_view  # noqa: E402
 

@@ -1,0 +1,201 @@
+"""The command `carom`: runs, checks and shows scenes.
+
+    carom run scene.json --until 10 --mode event-driven --record run.h5 --view run.html
+    carom check scene.json
+    carom view run.h5
+    carom schema
+
+Exit codes: 0 done; 1 a file is wrong, or `check` found something; 2 wrong command line; 3 the run failed; 130
+ended by Ctrl-C, with what was recorded until then.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any, Optional
+
+from . import _core
+from .scene import Scene, load_scene, schema
+from .scene.build import MODES
+from .scene.findings import examine
+from .scene.references import SECTIONS
+
+WRONG, FAILED, INTERRUPTED = 1, 3, 130
+
+
+class Missing(Exception):
+    """A part of the package that is not installed."""
+
+
+def _part(name: str) -> Any:
+    """A module of the package that needs more than the package. Raises Missing."""
+    try:
+        return importlib.import_module(f"{__package__}.{name}")
+    except ImportError as error:
+        raise Missing(f"this needs carom.{name}: {error}") from error
+
+
+def _write_view(recorded: Any, path: Path) -> None:
+    _part("viewer").write_view(recorded, path)
+    print(f"view: {path}")
+
+
+def _mode(scene: Scene, word: Optional[str], step: Optional[float]) -> Any:
+    """Mode of a run: the scene's options where it has that mode, else the defaults."""
+    wanted = getattr(_core, MODES[word]) if word else type(scene.mode) if scene.mode else None
+    if wanted is None:
+        raise _core.ModelError("the scene has no section 'simulation'; give --mode")
+    mode = scene.mode if isinstance(scene.mode, wanted) else wanted()
+    if step is not None:
+        if not isinstance(mode, _core.TimeStepping):
+            raise _core.ModelError(
+                "--step is of --mode time-stepping; the event-driven mode chooses its steps"
+            )
+        mode.step = step
+    return mode
+
+
+def _count(number: int, one: str, several: str) -> str:
+    return f"{number} {one if number == 1 else several}"
+
+
+def _summary(simulation: _core.Simulation) -> None:
+    statistics = simulation.statistics()
+    if isinstance(simulation.mode(), _core.EventDriven):
+        done = _count(simulation.event_count(), "event", "events")
+    else:
+        done = _count(statistics.steps, "step", "steps")
+    impacts = _count(statistics.impacts, "impact of a contact", "impacts of contacts")
+    print(f"{simulation.time():g} s, {done}, {impacts}")
+    print(simulation.energy(), end="")
+
+
+def run(options: argparse.Namespace) -> int:
+    """carom run: runs a scene, and prints its energies."""
+    scene = load_scene(options.scene)
+    until = scene.until if options.until is None else options.until
+    if until is None:
+        raise _core.ModelError(f"{options.scene}: it does not say until when to run; give --until")
+    mode = _mode(scene, options.mode, options.step)
+    simulation = _core.Simulation(scene.system, mode)
+    simulation.show_progress(True)  # on a terminal only
+    if isinstance(mode, _core.EventDriven):
+        simulation.stop_when(lambda: False)  # Ctrl-C is seen where this is asked
+    recorder: Any = None
+    interrupted = False
+    with contextlib.ExitStack() as stack:
+        if options.record or options.view:
+            interval = {} if options.interval is None else {"interval": options.interval}
+            recorder = _part("recording").Recorder(simulation, options.record, **interval)
+            stack.enter_context(recorder)
+        try:
+            simulation.run_until(until)
+        except KeyboardInterrupt:
+            interrupted = True
+    if options.record:
+        print(f"record: {options.record}")
+    if options.view:
+        _write_view(recorder.recording(), options.view)
+    _summary(simulation)
+    if interrupted:
+        print(f"carom: ended by Ctrl-C at {simulation.time():g} s", file=sys.stderr)
+    return INTERRUPTED if interrupted else 0
+
+
+def check(options: argparse.Namespace) -> int:
+    """carom check: degrees of freedom of a scene, and what is probably wrong with it."""
+    scene = load_scene(options.scene)
+    examined = examine(scene)
+    roles = [part.role for part in scene.system.parts()]
+    counts = [_count(roles.count(role), role, section) for role, section in SECTIONS.items()]
+    print(f"{options.scene}: {', '.join(counts)}")
+    mobility = examined.mobility
+    if mobility is not None:
+        freedom = _count(mobility.degrees_of_freedom, "degree of freedom", "degrees of freedom")
+        print(f"{freedom}: {mobility.velocities} velocities, {mobility.rows} rows of joints, ", end="")
+        print(f"{mobility.independent_rows} of them independent")
+    for finding in examined.findings:
+        print(f"- {finding}")
+    if not examined.findings:
+        print("nothing found")
+    return WRONG if examined.findings else 0
+
+
+def view(options: argparse.Namespace) -> int:
+    """carom view: a page for the browser from a recording."""
+    recorded = _part("recording").load_recording(options.recording)
+    page = options.output or options.recording.with_suffix(".html")
+    _write_view(recorded, page)
+    if options.open:
+        import webbrowser
+
+        webbrowser.open(page.resolve().as_uri())
+    return 0
+
+
+def print_schema(options: argparse.Namespace) -> int:
+    """carom schema: the JSON schema of scene files."""
+    print(json.dumps(schema(), indent=2, ensure_ascii=False))
+    return 0
+
+
+def arguments() -> argparse.ArgumentParser:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        "carom", description="Runs, checks and shows scenes of rigid bodies in contact."
+    )
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    command = commands.add_parser("run", help="run a scene", description=run.__doc__)
+    command.add_argument("scene", type=Path)
+    command.add_argument("--until", type=float, metavar="TIME", help="end [s]; else as the scene says")
+    command.add_argument("--mode", choices=list(MODES), help="else as the scene says")
+    command.add_argument("--step", type=float, help="of time stepping [s]")
+    command.add_argument("--record", type=Path, metavar="FILE", help="write the run to an HDF5 file")
+    command.add_argument("--interval", type=float, metavar="TIME", help="between recorded samples [s]")
+    command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
+    command.set_defaults(action=run)
+
+    command = commands.add_parser("check", help="look for mistakes in a scene", description=check.__doc__)
+    command.add_argument("scene", type=Path)
+    command.set_defaults(action=check)
+
+    command = commands.add_parser("view", help="make a page of a recording", description=view.__doc__)
+    command.add_argument("recording", type=Path)
+    command.add_argument("--output", type=Path, metavar="PAGE", help="else the recording's name with .html")
+    command.add_argument("--open", action="store_true", help="open it in the browser")
+    command.set_defaults(action=view)
+
+    command = commands.add_parser(
+        "schema", help="print the JSON schema of scenes", description=print_schema.__doc__
+    )
+    command.set_defaults(action=print_schema)
+    return parser
+
+
+def main(words: Optional[list[str]] = None) -> int:
+    """Runs the command; words: of the command line, those of the program if None. Returns the exit code."""
+    options = arguments().parse_args(words)
+    try:
+        code: int = options.action(options)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        # Whoever read the output has enough. Python would complain once more when it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except (_core.SolverError, _core.Cancelled) as error:
+        print(f"carom: the run failed: {error}", file=sys.stderr)
+        return FAILED
+    except (_core.Error, Missing, ImportError) as error:
+        print(f"carom: {error}", file=sys.stderr)
+        return WRONG
+    except KeyboardInterrupt:
+        print("carom: ended by Ctrl-C", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,26 @@
+"""Options of the tests, and the scenes that several of them read."""
+
+import pathlib
+import runpy
+
+import pytest
+
+PYTHON = pathlib.Path(__file__).parents[1]
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--all-mutations", action="store_true", help="all 10,000 mutated scene files, not a share"
+    )
+
+
+def pytest_generate_tests(metafunc):
+    if "scene_file" in metafunc.fixturenames:
+        files = sorted((PYTHON / "scenes").glob("*.json"))
+        metafunc.parametrize("scene_file", files, ids=[file.stem for file in files])
+
+
+@pytest.fixture(scope="session")
+def programs():
+    """The program of each scene, by name."""
+    return runpy.run_path(str(PYTHON / "examples" / "scenes.py"))["SCENES"]

@@ -1,0 +1,144 @@
+"""The command `carom`."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import carom
+from carom import planar, scene
+from carom.command import main
+from conftest import PYTHON
+
+BALL = PYTHON / "scenes" / "bouncing_ball.json"
+
+
+def test_run_gives_what_the_program_gives(capsys, programs):
+    assert main(["run", str(BALL)]) == 0
+    simulation = programs["bouncing_ball"]().simulation()
+    simulation.run_until(2.0)
+    said, expected = capsys.readouterr().out, f"2 s, 23 events, 21 impacts of contacts\n{simulation.energy()}"
+    # A run that Ctrl-C may end is cut into more pieces: the rounding of its account is another.
+    assert said.splitlines()[:-1] == expected.splitlines()[:-1]
+    assert abs(float(said.split()[-2])) < 1e-12
+
+
+def test_options_of_run(capsys):
+    assert main(["run", str(BALL), "--mode", "time-stepping", "--step", "0.01", "--until", "0.25"]) == 0
+    assert capsys.readouterr().out.startswith("0.25 s, 25 steps, 0 impacts")
+    assert main(["run", str(BALL), "--step", "0.01"]) == 1
+    assert "--step is of --mode time-stepping" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as wrong:
+        main(["run", str(BALL), "--mode", "fast"])
+    assert wrong.value.code == 2
+
+
+def test_what_a_scene_does_not_say_is_asked_for(tmp_path, capsys):
+    file = tmp_path / "scene.json"
+    file.write_text('{"carom": 1, "bodies": [{"type": "Particle", "mass": 1}]}')
+    assert main(["run", str(file)]) == 1
+    assert "until when to run; give --until" in capsys.readouterr().err
+    assert main(["run", str(file), "--until", "1"]) == 1
+    assert "give --mode" in capsys.readouterr().err
+    assert main(["run", str(file), "--until", "1", "--mode", "time-stepping"]) == 0
+
+
+def test_errors_have_line_and_field(tmp_path, capsys):
+    file = tmp_path / "scene.json"
+    file.write_text(BALL.read_text().replace('"mass": 1.0', '"mass": "1 kg"'))
+    assert main(["run", str(file)]) == 1
+    assert f'{file}:5: bodies[0].mass: must be a number, not "1 kg"' in capsys.readouterr().err
+    assert main(["check", str(tmp_path / "none.json")]) == 1
+    assert "cannot be read" in capsys.readouterr().err
+
+
+def test_a_run_that_fails(tmp_path, capsys):
+    system = carom.System()
+    body = system.add(planar.Particle(mass=1.0, position=(2.0, 0.0), contact=False), name="ball")
+    system.add(planar.SpringDamper(from_=carom.ground, to=body, stiffness=1e8, free_length=1.0), "strut")
+    mode = carom.TimeStepping(step=1e-2, iteration="fixed_point")
+    carom.save_scene(system, tmp_path / "scene.json", mode, 1.0)
+    assert main(["run", str(tmp_path / "scene.json")]) == 3
+    assert "the run failed" in capsys.readouterr().err
+
+
+def test_check_finds_nothing_in_the_scenes(scene_file, capsys):
+    assert main(["check", str(scene_file)]) == 0
+    assert capsys.readouterr().out.endswith("nothing found\n")
+
+
+def test_check_names_what_it_finds(tmp_path, capsys):
+    system = carom.System()
+    system.material("wood")
+    rod = planar.RigidBody(mass=planar.rod(1.0, 1.0), position=(0.5, 0.0))
+    one, two = system.add(rod, name="one"), system.add(rod, name="two")
+    for end in (-0.5, 0.5):
+        system.add(planar.Revolute(from_=(one, (end, 0.0)), to=(two, (end, 0.0))), name=f"pin at {end}")
+    system.add(planar.Disc(body=one, radius=1e-4), name="dot")
+    system.add(planar.Particle(mass=1.0, position=(2000.0, 0.0)))
+    carom.save_scene(system, tmp_path / "scene.json")
+    assert main(["check", str(tmp_path / "scene.json")]) == 1
+    said = capsys.readouterr().out
+    assert "5 degrees of freedom: 8 velocities, 4 rows of joints, 3 of them independent" in said
+    assert "pin at 0.5' is redundant with" in said
+    assert "material 'wood' has no law of contact with anything" in said
+    assert "units: bodies[2].position is 2000 m, 2.0e+07 times shapes[0].radius ('dot'), 0.0001 m" in said
+
+
+def test_schema_is_printed(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == scene.schema()
+
+
+def test_recording_and_view_say_what_is_missing(monkeypatch, capsys, tmp_path):
+    monkeypatch.setitem(sys.modules, "carom.recording", None)
+    for words in (["run", str(BALL), "--record", "x.h5"], ["view", "x.h5"]):
+        assert main(words) == 1
+        assert "this needs carom.recording" in capsys.readouterr().err
+
+
+def test_run_records_and_shows(tmp_path, capsys):
+    recording = pytest.importorskip("carom.recording")
+    pytest.importorskip("h5py")
+    record = tmp_path / "run.h5"
+    assert main(["run", str(BALL), "--record", str(record), "--interval", "0.1"]) == 0
+    times = recording.load_recording(record).times
+    assert times[0] == 0.0 and times[-1] == 2.0 and len(times) == 21
+
+
+def process(*words):
+    """The command in a process of its own, which Ctrl-C may end."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "carom", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
+@pytest.mark.parametrize("mode", ["time-stepping", "event-driven"])
+def test_ctrl_c_ends_a_run(mode, tmp_path):
+    endless = tmp_path / "scene.json"
+    endless.write_text(
+        '{"carom": 1, "bodies": [{"type": "Particle", "mass": 1, "contact": false, "position": [2, 0]}], '
+        '"elements": [{"type": "SpringDamper", "from": "ground", "to": 0, "stiffness": 1, "free_length": 1}]}'
+    )
+    words = ["run", str(endless), "--until", "1e7", "--mode", mode]
+    with process(*words) as child:
+        time.sleep(2.0)  # it has started
+        os.kill(child.pid, signal.SIGINT)
+        out, errors = child.communicate(timeout=60)
+    assert child.returncode == 130
+    assert "ended by Ctrl-C at" in errors and "residual" in out
+
+
+def test_a_reader_that_has_enough_is_no_error():
+    with process("schema") as child:
+        child.stdout.close()
+        errors = child.stderr.read()
+    assert child.returncode == 0 and errors == ""
