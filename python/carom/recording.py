@@ -58,7 +58,8 @@ def units_of(dimension: int) -> dict[str, str]:
 
 def ledger_type() -> numpy.dtype:
     """Type of a row of the ledger: a number for each term, by its name."""
-    terms = list(_core.EnergyLedger().terms())
+    stored = [term.name for term in _core.StoredEnergy]
+    terms = [*stored, "total", "initial", *(term.name for term in _core.EnergyFlow), "residual"]
     return numpy.dtype([(term, "f8") for term in terms])
 
 

@@ -40,7 +40,8 @@ def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = 
     """An empty data set that grows along its first axis."""
     row = numpy.dtype(kind).itemsize * max(1, int(numpy.prod(shape, dtype=int)))
     chunk = (max(1, min(4096, _CHUNK_BYTES // row)), *(max(1, size) for size in shape))
-    made = group.create_dataset(name, (0, *shape), kind, maxshape=(None, *shape), chunks=chunk)
+    most = tuple(size or None for size in shape)  # HDF5 has no parts of data sets without columns
+    made = group.create_dataset(name, (0, *shape), kind, maxshape=(None, *most), chunks=chunk)
     if unit:
         made.attrs["unit"] = unit
     return made

@@ -2,7 +2,7 @@
 
 import math
 
-from carom import Surface, System, ground
+from carom import ContactFilter, Surface, System, ground
 from carom.planar import (
     Block,
     BoxInside,
@@ -63,7 +63,9 @@ def everything() -> System:
     system.add(Block(vertices=[(-0.3, -1.2), (0.3, -1.2), (0.3, -1.0), (-0.3, -1.0)], radius=0.02), name="block")
     shaken = PrescribedMotion(displacement=lambda t: (0.15 * math.sin(6.0 * t), 0.0))
     system.add(Block(vertices=[(0.9, -0.6), (1.5, -0.6), (1.5, -0.5), (0.9, -0.5)], motion=shaken), name="shaker")
+    in_drum = ContactFilter(groups=2, touches=2)  # outside the drum all is solid
     shell = drum((-2.3, 0.9), 0.5, 2.0)
+    shell.filter = in_drum
     system.add(shell, "drum")
 
     def add(name, mass, place, angle=0.0, velocity=(0.0, 0.0)):
@@ -79,7 +81,7 @@ def everything() -> System:
     system.add(Disc(body=dumbbell, radius=0.1, centre=(-0.2, 0.0)))
     system.add(Disc(body=dumbbell, radius=0.1, centre=(0.2, 0.0)))
     tumbler = add("tumbler", disc(0.5, 0.1), (-2.3, 0.55))
-    system.add(Disc(body=tumbler, radius=0.1))
+    system.add(Disc(body=tumbler, radius=0.1, filter=in_drum))
     bob = system.add(Particle(mass=1.0, position=(0.9, 1.3), contact=False), name="bob")
     system.add(SpringDamper(from_=(ground, (0.5, 1.8)), to=bob, stiffness=60.0, damping=0.1, free_length=0.5))
     arm = add("arm", rod(1.0, 0.6), (-0.7, 1.5))

@@ -1,9 +1,8 @@
-// What is drawn, as few instanced meshes: outlines of bodies, lines, ground, marks, arrows. Sizes of lines and
+// What is drawn, as few meshes: outlines of bodies, lines, ground, marks, arrows. Sizes of lines and
 // marks are in pixels; `pixel` is the length of one in the scene [m].
 
 import {
-  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
-  RawShaderMaterial,
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, GLSL3, Mesh, RawShaderMaterial,
 } from "three";
 import { POSE_SHADER } from "./poses.js";
 
@@ -20,18 +19,56 @@ const PAINT = `
 precision highp float;
 out vec4 paint;
 `;
-// Corners of a quad: -1 to 1.
-const QUAD = [-1, -1, 1, -1, 1, 1, -1, -1, 1, 1, -1, 1];
+// A form that is drawn for each item: corners, `size` numbers each, and its triangles.
+const QUAD = { corners: [-1, -1, 1, -1, 1, 1, -1, 1], size: 2, triangles: [0, 1, 2, 0, 2, 3] };
 
-function instanced(corners, size, count, attributes) {
-  const geometry = new InstancedBufferGeometry();
-  geometry.setAttribute("corner", new BufferAttribute(new Float32Array(corners), size));
-  for (const [name, [array, width]] of Object.entries(attributes)) {
-    geometry.setAttribute(name, new InstancedBufferAttribute(array, width));
+/** Numbers of each item, for all vertices of its form. */
+function spread(from, width, copies, to, count) {
+  for (let item = 0, at = 0; item < count; ++item) {
+    for (let copy = 0; copy < copies; ++copy) {
+      for (let i = 0; i < width; ++i) to[at++] = from[item * width + i];
+    }
   }
-  geometry.setDrawRange(0, corners.length / size);
-  geometry.instanceCount = count;
-  return geometry;
+}
+
+/** A form drawn for each item, as one mesh with all vertices: drawing in software takes instances one by one, at a
+ * hundred times the cost. Attributes by name: [numbers of all items, how many each has]. */
+class Repeated {
+  constructor(form, most, attributes) {
+    this.attributes = attributes;
+    this.copies = form.corners.length / form.size;
+    this.perItem = form.triangles.length;
+    const corners = new Float32Array(most * form.corners.length), index = new Uint32Array(most * this.perItem);
+    for (let item = 0; item < most; ++item) {
+      corners.set(form.corners, item * form.corners.length);
+      for (let i = 0; i < this.perItem; ++i) index[item * this.perItem + i] = item * this.copies + form.triangles[i];
+    }
+    this.geometry = new BufferGeometry();
+    this.geometry.setIndex(new BufferAttribute(index, 1));
+    this.geometry.setAttribute("corner", new BufferAttribute(corners, form.size));
+    for (const [name, [, width]] of Object.entries(attributes)) {
+      const attribute = new BufferAttribute(new Float32Array(most * this.copies * width), width);
+      this.geometry.setAttribute(name, attribute.setUsage(DynamicDrawUsage));
+    }
+  }
+
+  /** Takes the numbers of the first `count` items. */
+  update(count) {
+    for (const [name, [array, width]] of Object.entries(this.attributes)) {
+      const attribute = this.geometry.attributes[name];
+      spread(array, width, this.copies, attribute.array, count);
+      attribute.clearUpdateRanges();
+      attribute.addUpdateRange(0, count * this.copies * width);
+      attribute.needsUpdate = true;
+    }
+    this.geometry.setDrawRange(0, count * this.perItem);
+  }
+}
+
+function repeated(form, count, attributes) {
+  const made = new Repeated(form, count, attributes);
+  made.update(count);
+  return made.geometry;
 }
 
 function layer(geometry, uniforms, vertex, fragment, order) {
@@ -58,7 +95,7 @@ export function capsules(list, uniforms, order) {
     fill.set(item.fill, 3 * i);
     edge.set(item.edge, 3 * i);
   });
-  const geometry = instanced(QUAD, 2, list.length, {
+  const geometry = repeated(QUAD, list.length, {
     ends: [ends, 4], radius: [radius, 1], pose: [pose, 1], fill: [fill, 3], edge: [edge, 3] });
   return layer(geometry, uniforms, `
 in vec2 corner; in vec4 ends; in float radius; in float pose; in vec3 fill; in vec3 edge;
@@ -92,13 +129,17 @@ void main() {
 }`, order);
 }
 
-/** Filled triangles: [{pose, points, colour}], three points each. */
+/** Filled triangles: [{pose, points, colour, triangles}]; without `triangles` three points each. */
 export function fills(list, uniforms, order) {
   const count = list.reduce((sum, item) => sum + item.points.length / 2, 0);
   const at = new Float32Array(2 * count), pose = new Float32Array(count), colour = new Float32Array(3 * count);
+  const index = [];
   let next = 0;
   for (const item of list) {
     at.set(item.points, 2 * next);
+    for (let i = 0; i < (item.triangles ?? item.points).length / (item.triangles ? 1 : 2); ++i) {
+      index.push(next + (item.triangles ? item.triangles[i] : i));
+    }
     for (let i = 0; i < item.points.length / 2; ++i, ++next) {
       pose[next] = item.pose;
       colour.set(item.colour, 3 * next);
@@ -108,7 +149,7 @@ export function fills(list, uniforms, order) {
   geometry.setAttribute("at", new BufferAttribute(at, 2));
   geometry.setAttribute("pose", new BufferAttribute(pose, 1));
   geometry.setAttribute("colour", new BufferAttribute(colour, 3));
-  geometry.setDrawRange(0, count);
+  geometry.setIndex(new BufferAttribute(Uint32Array.from(index), 1));
   return layer(geometry, uniforms, `
 in vec2 at; in float pose; in vec3 colour;
 out vec3 inside;
@@ -134,7 +175,7 @@ export function lines(list, uniforms, order) {
     width[i] = item.width;
     colour.set(item.colour, 3 * i);
   });
-  const geometry = instanced(QUAD, 2, list.length, {
+  const geometry = repeated(QUAD, list.length, {
     bases: [poses, 2], ends: [ends, 4], piece: [piece, 4], width: [width, 1], colour: [colour, 3] });
   return layer(geometry, uniforms, `
 in vec2 corner; in vec2 bases; in vec4 ends; in vec4 piece; in float width; in vec3 colour;
@@ -166,10 +207,9 @@ export class Marks {
     this.look = new Float32Array(2 * most); // size, form
     this.colour = new Float32Array(4 * most);
     this.count = 0;
-    const geometry = instanced(QUAD, 2, 0, {
+    this.all = new Repeated(QUAD, most, {
       at: [this.at, 2], pose: [this.pose, 1], look: [this.look, 2], colour: [this.colour, 4] });
-    for (const name of ["at", "pose", "look", "colour"]) geometry.attributes[name].setUsage(DynamicDrawUsage);
-    this.mesh = layer(geometry, uniforms, `
+    this.mesh = layer(this.all.geometry, uniforms, `
 in vec2 corner; in vec2 at; in float pose; in vec2 look; in vec4 colour;
 out vec2 place; out float size; out float form; out vec4 inside;
 void main() {
@@ -203,9 +243,7 @@ void main() {
   }
 
   update() {
-    const geometry = this.mesh.geometry;
-    for (const name of ["at", "pose", "look", "colour"]) geometry.attributes[name].needsUpdate = true;
-    geometry.instanceCount = this.count;
+    this.all.update(this.count);
     this.mesh.visible = this.count > 0;
   }
 }
@@ -217,11 +255,11 @@ export class Arrows {
     this.colour = new Float32Array(3 * most);
     this.count = 0;
     // Along the arrow (0: foot, 1: head), along the head (0: its base, 1: its tip), across [pixels].
-    const shaft = [0, 0, -0.9, 1, 0, -0.9, 1, 0, 0.9, 0, 0, -0.9, 1, 0, 0.9, 0, 0, 0.9];
+    const shaft = [0, 0, -0.9, 1, 0, -0.9, 1, 0, 0.9, 0, 0, 0.9];
     const head = [1, 0, -4, 1, 1, 0, 1, 0, 4];
-    const geometry = instanced([...shaft, ...head], 3, 0, { place: [this.place, 4], colour: [this.colour, 3] });
-    for (const name of ["place", "colour"]) geometry.attributes[name].setUsage(DynamicDrawUsage);
-    this.mesh = layer(geometry, uniforms, `
+    const form = { corners: [...shaft, ...head], size: 3, triangles: [0, 1, 2, 0, 2, 3, 4, 5, 6] };
+    this.all = new Repeated(form, most, { place: [this.place, 4], colour: [this.colour, 3] });
+    this.mesh = layer(this.all.geometry, uniforms, `
 in vec3 corner; in vec4 place; in vec3 colour;
 uniform float arrowScale;
 out vec3 inside;
@@ -251,9 +289,7 @@ void main() { paint = vec4(inside, 1.0); }`, order);
   }
 
   update() {
-    const geometry = this.mesh.geometry;
-    for (const name of ["place", "colour"]) geometry.attributes[name].needsUpdate = true;
-    geometry.instanceCount = this.count;
+    this.all.update(this.count);
     this.mesh.visible = this.count > 0;
   }
 }

@@ -1,18 +1,20 @@
 // Outlines of rounded convex polygons, and links as pieces of lines.
 
-const ARC = 8; // straight pieces of a quarter of a circle
+const ARC = 8; // straight pieces of a quarter of a circle, less where it is small beside the polygon
 
 /** Corners of a convex polygon that is widened by a radius, counter-clockwise: [x, y, ...]. */
 export function widened(points, radius) {
   const corners = counterClockwise(points);
   if (!(radius > 0)) return corners;
   const out = [], count = corners.length / 2;
+  const size = Math.max(...corners.map(Math.abs));
+  const arc = Math.max(1, Math.round(ARC * Math.min(1, Math.sqrt(radius / size))));
   for (let i = 0; i < count; ++i) {
     const [a, b, c] = [(i + count - 1) % count, i, (i + 1) % count].map((k) => [corners[2 * k], corners[2 * k + 1]]);
     const from = Math.atan2(b[1] - a[1], b[0] - a[0]) - Math.PI / 2;
     let turn = Math.atan2(c[1] - b[1], c[0] - b[0]) - Math.PI / 2 - from;
     if (turn < 0) turn += 2 * Math.PI;
-    const pieces = Math.max(1, Math.ceil((turn / (Math.PI / 2)) * ARC));
+    const pieces = Math.max(1, Math.ceil((turn / (Math.PI / 2)) * arc));
     for (let k = 0; k <= pieces; ++k) {
       const angle = from + (turn * k) / pieces;
       out.push(b[0] + radius * Math.cos(angle), b[1] + radius * Math.sin(angle));
@@ -34,12 +36,10 @@ function counterClockwise(points) {
   return turned;
 }
 
-/** Triangles of a convex polygon. */
+/** Triangles of a convex polygon, by the numbers of its corners. */
 export function fan(points) {
   const out = [];
-  for (let i = 2; i < points.length / 2; ++i) {
-    out.push(points[0], points[1], ...points.slice(2 * i - 2, 2 * i + 2));
-  }
+  for (let i = 2; i < points.length / 2; ++i) out.push(0, i - 1, i);
   return out;
 }
 

@@ -58,7 +58,7 @@ export class RunScene {
     const outlines = recording.polygons.map(([pose, radius, points]) => ({ pose, points: widened(points, radius) }));
     three.add(capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2));
     three.add(fills(outlines.map(({ pose, points }) => (
-      { pose, points: fan(points), colour: this.look(pose).fill })), uniforms, 3));
+      { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3));
     three.add(lines(outlines.flatMap(({ pose, points }) => (
       along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4));
     three.add(capsules(round.filter((item) => !this.isGround(item.pose)), uniforms, 5));
