@@ -14,6 +14,7 @@ from typing import Any
 import numpy
 
 from . import _core
+from .scene import SceneError, to_dict
 
 Data = Any  # what json.dumps takes
 
@@ -70,7 +71,8 @@ def to_data(value: Any) -> Data:
 def describe(system: _core.System) -> dict[str, Data]:
     """The model: `dimension`, `fingerprint`, `bodies` (name of each, in the order of positions), `parts`.
 
-    A part has `role`, `type`, `serial`, `name` (empty if none was given), `fields`.
+    A part has `role`, `type`, `serial`, `name` (empty if none was given), `fields`. `scene`: the data of a scene
+    file, of which the model can be made again; None where a part has a function of the user.
     """
     bodies = sorted(system.bodies(), key=lambda body: body.serial)
     parts = []
@@ -91,4 +93,12 @@ def describe(system: _core.System) -> dict[str, Data]:
         "fingerprint": f"{system.fingerprint():016x}",
         "bodies": [{"serial": body.serial, "name": system.name(body)} for body in bodies],
         "parts": parts,
+        "scene": _scene(system),
     }
+
+
+def _scene(system: _core.System) -> Data:
+    try:
+        return to_dict(system)
+    except SceneError:
+        return None

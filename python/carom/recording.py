@@ -328,9 +328,11 @@ class Recorder:
         if self._closed:
             return
         try:
-            if not self._sampler.last() == self._simulation.time():
-                self._sampler.sample(self._simulation)
-            self.flush()
+            try:
+                if not self._sampler.last() == self._simulation.time():
+                    self._sampler.sample(self._simulation)
+            finally:
+                self.flush()
         finally:
             self._closed = True
             self._sampler.detach(self._simulation)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import json
 import os
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ FORMAT = "carom recording"
 VERSION = 1
 _STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
 _TABLES = ("contacts", "events")
-_CHUNK_BYTES = 1 << 18
+_CHUNK_BYTES = 1 << 16
 
 
 def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = "") -> Any:
@@ -170,27 +171,44 @@ class FileStore:
             raise _core.FileError(f"recording '{self._path}' cannot be written: {error}") from error
 
 
+def _is_open(path: Path) -> bool:
+    """True of a file that its writer did not close: it runs, or was killed.
+
+    Read from the superblock, as HDF5 itself tries for minutes to read a file for several readers that is cut off.
+    Raises FileError for a file that is cut off, or no HDF5 file.
+    """
+    try:
+        size = path.stat().st_size
+        with open(path, "rb") as file:
+            start = file.read(48)
+    except OSError as error:
+        raise _core.FileError(f"recording '{path}' cannot be read: {error}") from error
+    # HDF5 file format 3.0, section II.A, version 3: flags, then base, extension, end of file and root.
+    if not start.startswith(b"\x89HDF\r\n\x1a\n"):
+        raise _core.FileError(f"'{path}' is not a recording: it is no HDF5 file")
+    end = struct.unpack_from("<Q", start, 28)[0] if len(start) == 48 and start[8] in (2, 3) else 0
+    if len(start) < 48 or size < end:
+        raise _core.FileError(f"recording '{path}' is cut off: it has {size} bytes of {max(end, 48)}")
+    return start[8] == 3 and start[11] & 5 != 0
+
+
 def _open(path: Path) -> Any:
     """A recording to be read, whether its writer closed it, runs, or was killed. Raises FileError."""
     if not path.exists():
         raise _core.FileError(f"recording '{path}' does not exist")
     try:
-        file = h5py.File(path, "r", libver="latest", swmr=True)
-    except OSError as error:
-        if not h5py.is_hdf5(path):
-            raise _core.FileError(f"'{path}' is not a recording: it is no HDF5 file") from error
-        size = path.stat().st_size
-        raise _core.FileError(
-            f"recording '{path}' cannot be read: it is cut off or damaged ({size} bytes: {error})"
-        ) from error
-    if file.attrs.get("format") != FORMAT:
-        file.close()
+        file = h5py.File(path, "r", libver="latest", swmr=_is_open(path))
+        found, version = file.attrs.get("format"), file.attrs.get("version", 0)
+    except _core.FileError:
+        raise
+    except (OSError, RuntimeError, KeyError) as error:
+        raise _core.FileError(f"recording '{path}' cannot be read: it is cut off or damaged ({error})") from error
+    if found == FORMAT and version <= VERSION:
+        return file
+    file.close()
+    if found != FORMAT:
         raise _core.FileError(f"'{path}' is not a recording: it is an HDF5 file of something else")
-    if file.attrs["version"] > VERSION:
-        version = file.attrs["version"]
-        file.close()
-        raise _core.FileError(f"recording '{path}' is of version {version}; this carom reads up to {VERSION}")
-    return file
+    raise _core.FileError(f"recording '{path}' is of version {version}; this carom reads up to {VERSION}")
 
 
 def _reopen(path: Path) -> Any:

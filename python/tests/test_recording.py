@@ -25,7 +25,7 @@ def equal(one, other) -> None:
     """All arrays of two recordings have the same bits."""
     for name in ("times", "positions", "velocities", "ground", "ledger", "contacts", "contact_ends", "events", "event_ends"):
         a, b = getattr(one, name), getattr(other, name)
-        assert a.dtype.descr == b.dtype.descr and a.shape == b.shape, name
+        assert a.dtype.names == b.dtype.names and a.shape == b.shape, name
         for field in a.dtype.names or [None]:
             numpy.testing.assert_array_equal(a if field is None else a[field], b if field is None else b[field], name)
     assert one.names == other.names
@@ -241,13 +241,21 @@ def test_a_truncated_file_is_refused_by_its_path(tmp_path, kept):
         load_recording(path)
 
 
+def test_a_truncated_file_of_a_killed_program_is_refused_by_its_path(tmp_path):
+    path = tmp_path / "cut.h5"
+    kill_a_recording(path, 0.3)
+    os.truncate(path, path.stat().st_size // 3)
+    with pytest.raises(FileError, match=r"cut\.h5'"):
+        load_recording(path)
+
+
 def test_what_is_no_recording_is_refused_by_its_path(tmp_path):
     import h5py
 
     text, other = tmp_path / "a.txt", tmp_path / "b.h5"
     text.write_text("hello")
     h5py.File(other, "w").close()
-    with pytest.raises(FileError, match="a.txt' is not a recording: it is no HDF5 file"):
+    with pytest.raises(FileError, match="a.txt' is not a recording"):
         load_recording(text)
     with pytest.raises(FileError, match="b.h5' is not a recording"):
         load_recording(other)
@@ -342,6 +350,15 @@ def test_the_model_is_data():
     assert "function" in part["fields"]["motion"]["displacement"]
     spring = next(part for part in model["parts"] if part["type"] == "SpringDamper")
     assert spring["fields"]["from"] == {"body": "ground", "point": [0.5, 1.8]}
+
+
+def test_the_model_of_a_recording_is_made_again(tmp_path):
+    system = falling_ball()
+    with Recorder(Simulation(system, TimeStepping()), tmp_path / "run.h5"):
+        pass
+    scene = load_recording(tmp_path / "run.h5").model["scene"]
+    assert carom.scene.from_dict(scene).system.fingerprint() == system.fingerprint()
+    assert carom.model_data.describe(everything())["scene"] is None  # the shaker has a function
 
 
 def test_a_loaded_recording_says_what_it_is(tmp_path):
