@@ -9,6 +9,7 @@ of their pose [m].
     particles [pose]
     fills     [pose, [x, y, ...]]             triangles of solid ground, three points each
     lines     [pose, [x, y, ...]]             its surface
+    struts    [pose, x, y]                    from the centre of a body without outline to an end of a link or joint
     links     [kind, pose, x, y, pose, x, y]  springs and rods between two ends
     joints    [kind, pose, x, y, axis or null]
 """
@@ -53,11 +54,19 @@ class Drawing:
         self.particles: list[int] = []
         self.fills: list[list[Any]] = []
         self.lines: list[list[Any]] = []
+        self.struts: list[list[float]] = []
         self.links: list[list[Any]] = []
         self.joints: list[list[Any]] = []
         self._next_pose = len(model["bodies"]) + 1
+        shaped = {part["fields"]["body"] for part in model["parts"] if part["role"] == "shape"}
+        rigid = {part["serial"] for part in model["parts"] if part["type"] == "RigidBody"}
+        self._bare = {self._pose_of_body[serial] for serial in rigid - shaped if serial in self._pose_of_body}
         for part in model["parts"]:
             self._add(part)
+        self._add_centres()
+
+    def _add_centres(self) -> None:
+        self.joints += [["centre", pose, 0.0, 0.0, None] for pose in sorted(self._bare)]
 
     def data(self) -> dict[str, Any]:
         """All lists by name."""
@@ -77,13 +86,19 @@ class Drawing:
             self._add_joint(_JOINTS[kind], fields)
 
     def _end(self, end: dict[str, Any]) -> list[float]:
-        return [self._pose_of_body[end["body"]], *end["point"][:2]]
+        pose = self._pose_of_body[end["body"]]
+        x, y = end["point"][:2]
+        if pose in self._bare and (x, y) != (0.0, 0.0):
+            self.struts.append([pose, x, y])
+        return [pose, x, y]
 
     def _add_joint(self, kind: str, fields: dict[str, Any]) -> None:
         if kind in ("slide", "slot"):
             axis = fields.get("axis") or [fields["normal"][1], -fields["normal"][0]]
             length = math.hypot(*axis)
             self.joints.append(["axis", *self._end(fields["from"]), [axis[0] / length, axis[1] / length]])
+        else:
+            self._end(fields["from"])
         self.joints.append([kind, *self._end(fields["to"]), None])
 
     def _add_shape(self, kind: str, fields: dict[str, Any]) -> None:

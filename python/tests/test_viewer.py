@@ -54,7 +54,8 @@ def test_every_part_that_has_a_place_is_drawn():
     assert [item[0] for item in drawing["polygons"]] == [13, 14, 3]
     assert drawing["particles"] == [6, 9]
     assert [link[0] for link in drawing["links"]] == ["spring", "rod"]
-    assert [joint[0] for joint in drawing["joints"]] == ["pin", "axis", "slide"]
+    assert [joint[0] for joint in drawing["joints"]] == ["pin", "axis", "slide", "centre", "centre"]
+    assert drawing["struts"] == [[7, -0.3, 0.0]]  # of the arm, which has no outline
 
 
 def test_solid_ground_is_on_its_side():

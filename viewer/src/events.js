@@ -5,6 +5,11 @@ import { lastNotAfter, shown } from "./data.js";
 
 const ROW = 40; // [pixels]
 
+/** The name of a contact by its bodies, without their shapes. */
+function short(name) {
+  return name.replace(/[a-z-]+ (?:#\d+|'[^']*') \(feature \d+\) of /g, "");
+}
+
 export class EventList {
   constructor(element, recording, seek) {
     this.element = element;
@@ -90,7 +95,7 @@ export class EventList {
     const impulse = Math.hypot(recording.event_impulse[2 * number], recording.event_impulse[2 * number + 1]);
     const details = impulse > 0 ? `${shown(impulse)} N s` : recording.modes[recording.event_mode[number]].replace("_", " ");
     row.append(dot, line("time", `${recording.event_time[number].toFixed(5)} s`), line("kind", kind.replaceAll("_", " ")),
-      line("details", details), line("part", recording.names[recording.event_name[number]]));
+      line("details", details), line("part", short(recording.names[recording.event_name[number]])));
     row.title = recording.names[recording.event_name[number]];
     return row;
   }

@@ -6,9 +6,10 @@ import { shown } from "./data.js";
 
 const STORED = ["kinetic", "gravity", "elastic", "potential"];
 const GAINS = ["external", "intervention"];
+const ROUNDING = 1e-7; // of the largest energy; the page has 24 bits of each
 const MARGIN = { left: 62, right: 14, top: 8, bottom: 20 };
 
-/** Lines of a ledger: those that are not zero throughout. */
+/** Lines of a ledger: those that are more than rounding. */
 function seriesOf(recording) {
   const { ledger_terms: terms, ledger, times } = recording;
   const width = terms.length;
@@ -24,10 +25,13 @@ function seriesOf(recording) {
     ...STORED.map((term) => ({ name: term, values: column(term), isShown: true })),
     { name: "lost", values: lost, colour: "#8a1c1c", dash: [5, 3], isShown: true },
     ...flows.map((term) => ({ name: term, values: column(term), dash: [2, 2], isShown: false })),
-  ].filter(({ name, values }) => name === "total" || values.some((value) => value !== 0));
+  ];
+  const largest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  const scale = Math.max(...list.map(({ values }) => largest(values)));
+  const seen = list.filter(({ name, values }) => name === "total" || largest(values) > ROUNDING * scale);
   let next = 0;
-  for (const series of list) series.colour ??= SERIES[next++ % SERIES.length];
-  return list;
+  for (const series of seen) series.colour ??= SERIES[next++ % SERIES.length];
+  return seen;
 }
 
 /** Round distances between marks of an axis. */

@@ -9,6 +9,7 @@ import { Poses } from "./poses.js";
 
 const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
 const MOST_FLASHES = 400;
+const CLEAR_FLASHES = 20; // the marks of older events are fainter, so that many do not hide the bodies
 const ARROW = 60; // pixels of the arrow of a large impulse
 
 export class RunScene {
@@ -70,10 +71,13 @@ export class RunScene {
     const axes = recording.joints.filter(([kind]) => kind === "axis");
     const list = recording.links.flatMap((item) => (
       link(item, item[0] === "rod" ? 3.2 : 1.5, item[0] === "rod" ? rod : dark)));
-    const reach = 0.5 * Math.hypot(recording.bounds[2] - recording.bounds[0], recording.bounds[3] - recording.bounds[1]);
+    const reach = 0.12 * Math.hypot(recording.bounds[2] - recording.bounds[0], recording.bounds[3] - recording.bounds[1]);
     for (const [, pose, x, y, [ux, uy]] of axes) {
       list.push({ poseA: pose, ax: x - reach * ux, ay: y - reach * uy, poseB: pose, bx: x + reach * ux,
         by: y + reach * uy, width: 0.8, colour: dark });
+    }
+    for (const [pose, x, y] of recording.struts) {
+      list.push({ poseA: pose, ax: 0, ay: 0, poseB: pose, bx: x, by: y, width: 3.2, colour: rod });
     }
     three.add(lines(list, uniforms, 6));
     const ends = recording.links.flatMap(([, a, ax, ay, b, bx, by]) => [[a, ax, ay], [b, bx, by]]);
@@ -81,7 +85,7 @@ export class RunScene {
     const marks = new Marks(recording.particles.length + ends.length + rest.length, uniforms, 7);
     for (const [pose, x, y] of ends) marks.add(pose, x, y, 2.5, this.isGround(pose) ? 2 : 0, dark);
     for (const pose of recording.particles) marks.add(pose, 0, 0, 6, 0, colours.rgb("#7d93ad"));
-    const forms = { pin: [4, 1], weld: [4, 2], slide: [5, 2], slot: [4, 1], point: [1.8, 0] };
+    const forms = { pin: [4, 1], weld: [4, 2], slide: [5, 2], slot: [4, 1], point: [1.8, 0], centre: [3, 0] };
     for (const [kind, pose, x, y] of rest) marks.add(pose, x, y, ...forms[kind], dark);
     marks.update();
     three.add(marks.mesh);
@@ -129,7 +133,8 @@ export class RunScene {
     for (let i = last; i >= 0 && times[i] > time - length && this.flashes.count < MOST_FLASHES; --i) {
       if (normal[2 * i] === 0 && normal[2 * i + 1] === 0) continue; // it is at no place
       const age = (time - times[i]) / length;
-      this.flashes.add(0, point[2 * i], point[2 * i + 1], 5 + 9 * age, 3, this.kindColours[kind[i]], 1 - age);
+      const clear = last - i < CLEAR_FLASHES ? 1 : CLEAR_FLASHES / (last - i);
+      this.flashes.add(0, point[2 * i], point[2 * i + 1], 4 + 7 * age, 3, this.kindColours[kind[i]], clear * (1 - age));
     }
     this.flashes.update();
   }
