@@ -205,12 +205,16 @@ void Sampler::read_states(const Simulation& simulation) {
   const State& state = simulation.state();
   auto& [times, positions, velocities, places, ledger] = block_.next;
   put(times, state.time);
+  // Pointers of its own, which stay in registers.
+  double *to_q = positions, *to_v = velocities;
   for (const BodySlot& slot : slots_) {
-    const bool has_angle = dimension_ == 2 && slot.rotation != none;
-    const std::size_t count = dimension_ == 3 || has_angle ? 3 : 2;
-    for (std::size_t i = 0; i < 3; ++i) put(positions, i < count ? state.q[slot.q + i] : 0.0);
-    for (std::size_t i = 0; i < 3; ++i) put(velocities, i < count ? state.v[slot.v + i] : 0.0);
+    const double *const q = &state.q[slot.q], *const v = &state.v[slot.v];
+    const bool has_third = dimension_ == 3 || slot.rotation != none;
+    to_q[0] = q[0], to_q[1] = q[1], to_q[2] = has_third ? q[2] : 0.0;
+    to_v[0] = v[0], to_v[1] = v[1], to_v[2] = has_third ? v[2] : 0.0;
+    to_q += 3, to_v += 3;
   }
+  positions = to_q, velocities = to_v;
   const auto& shapes = simulation.system().ground_shape_kinds();
   for (const Index serial : moved_) {
     const auto at = shapes.place(serial);
