@@ -107,7 +107,7 @@ void main() {
   vec2 u = isDisc > 0.5 ? vec2(1.0, 0.0) : normalize(along);
   size = max(radius, 0.75 * pixel);
   unit = pixel;
-  at = corner * (vec2(halfLength, 0.0) + size + pixel);
+  at = corner * (vec2(halfLength, 0.0) + size + 0.5 * pixel);
   inside = picked == pose ? pickedColour : fill;
   border = edge;
   vec2 local = 0.5 * (ends.xy + ends.zw) + at.x * u + at.y * vec2(-u.y, u.x);
@@ -118,7 +118,6 @@ void main() {
   vec2 q = vec2(max(abs(at.x) - halfLength, 0.0), at.y);
   float d = length(q) - size;
   float cover = clamp(0.5 - d / unit, 0.0, 1.0);
-  if (cover <= 0.0) discard;
   float width = min(1.3 * unit, 0.22 * size);
   float isEdge = clamp(0.5 + (d + width) / unit, 0.0, 1.0);
   if (isDisc > 0.5 && at.x > 0.0) {

@@ -11,7 +11,6 @@ import { RunScene } from "./scene.js";
 
 const element = (id) => document.getElementById(id);
 const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
-const ARROW_PIXELS = 60;
 
 class Page {
   constructor() {
@@ -26,7 +25,8 @@ class Page {
       this.player.seek(time);
     };
     this.events = new EventList(element("events"), this.recording, seek);
-    this.plot = new LedgerPlot(element("ledger"), element("legend"), this.recording, (time) => this.player.seek(time));
+    this.plot = new LedgerPlot(
+      element("ledger"), element("cursor"), element("legend"), this.recording, (time) => this.player.seek(time));
     this.frames = 0;
     this.addTexts();
     this.addControls();
@@ -70,7 +70,6 @@ class Page {
     const impulse = this.scene.impulseOfArrow();
     element("arrow").hidden = !(impulse > 0);
     element("arrow").lastElementChild.textContent = `${shown(impulse)} N s`;
-    element("arrow").firstElementChild.style.width = `${ARROW_PIXELS}px`;
   }
 
   addControls() {
@@ -186,6 +185,7 @@ class Page {
   /** A round length that is about 100 pixels long. */
   drawScale() {
     const rough = 100 / this.camera.scale, power = 10 ** Math.floor(Math.log10(rough));
+    element("arrow").firstElementChild.style.width = `${this.scene.arrowLength(this.camera)}px`;
     const length = power * [5, 2, 1].find((factor) => factor * power <= rough);
     element("scale").firstElementChild.style.width = `${length * this.camera.scale}px`;
     element("scale").lastElementChild.textContent = `${shown(length)} m`;

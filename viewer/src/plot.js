@@ -44,12 +44,13 @@ function marks(low, high, most) {
 }
 
 export class LedgerPlot {
-  constructor(canvas, legend, recording, seek) {
+  /** cursor: the element that is a line at the present time, beside which nothing is drawn anew. */
+  constructor(canvas, cursor, legend, recording, seek) {
     this.canvas = canvas;
+    this.cursor = cursor;
     this.legend = legend;
     this.times = recording.times;
     this.series = seriesOf(recording);
-    this.still = document.createElement("canvas"); // all but the line of the present
     this.makeLegend();
     const go = (event) => {
       const inside = (event.offsetX - MARGIN.left) / (canvas.clientWidth - MARGIN.left - MARGIN.right);
@@ -77,7 +78,6 @@ export class LedgerPlot {
         series.isShown = !series.isShown;
         mark();
         this.resize();
-        this.draw(this.time, this.sample);
       });
       return item;
     }));
@@ -86,10 +86,8 @@ export class LedgerPlot {
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
     this.ratio = Math.min(window.devicePixelRatio, 2);
-    for (const canvas of [this.canvas, this.still]) {
-      canvas.width = clientWidth * this.ratio;
-      canvas.height = clientHeight * this.ratio;
-    }
+    this.canvas.width = clientWidth * this.ratio;
+    this.canvas.height = clientHeight * this.ratio;
     let low = 0, high = 0;
     for (const { values, isShown } of this.series) {
       if (!isShown) continue;
@@ -100,7 +98,8 @@ export class LedgerPlot {
     }
     if (high === low) high = low + 1;
     this.range = [low - 0.04 * (high - low), high + 0.06 * (high - low)];
-    this.drawStill();
+    this.drawLines();
+    if (this.sample !== undefined) this.draw(this.time, this.sample);
   }
 
   x(time) {
@@ -114,8 +113,8 @@ export class LedgerPlot {
     return MARGIN.top + ((this.range[1] - value) / (this.range[1] - this.range[0])) * height;
   }
 
-  drawStill() {
-    const pen = this.still.getContext("2d");
+  drawLines() {
+    const pen = this.canvas.getContext("2d");
     const { clientWidth, clientHeight } = this.canvas;
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     pen.clearRect(0, 0, clientWidth, clientHeight);
@@ -157,19 +156,10 @@ export class LedgerPlot {
   }
 
   draw(time, sample) {
+    this.cursor.style.transform = `translateX(${Math.round(this.x(time))}px)`;
+    if (sample !== this.sample) {
+      for (const { value, values } of this.series) value.textContent = `${shown(values[sample])} J`;
+    }
     [this.time, this.sample] = [time, sample];
-    const pen = this.canvas.getContext("2d");
-    pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    pen.drawImage(this.still, 0, 0);
-    pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    const x = Math.round(this.x(time)) + 0.5;
-    pen.strokeStyle = "#1f2933";
-    pen.lineWidth = 1;
-    pen.beginPath();
-    pen.moveTo(x, MARGIN.top);
-    pen.lineTo(x, this.canvas.clientHeight - MARGIN.bottom);
-    pen.stroke();
-    for (const { value, values } of this.series) value.textContent = `${shown(values[sample])} J`;
   }
 }

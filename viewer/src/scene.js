@@ -10,7 +10,10 @@ import { Poses } from "./poses.js";
 const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
 const MOST_FLASHES = 400;
 const CLEAR_FLASHES = 20; // the marks of older events are fainter, so that many do not hide the bodies
-const ARROW = 60; // pixels of the arrow of a large impulse
+const ARROW = [10, 60]; // least and most pixels of the arrow of a large impulse, three bodies long between
+const DOT = [0.8, 2.2]; // least and most pixels of the radius of a contact's mark
+
+const within = ([least, most], value) => Math.min(Math.max(value, least), most);
 
 export class RunScene {
   constructor(canvas, recording) {
@@ -33,6 +36,7 @@ export class RunScene {
     this.addLinks();
     this.addContacts();
     this.largeImpulse = largeImpulse(recording.contact_impulse);
+    this.bodySize = bodySize(recording);
   }
 
   isGround(pose) { return pose === 0 || pose > this.recording.bodies.length; }
@@ -119,7 +123,7 @@ export class RunScene {
       const [x, y, nx, ny] = [point[2 * i], point[2 * i + 1], normal[2 * i], normal[2 * i + 1]];
       const [pn, pt] = [impulse[2 * i], impulse[2 * i + 1]];
       const colour = this.colourOfContact(i);
-      this.dots.add(0, x, y, 2.2, 0, colour);
+      this.dots.add(0, x, y, this.dotSize, 0, colour);
       if (pn !== 0 || pt !== 0) this.arrows.add(x, y, pn * nx + pt * ny, pn * ny - pt * nx, colour);
     }
     this.dots.update();
@@ -139,18 +143,27 @@ export class RunScene {
     this.flashes.update();
   }
 
-  /** Impulse of an arrow of ARROW pixels [N s]. */
+  /** Impulse of the arrow of the legend [N s]. */
   impulseOfArrow() { return this.largeImpulse; }
+
+  /** Length of that arrow [pixels]. */
+  arrowLength(camera) { return within(ARROW, 3 * this.bodySize * camera.scale); }
 
   draw(camera, { sample, fraction, time, speed }) {
     if (sample !== this.sample || fraction !== this.fraction) this.poses.fill(sample, fraction);
-    if (sample !== this.sample || this.contactsShown !== this.showsContacts) this.fillContacts(sample);
+    const dotSize = within(DOT, 0.25 * this.bodySize * camera.scale);
+    const isOther = this.contactsShown !== this.showsContacts || Math.abs(dotSize - this.dotSize) > 0.1;
+    if (sample !== this.sample || isOther) {
+      this.dotSize = dotSize;
+      this.fillContacts(sample);
+    }
     [this.sample, this.fraction, this.contactsShown] = [sample, fraction, this.showsContacts];
     this.fillFlashes(time, speed);
     camera.follow();
     camera.update();
     this.uniforms.pixel.value = 1 / camera.scale;
-    this.uniforms.arrowScale.value = this.largeImpulse > 0 ? ARROW / (camera.scale * this.largeImpulse) : 0;
+    this.uniforms.arrowScale.value =
+      this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
     this.renderer.render(this.three, camera.three);
   }
 
@@ -159,6 +172,15 @@ export class RunScene {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(clientWidth, clientHeight, false);
   }
+}
+
+/** Width of a body in the middle of all [m]. */
+function bodySize({ capsules: round, polygons, bounds }) {
+  const sizes = [
+    ...round.map(([, ax, ay, bx, by, radius]) => 2 * radius + Math.hypot(bx - ax, by - ay)),
+    ...polygons.map(([, radius, points]) => 2 * radius + Math.max(...points) - Math.min(...points)),
+  ].sort((a, b) => a - b);
+  return sizes.length ? sizes[sizes.length >> 1] : 0.05 * Math.max(bounds[2] - bounds[0], bounds[3] - bounds[1]);
 }
 
 /** An impulse that few exceed: of a sorted sample of all. */
