@@ -94,6 +94,13 @@ void RigidBodyKind<2>::apply_mass(Range slots, const double* v, double* p) const
 }
 
 double RigidBodyKind<2>::kinetic_energy(Range slots, const double* v) const {
+  const auto of_one = [&](const Inertia& body, const double* at) {
+    return Pair{0.5 * body.mass * (at[0] * at[0] + at[1] * at[1]), 0.5 * body.inertia * at[2] * at[2]};
+  };
+  if (slots.size() == 1) {  // the same without sums, which a step of one body would wait for
+    const Pair energy = of_one(masses_[slots.begin], v);
+    return energy[0] + energy[1];
+  }
   PairSum moving, spinning;  // two bodies side by side
   Index slot = slots.begin;
   for (; slot + 1 < slots.end; slot += 2, v += 6) {
@@ -103,9 +110,9 @@ double RigidBodyKind<2>::kinetic_energy(Range slots, const double* v) const {
     spinning.add(0.5 * Pair{a.inertia, b.inertia} * spin * spin);
   }
   if (slot < slots.end) {
-    const Inertia& last = masses_[slot];
-    moving.add(Pair{0.5 * last.mass * (v[0] * v[0] + v[1] * v[1]), 0.0});
-    spinning.add(Pair{0.5 * last.inertia * v[2] * v[2], 0.0});
+    const Pair last = of_one(masses_[slot], v);
+    moving.add(Pair{last[0], 0.0});
+    spinning.add(Pair{last[1], 0.0});
   }
   moving.add(spinning);
   return moving.accurate_value();
@@ -123,6 +130,7 @@ double RigidBodyKind<2>::weight_potential(Range slots, const double* g, const do
     const double* const at = q + 3 * i;
     return -masses_[slots.begin + i].mass * (g[0] * at[0] + g[1] * at[1]);
   };
+  if (slots.size() == 1) return potential(0);
   PairSum sum;
   Index i = 0;
   for (; i + 1 < slots.size(); i += 2) sum.add(Pair{potential(i), potential(i + 1)});

@@ -1,4 +1,5 @@
 #include <carom/bodies/shape_polygon.h>
+#include <carom/core/vector_length.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,8 @@ std::vector<Vec<2>> corners_of(std::vector<Vec<2>> vertices, double tolerance) {
   const auto is_no_corner = [&](std::size_t i) {
     const std::size_t n = vertices.size();
     const Vec<2> in = vertices[i] - vertices[(i + n - 1) % n], out = vertices[(i + 1) % n] - vertices[i];
-    if (in.stableNorm() <= tolerance) return true;
-    const double longer = std::max(in.stableNorm(), out.stableNorm());
+    if (length_of<2>(in) <= tolerance) return true;
+    const double longer = std::max(length_of<2>(in), length_of<2>(out));
     return in.dot(out) >= 0.0 && std::abs(cross(in, out)) <= tolerance * longer;
   };
   for (std::size_t i = 0, kept = 0; vertices.size() > 2 && kept < vertices.size();) {
@@ -56,10 +57,10 @@ void Polygon::check_area(const PartCheck& check) const {
   double magnitude = 0.0;
   for (const Vec<2>& vertex : vertices) {
     const Vec<2> arm = vertex - vertices.front();
-    if (arm.stableNorm() > along.stableNorm()) along = arm;
+    if (length_of<2>(arm) > length_of<2>(along)) along = arm;
     magnitude = std::max(magnitude, vertex.cwiseAbs().maxCoeff());
   }
-  const double length = along.stableNorm();
+  const double length = length_of<2>(along);
   if (length <= rounding * magnitude) {
     check.refuse("vertices", "one point, repeated", "at least three that do not lie on one line");
   }

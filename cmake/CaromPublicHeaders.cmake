@@ -18,12 +18,12 @@ set(carom_public_headers
     contact/detection/ground_piece_shapes.h
     contact/detection/half_space.h
     contact/detection/prescribed_motion.h
-    contact/solvers/impact_order.h
     contact/solvers/chain_statistics.h
     contact/solvers/contact_mode.h
     contact/solvers/contact_problem.h
     contact/solvers/contact_report.h
     contact/solvers/contact_solver.h
+    contact/solvers/impact_order.h
     contact/solvers/problem_file.h
     contact/solvers/residual.h
     contact/solvers/response_factors.h
@@ -87,6 +87,8 @@ set(carom_public_headers
     integrators/run/event_driven.h
     integrators/run/event_log.h
     integrators/run/impact_note.h
+    integrators/run/impact_rules.h
+    integrators/run/overlap_rules.h
     integrators/run/step_report.h
     integrators/run/stop_request.h
     integrators/run/time_stepping.h

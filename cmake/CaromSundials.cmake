@@ -12,11 +12,17 @@ if(SUNDIALS_VERSION VERSION_LESS 6.4 OR SUNDIALS_VERSION VERSION_GREATER_EQUAL 8
   message(FATAL_ERROR "carom needs SUNDIALS 6.4 or newer, below 8; found ${SUNDIALS_VERSION}")
 endif()
 
-list(TRANSFORM carom_sundials_components PREPEND "SUNDIALS::" OUTPUT_VARIABLE carom_sundials_targets)
-target_link_libraries(carom PRIVATE ${carom_sundials_targets})
+set(carom_sundials_parts ${carom_sundials_components})
 if(TARGET SUNDIALS::core) # what was "generic" before 7
-  target_link_libraries(carom PRIVATE SUNDIALS::core)
+  list(APPEND carom_sundials_parts core)
+elseif(CAROM_BUNDLE_DEPENDENCIES)
+  list(APPEND carom_sundials_parts generic)
 endif()
+list(TRANSFORM carom_sundials_parts PREPEND "SUNDIALS::")
+if(CAROM_BUNDLE_DEPENDENCIES)
+  list(TRANSFORM carom_sundials_parts APPEND "_static")
+endif()
+target_link_libraries(carom PRIVATE ${carom_sundials_parts})
 
 list(JOIN carom_sundials_components " " carom_sundials_list)
 string(APPEND carom_private_packages "find_dependency(SUNDIALS COMPONENTS ${carom_sundials_list})\n")

@@ -45,11 +45,12 @@ ImpulseWork work_of_impact(const IslandProblem& problem) {
   const std::span<const double> impulses = problem.impulses(), before = problem.before();
   std::vector<double> xi(impulses.size());
   problem.problem().velocities(impulses, xi);
+  const double factor = problem.restitution_factor();
   ImpulseWork work;
   std::size_t row = 0;
   for (const Constraint& constraint : problem.constraints()) {
     for (int i = 0; i < constraint.rows; ++i, ++row) {
-      work.add(impulses[row], before[row], xi[row] - constraint.restitution(i) * before[row]);
+      work.add(impulses[row], before[row], xi[row] - factor * constraint.restitution(i) * before[row]);
     }
   }
   return work;

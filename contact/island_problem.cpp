@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
@@ -111,15 +112,40 @@ void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
   }
 }
 
+/// Takes the restitution from a problem. False if it had none.
+/// \param given part of b that is kept, of a problem in factors
+bool remove_restitution(std::span<const double> before, std::span<double> restitution,
+                        std::span<double> given, ContactProblem& problem) {
+  bool any = false;
+  for (std::size_t row = 0; row < before.size(); ++row) {
+    const double part = std::exchange(restitution[row], 0.0) * before[row];
+    any = any || part != 0.0;
+    const bool held = problem.diagonal(static_cast<int>(row)) == 0.0;
+    if (!held || problem.vector()[row] != 0.0) problem.vector()[row] -= part;
+    if (!given.empty()) given[row] -= part;
+  }
+  return any;
+}
+
 }  // namespace
 
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
   constraints_ = constraints;
-  answer_.known = answer_.changed_modes = false;
-  if (constraints.size() == 1 && constraints[0].rows == 2 && is_one_planar_contact(problem_)) {
-    return take_one_planar(constraints[0], velocity_before);
+  answer_.known = answer_.changed_modes = jammed_ = false;
+  if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
+    return build_any(velocity_before);
   }
-  build_any(velocity_before);
+  // The hot path: one planar contact after another, so that only its numbers need to be filled in.
+  const Constraint& contact = constraints[0];
+  problem_.sets()[1].coefficient = contact.friction;
+  restitution_[0] = contact.law.normal_restitution;
+  restitution_[1] = contact.law.tangential_restitution;
+  for (int i = 0; i < 2; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    directions_[row].constraint = &contact;
+    before_[row] = contact.velocity(i, velocity_before);
+    answer_.impulse[row] = 0.0;
+  }
 }
 
 void IslandProblem::build_any(const double* velocity_before) {
@@ -134,8 +160,8 @@ void IslandProblem::build_any(const double* velocity_before) {
   }
   const auto count = static_cast<std::size_t>(rows);
   // A large W is not to be made before it is known whether anybody needs it.
-  const bool many = constraints.size() >= factors_.begin && constraints.size() <= factors_.end;
-  const bool factored = many && !constraints.empty() && fit_factors(constraints);
+  const bool many = !constraints.empty() && constraints.size() >= options_.factored_from;
+  const bool factored = many && fit_factors(constraints);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
@@ -163,19 +189,6 @@ void IslandProblem::build_any(const double* velocity_before) {
     }
   }
   if (!factored) problem_.group();  // factors are still to be written
-}
-
-/// The hot path: one planar contact after another, so that only its numbers need to be filled in.
-void IslandProblem::take_one_planar(const Constraint& contact, const double* velocity_before) {
-  problem_.sets()[1].coefficient = contact.friction;
-  restitution_[0] = contact.law.normal_restitution;
-  restitution_[1] = contact.law.tangential_restitution;
-  for (int i = 0; i < 2; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    directions_[row].constraint = &contact;
-    before_[row] = contact.velocity(i, velocity_before);
-    answer_.impulse[row] = 0.0;
-  }
 }
 
 void IslandProblem::respond(BodyResponse& response) {
@@ -263,6 +276,12 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
     impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
   } else {
     chain.solve(problem_, answer_);
+    if (options_.plastic_jams && !answer_.report.usable() &&
+        remove_restitution(before_, restitution_, scratch_.given, problem_)) {
+      jammed_ = true;
+      forget_impulses();  // those of a jam have grown without bound
+      chain.solve(problem_, answer_);
+    }
   }
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;

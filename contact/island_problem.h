@@ -27,16 +27,24 @@ namespace carom {
 /// millisecond, and are asked where sweeps do not end (large_problem_solver.h).
 inline constexpr std::size_t factored_constraints = 12;
 
+/// What an island may do beside solving its law to rounding; nothing of it unless asked for.
+struct IslandOptions {
+  /// Constraints from which on W stays in factors, and sweeps solve it (nonlinear_cg_solver.h), where these
+  /// belong to several bodies of the plane that answer for themselves. Answers are only as exact then as the
+  /// budget of the sweeps says.
+  std::size_t factored_from = std::numeric_limits<std::size_t>::max();
+  /// Contacts that jam and have no answer are solved with e = 0. Contacts jam where impulses P in their cones
+  /// cancel each other, H^T P = 0. Then P.b = P.(E gamma^-), over ground at rest; an answer demands that
+  /// it is not negative, and where e differ it may be. Without restitution it is 0, and there is an answer
+  /// (the matrix of the complementarity problem is copositive: Cottle, Pang and Stone 1992, theorem 3.8.6),
+  /// which adds no energy in an impact.
+  bool plastic_jams = false;
+};
+
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
 public:
-  /// Lets W stay in factors, and sweeps solve it (nonlinear_cg_solver.h), from so many constraints on, where
-  /// these belong to several bodies of the plane that answer for themselves. Never, unless this was called:
-  /// answers are only as exact then as the budget of the sweeps says.
-  /// \param most constraints up to which it may
-  void allow_factors(std::size_t constraints = factored_constraints, std::size_t most = no_limit) {
-    factors_ = {constraints, most};
-  }
+  explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
   /// forgotten; respond() is to be called next.
   void build(std::span<const Constraint> constraints, const double* velocity_before);
@@ -54,7 +62,8 @@ public:
   void set_free_velocity(const double* velocity_free);
   /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
   void set_velocity(const double* velocity);
-  /// Solves; the answer before, if there is one since build(), is where solvers start from.
+  /// Solves; the answer before, if there is one since build(), is where solvers start from. Where no solver
+  /// has an answer and plastic jams are allowed, all e are 0 from here to the next build().
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
   /// Impulses from which sweeps over a large island start, by row: those of the same constraints before, zero
   /// for new ones. Of no effect on a small one, whose start is its answer before. After respond().
@@ -80,6 +89,8 @@ public:
   }
   /// True if the last answer has other modes than the one before it since build().
   [[nodiscard]] bool changed_modes() const { return answer_.changed_modes; }
+  /// Factor of all e in the last answer: 1, or 0 of a plastic jam.
+  [[nodiscard]] double restitution_factor() const { return jammed_ ? 0.0 : 1.0; }
   /// Report of the last answer.
   [[nodiscard]] const ContactReport& report() const { return answer_.report; }
   /// Place of row 0 of a constraint, the others behind it.
@@ -93,14 +104,7 @@ public:
   }
 
 private:
-  void take_one_planar(const Constraint& contact, const double* velocity_before);
   void build_any(const double* velocity_before);
-
-  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
-  // Constraints from which on, and up to which, W may be left in factors.
-  struct Allowed {
-    std::size_t begin = no_limit, end = no_limit;
-  };
 
   // Solver of impacts by another law.
   struct ImpactChoice {
@@ -114,7 +118,8 @@ private:
     std::vector<double> given;          // part of b without velocities of bodies at the end
   };
 
-  Allowed factors_;
+  IslandOptions options_;
+  bool jammed_ = false;  // since build()
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
   Delassus delassus_;

@@ -76,6 +76,9 @@ public:
   /// jump.
   virtual void discontinuity_times(Index /*slot*/, std::vector<double>& /*out*/) const {}
 
+  /// True if the boundary that gap() describes is flat. Of others the curvature is found by differences of
+  /// gap(), which is called twice more for each contact. That of pieces is exact.
+  [[nodiscard]] virtual bool is_flat(Index /*slot*/) const { return false; }
   /// Distance of a point from a shape at rest. \param point 2 or 3 numbers [m]
   [[nodiscard]] virtual Gap gap(Index slot, const double* point) const = 0;
   /// Distance of a point from a moving shape, with the motion from place().

@@ -47,7 +47,7 @@ void write_discs(const carom::Simulation& now, const std::vector<carom::BodyId>&
   }
   std::ofstream file(path);
   if (!file) throw carom::FileError("'" + path + "' cannot be written");
-  file << "x [m],y [m],angle [rad],radius [m],force [N]\n" << std::setprecision(9);
+  file << "x [m],y [m],angle [rad],radius [m],force [N]\n" << std::setprecision(17);
   for (std::size_t i = 0; i < discs.size(); ++i) {
     const auto place = now.state().position(discs[i]);
     const double radius = scene.radius * (1.0 + scene.spread * scenes::scattered(static_cast<int>(i)));
@@ -80,7 +80,8 @@ int main(int count, char** arguments) try {
   const std::vector<carom::BodyId> discs = scenes::add_discs(system, scene);
   carom::Simulation simulation(system, carom::TimeStepping{.step = step});
   std::ofstream course(folder / "course.csv");
-  course << "time [s],kinetic [J],potential [J],lost normal [J],lost tangential [J],contacts,residual\n";
+  course << std::setprecision(17)
+         << "time [s],kinetic [J],potential [J],lost normal [J],lost tangential [J],contacts,residual\n";
   simulation.observe([&](const carom::Simulation& now) { write_row(now, course); });
   int picture = 0;
   for (const double time : times) {

@@ -44,7 +44,7 @@ double run(ImpactOrder order, double restitution, const std::filesystem::path& f
         "disc " + std::to_string(i + 1)));
     system.add(Disc{.body = discs.back(), .radius = radius});
   }
-  Simulation simulation(system, EventDriven{.impact_order = order});
+  Simulation simulation(system, EventDriven{.impact_rules = {.order = order}});
   std::ostringstream name;
   name << to_string(order) << "_" << restitution << ".csv";
   CsvRecorder recorder(simulation, (folder / name.str()).string());

@@ -36,7 +36,7 @@ void write_bodies(const carom::Simulation& now, const std::vector<scenes::DrumBo
                   const std::string& path) {
   std::ofstream file(path);
   if (!file) throw carom::FileError("'" + path + "' cannot be written");
-  file << "body,x [m],y [m],radius [m],angle [rad]\n" << std::setprecision(9);
+  file << "body,x [m],y [m],radius [m],angle [rad]\n" << std::setprecision(17);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double angle = now.state().angle(bodies[i].body);
     const auto place = now.state().position(bodies[i].body);
@@ -66,7 +66,8 @@ int main(int count, char** arguments) try {
   const std::vector<scenes::DrumBody> bodies = scenes::add_drum(system, {});
   carom::Simulation simulation(system, carom::TimeStepping{.step = step});
   std::ofstream course(folder / "course.csv");
-  course << "time [s],kinetic [J],potential [J],work [J],lost [J],residual [J],contacts\n";
+  course << std::setprecision(17)
+         << "time [s],kinetic [J],potential [J],work [J],lost [J],residual [J],contacts\n";
   simulation.observe([&](const carom::Simulation& now) { write_row(now, course); });
   int picture = 0;
   for (const double time : times) {

@@ -4,6 +4,7 @@
 #include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/checkpoint_bytes.h>
+#include <carom/integrators/checkpoint_statistics.h>
 
 #include <string>
 #include <string_view>
@@ -13,59 +14,8 @@ namespace carom {
 
 namespace {
 
-constexpr std::string_view mark = "carom checkpoint 7\n";
-/// Of checkpoints that know of joints and large contact problems nothing: a run goes on from one without
-/// guesses.
-constexpr std::string_view mark_before = "carom checkpoint 6\n";
-
-/// The numbers of Statistics, in the order in which they are saved.
-template <class S, class F>
-void for_statistics(S& s, F&& f) {
-  f(s.steps);
-  f(s.sweeps);
-  f(s.most_sweeps);
-  f(s.largest_contraction);
-  for (auto& count : s.steps_by_iteration) f(count);
-  f(s.fallbacks);
-  f(s.impacts);
-  f(s.contact_steps);
-  f(s.several_solutions);
-  f(s.forces_not_unique);
-  f(s.rejected_steps);
-  f(s.steps_across_impacts);
-  f(s.energy_gains);
-  f(s.energy_gained);
-  f(s.lasting_gains);
-  f(s.lasting_gained);
-  f(s.deepest_gap);
-  f(s.worst_residual);
-  for (auto& count : s.events) f(count);
-  f(s.flow_steps);
-  f(s.flow_evaluations);
-  f(s.flow_restarts);
-}
-
-/// Likewise those of the contact solvers. \param large whether there are those of large problems, whose
-/// solver is the last
-template <class S, class F>
-void for_contact_statistics(S& s, bool large, F&& f) {
-  const std::size_t solvers = large ? solver_count : solver_count - 1;
-  f(s.problems);
-  for (std::size_t i = 0; i < solvers; ++i) f(s.accepted[i]);
-  for (std::size_t i = 0; i < solvers; ++i) f(s.tried[i]);
-  f(s.fall_backs);
-  f(s.tolerated);
-  f(s.several_solutions);
-  f(s.forces_not_unique);
-  f(s.degenerate);
-  f(s.no_solution);
-  f(s.not_solved);
-  if (large) {
-    f(s.accepted_at_cap);
-    for (auto& count : s.certified) f(count);
-  }
-  f(s.worst_residual);
-}
+/// Behind it the version, one digit, and a line break. Those before are read too.
+constexpr std::string_view mark = "carom checkpoint ";
 
 void add(CheckpointWriter& out, const FeatureKey& key) {
   out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
@@ -120,8 +70,9 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(state.v);
   out.add(state.z);
   for (const double number : companion.ledger.save()) out.add(number);
-  for_statistics(companion.statistics, [&out](const auto& number) { out.add(number); });
-  for_contact_statistics(companion.contact_statistics, true, [&out](const auto& number) { out.add(number); });
+  for_statistics(companion.statistics, checkpoint_version, [&out](const auto& number) { out.add(number); });
+  for_contact_statistics(companion.contact_statistics, checkpoint_version,
+                         [&out](const auto& number) { out.add(number); });
   out.add(companion.rounding);
   out.add(companion.history.known);
   out.add(companion.history.step);
@@ -168,6 +119,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   end.add(checksum(body));
 
   std::string content(mark);
+  content.append(std::to_string(checkpoint_version)).append("\n");
   content.append(body).append(end.bytes().data(), end.bytes().size());
   write_file(path, content, "checkpoint");
 }
@@ -288,12 +240,21 @@ void demand_rhythms(const std::string& path, const std::vector<Rhythm>& found,
   }
 }
 
-/// Content of a checkpoint without its mark and its checksum, both of which are demanded.
-std::string_view checked_body(const std::string& path, std::string_view text) {
-  if (!text.starts_with(mark) && !text.starts_with(mark_before))
+/// A checkpoint without its mark and its checksum.
+struct CheckpointContent {
+  int version;
+  std::string_view body;
+};
+
+/// Demands mark and checksum.
+CheckpointContent checked_content(const std::string& path, std::string_view text) {
+  const int version = text.size() > mark.size() ? text[mark.size()] - '0' : 0;
+  const std::size_t begin = mark.size() + 2;
+  if (!text.starts_with(mark) || version < oldest_checkpoint || version > checkpoint_version ||
+      text.size() < begin || text[begin - 1] != '\n') {
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
-  text.remove_prefix(mark.size());
-  static_assert(mark.size() == mark_before.size());
+  }
+  text.remove_prefix(begin);
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
   const std::string_view body = text.substr(0, text.size() - checksum_size);
@@ -301,14 +262,15 @@ std::string_view checked_body(const std::string& path, std::string_view text) {
   std::uint64_t expected = 0;
   end.get(expected);
   if (expected != checksum(body)) end.damaged("its checksum does not fit");
-  return body;
+  return {version, body};
 }
 
 }  // namespace
 
 void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
   const std::string content = read_file(path, "checkpoint");
-  CheckpointReader in(path, checked_body(path, content));
+  const auto [version, body] = checked_content(path, content);
+  CheckpointReader in(path, body);
   std::uint64_t found = 0;
   in.get(found);
   if (found != fingerprint) throw FileError("checkpoint '" + path + "': is of another model");
@@ -324,9 +286,8 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   std::array<double, EnergyLedger::saved_size> ledger{};
   for (double& number : ledger) in.get(number);
   other.ledger.load(ledger);
-  for_statistics(other.statistics, [&in](auto& number) { in.get(number); });
-  const bool present = content.starts_with(mark);
-  for_contact_statistics(other.contact_statistics, present, [&in](auto& number) { in.get(number); });
+  for_statistics(other.statistics, version, [&in](auto& number) { in.get(number); });
+  for_contact_statistics(other.contact_statistics, version, [&in](auto& number) { in.get(number); });
   in.get(other.rounding);
   if (other.rounding.size() != companion.rounding.size()) in.damaged("its sizes do not fit the model");
   read_history(in, state.v.size(), other.history);
@@ -337,7 +298,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   in.get(other.grid_steps);
   read_modes(in, other);
   read_rhythms(in, other.rhythms);
-  if (present) {
+  if (version >= 7) {
     read_joint_history(in, state.v.size(), other.joints);
     read_contacts(in, other.contacts);
   }

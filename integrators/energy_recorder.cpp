@@ -13,7 +13,7 @@ namespace carom {
 
 namespace {
 
-/// Deepest penetration of the present state [m].
+/// Deepest penetration of the present state, of bodies into ground or each other [m].
 double deepest_penetration(const Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   const StateView state = simulation.state().view();
@@ -23,6 +23,11 @@ double deepest_penetration(const Simulation& simulation) {
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, state, evaluation);
     detector.find(component, state, evaluation, 0.0, contacts);
+  }
+  if (detector.bodies_touch()) {
+    BodyContactSearch search;
+    const GroundPlaces none_moves;
+    detector.bodies().find({state, evaluation, none_moves}, search, contacts);
   }
   double deepest = 0.0;
   for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);

@@ -156,8 +156,10 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
       apply_and_record(assembly, problem, trial, recorded);
     }
     // All of them: out of one shape a body may come into another.
-    const GapProjection::Result result = projection.project(assembly, component, detector, places,
-                                                            {.all = true}, chain, trial, evaluation, joints);
+    JointConstraints* const bound[] = {&joints};
+    const GapProjection::Result result = projection.project(
+        {assembly, detector, places, {component, component + 1}, std::span(bound, joints.empty() ? 0 : 1)},
+        {.all = true}, chain, trial, evaluation);
     if (result.left != nullptr) fail_wedged(detector, result, state.time);
     shift = std::max(shift, result.shift);
     find_opened(assembly, component, detector, places, state, trial, result, evaluation, opened);

@@ -4,6 +4,7 @@
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/running_model.h>
 #include <carom/integrators/step_grid.h>
+#include <carom/integrators/time_stepping/start_overlap.h>
 
 #include <algorithm>
 
@@ -13,6 +14,9 @@ ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const Sto
   if (const auto* options = std::get_if<TimeStepping>(&mode)) {
     stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
     controller = std::make_unique<StepController>(assembly, *options);
+    if (options->overlaps.never_tunnel && assembly.layout()->dimension() == 2) {
+      parted = std::make_unique<PartedSteps>(assembly, stepper->detector());
+    }
   } else {
     driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
   }
@@ -26,7 +30,9 @@ void ModeMachines::advance(const Run& run, double limit) {
     return;
   }
   const auto advance_to = [&](double step, double end) {
-    if (stepper) {
+    if (parted) {
+      parted->step(*stepper, state, companion, step, end, run.report);
+    } else if (stepper) {
       stepper->step(state, companion, step, end, run.report);
     } else {
       driver->advance(state, companion, end, run.report, run.events);
@@ -58,7 +64,11 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
 }
 
 double RunningModel::prepare(State& start) const {
-  const double shift = close_joints(assembly, start).shift;
+  double shift = close_joints(assembly, start).shift;
+  if (machines.stepper) {
+    const TimeStepper& stepper = *machines.stepper;
+    shift = std::max(shift, prepare_overlaps(assembly, stepper.detector(), stepper.options(), start));
+  }
   demand_directions(assembly, start);
   if (machines.driver) machines.driver->demand_start(start);
   return shift;

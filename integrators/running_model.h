@@ -7,6 +7,7 @@
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/simulation.h>
+#include <carom/integrators/time_stepping/parted_steps.h>
 #include <carom/integrators/time_stepping/step_controller.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
@@ -40,6 +41,7 @@ struct ModeMachines {
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< likewise
+  std::unique_ptr<PartedSteps> parted;         ///< null unless nothing may pass through anything
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
 };
 

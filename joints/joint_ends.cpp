@@ -1,4 +1,5 @@
 #include <carom/core/body_kind.h>
+#include <carom/core/vector_length.h>
 #include <carom/joints/joint_ends.h>
 
 #include <array>
@@ -31,7 +32,7 @@ void check_joint_ends(const PartCheck& check, const End<2>& from, const End<2>& 
 
 Vec<2> checked_axis(const PartCheck& check, const Vec<2>& axis, std::string_view quantity) {
   check.direction({axis.data(), 2}, quantity);
-  const double length = axis.stableNorm();  // squares of what is far from 1 over- or underflow
+  const double length = length_of<2>(axis);  // squares of what is far from 1 over- or underflow
   if (!(length > 0.0)) check.refuse(quantity, "(0, 0)", "an axis of any length > 0");
   return axis / length;
 }

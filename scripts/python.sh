@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python package over build/release, installs it in a virtual environment under build/ and runs its
-# tests; the last line is "N passed, M failed".
+# Builds the Python package over build/release, installs it in a virtual environment under build/, checks the types of
+# its examples and runs its tests; the last line is "N passed, M failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -9,16 +9,19 @@ export CCACHE_SLOPPINESS=pch_defines,time_macros
 
 scripts/setup.sh --python
 cmake --preset release >/dev/null
-cmake --build build/release --target carom --parallel "$(nproc)"
+cmake --build build/release --target carom all_examples reference_runs --parallel "$(nproc)"
 
 venv=build/python-test
 python3 -m venv --clear "$venv"
-"$venv/bin/pip" -q install pytest h5py jsonschema pandas
+"$venv/bin/pip" -q install pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 "$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
 
 status=0
+for example in python/examples/*.py python/tests/typical_use.py; do
+  MYPYPATH=python/examples "$venv/bin/mypy" --strict --no-error-summary --cache-dir build/mypy "$example" || status=1
+done
 log=build/python-test.log
-"$venv/bin/python" -m pytest -q -p no:cacheprovider python/tests 2>&1 </dev/null | tee "$log" || status=$?
+CAROM_BUILD="$PWD/build/release" "$venv/bin/python" -m pytest -q -p no:cacheprovider python/tests 2>&1 </dev/null | tee "$log" || status=$?
 # count <word>: number before it in the last line of pytest.
 count() { tail -n 1 "$log" | grep -oE "[0-9]+ $1" | tr -dc '0-9' || true; }
 passed=$(count passed) failed=$(count failed)

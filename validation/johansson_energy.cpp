@@ -87,7 +87,8 @@ Page johansson_energy() {
   page.curves = {found, map};
   page.remarks =
       "Energy is gained in the corner of large e_n and small e_t. The library computes such impacts as the "
-      "law says, reports them, and can refuse them (`refuse_energy_gain`). With e_n = e_t there is never a "
+      "law says, reports them, and can refuse them (`impact_rules.energy_gain`). With e_n = e_t there is "
+      "never a "
       "gain.";
   return page;
 }

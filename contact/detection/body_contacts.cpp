@@ -248,20 +248,4 @@ OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView&
   return out;
 }
 
-void BodyContacts::append_pairs(std::vector<ContactPair>& out) const {
-  const std::vector<BodyOutline>& list = outlines_.list();
-  for (const BodyOutline& a : list) {
-    for (Index j = 0; j < list.size(); ++j) {
-      const BodyOutline& b = list[j];
-      if (!may_touch(a, b)) continue;
-      // Of two round ends one is enough.
-      if (a.vertices.size() == 1 && b.vertices.size() == 1 && b.key < a.key) continue;
-      if (b.vertices.size() == 1 && a.vertices.size() > 1) continue;
-      for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
-        out.push_back({.body = a.body, .feature = vertex, .other = b.body, .outline = j});
-      }
-    }
-  }
-}
-
 }  // namespace carom

@@ -73,8 +73,6 @@ public:
                                                          BodyContactSearch& memory) const;
   /// Writes the contact of such outlines. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
-  /// Appends all pairs of a vertex and an outline of another body that may touch, ordered likewise.
-  void append_pairs(std::vector<ContactPair>& out) const;
   /// Writes the contact of such a pair, whatever its gap.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;

@@ -22,8 +22,8 @@ public:
   /// \param outlines of the bodies of the assembly; they outlive it
   BodyPairs(const Assembly& assembly, const BodyOutlines& outlines);
 
-  /// Appends all pairs of a vertex of one of some bodies and an outline of another of them, as
-  /// Detector::body_pairs() has them and in its order. \param bodies ascending
+  /// Appends all pairs of a vertex of one of some bodies and an outline of another of them that may touch,
+  /// ordered by body, then outline, then the other body and its outline. \param bodies ascending
   void append(std::span<const Index> bodies, std::vector<ContactPair>& out) const;
 
 private:

@@ -89,6 +89,24 @@ void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const
   out.surface_velocity_after = {n.dot(end), t.dot(end), 0.0};
 }
 
+std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,
+                                      const GroundShapes& shapes, Index shape, const GroundMotion* motion) {
+  // Rounding of the normals and the third derivative of the boundary share the error: radii from 1e-3 m on.
+  constexpr double step = 1e-5;  // [m]
+  Vec<2> velocity = relative_velocity(at, state, motion == nullptr ? GroundMotion{} : *motion);
+  if (motion != nullptr) {
+    velocity -= Space<2>::lever_velocity(&motion->spin, Vec<2>(at.centre - planar_part(motion->point)));
+  }
+  const double speed = velocity.norm();
+  if (speed == 0.0) return {};
+  const Vec<2> along = step / speed * velocity;
+  const Vec<2> ahead = at.centre + along, behind = at.centre - along;
+  const Vec<2> turn = (planar_part(shapes.gap(shape, motion, ahead.data()).normal) -
+                       planar_part(shapes.gap(shape, motion, behind.data()).normal)) *
+                      (0.5 * speed / step);
+  return {turn.dot(velocity), Space<2>::tangent_frame(turn)[0].dot(velocity)};
+}
+
 template <int D>
 double turning_bound(const PlacedFeature<D>& at, const StateView& state, const GroundMotion* motion,
                      double above) {

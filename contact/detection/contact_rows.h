@@ -5,11 +5,14 @@
 /// of the shape's motion (docs/method.md, section 1).
 
 #include <carom/contact/detection/body_features.h>
+#include <carom/contact/detection/ground_shapes.h>
 #include <carom/core/constraint.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/space.h>
 #include <carom/core/state.h>
+
+#include <array>
 
 namespace carom {
 
@@ -34,6 +37,12 @@ void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& stat
 /// Adds the motion of the shape. \param after the motion at the end of the step; null where no time passes
 void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
                        const GroundMotion* after, Constraint& out);
+
+/// What the curvature of a boundary that gap() describes adds to the drift: the normal turns as the feature's
+/// centre moves along. By differences over 1e-5 m. \param motion of the shape; null: at rest
+[[nodiscard]] std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,
+                                                    const GroundShapes& shapes, Index shape,
+                                                    const GroundMotion* motion);
 
 /// Bound on the rate of the normal velocity by turning of the body, and of the shape if it moves
 /// (contact/detection/lasting_contacts.h) [m/s^2]. \param above distance of the feature's centre [m]

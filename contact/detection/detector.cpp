@@ -70,12 +70,6 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
   return out;
 }
 
-std::vector<ContactPair> Detector::body_pairs() const {
-  std::vector<ContactPair> out;
-  bodies_.append_pairs(out);
-  return out;
-}
-
 std::vector<ContactPair> Detector::joint_friction(Index component) const {
   std::vector<ContactPair> out;
   joints_.append_friction(component, out);

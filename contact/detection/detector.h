@@ -77,8 +77,6 @@ public:
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
-  /// All pairs of two bodies, of all components. Made at each call.
-  [[nodiscard]] std::vector<ContactPair> body_pairs() const;
   /// Friction in the joints of one component. Made at each call.
   [[nodiscard]] std::vector<ContactPair> joint_friction(Index component) const;
   /// Appends it as constraints, whose `friction_bound` has the constant part of the bound. Sets nothing of

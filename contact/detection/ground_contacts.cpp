@@ -191,7 +191,12 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, const
     const bool touches = distance <= query.margin;
     if (!touches) {
       if (query.lasting == nullptr) continue;
-      const double turning = turning_bound(at, query.state, motion, gap.distance);
+      double turning = turning_bound(at, query.state, motion, gap.distance);
+      if constexpr (D == 2) {
+        if (!shapes_.is_flat(shape)) {
+          turning += std::abs(curvature_drift(at, query.state, shapes_, shape, motion)[0]);
+        }
+      }
       if (!query.lasting->lasts({feature.key, shapes_.key(shape)}, distance, turning)) continue;
     }
     const GroundMotion* const after = query.after == nullptr ? nullptr : shapes_.motion(shape, *query.after);
@@ -210,6 +215,11 @@ void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& ga
   fill_rows(at, gap, state, out);
   if constexpr (D == 2) {
     if (motion != nullptr) add_ground_motion(at, state, *motion, after, out);
+    if (!shapes_.is_flat(shape)) {
+      const std::array<double, 2> curved = curvature_drift(at, state, shapes_, shape, motion);
+      out.drift[0] += curved[0];
+      out.drift[1] += curved[1];
+    }
     if (const double speed = shapes_.surface_speed(shape); speed != 0.0) {
       out.surface_velocity[1] += speed;
       out.surface_velocity_after[1] += speed;

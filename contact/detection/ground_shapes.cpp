@@ -18,7 +18,8 @@ GroundShapes::GroundShapes(const System& system) : system_(&system) {
     const Index moving = kind.moves(place.slot) ? moving_++ : none;
     pieces.clear();
     kind.pieces(place.slot, pieces);
-    shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty()});
+    shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty(),
+                       kind.is_flat(place.slot)});
     any_has_pieces_ = any_has_pieces_ || !pieces.empty();
   }
 }

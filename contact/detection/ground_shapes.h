@@ -55,6 +55,8 @@ public:
   [[nodiscard]] bool has_pieces(Index shape) const { return shapes_[shape].has_pieces; }
   /// True if any shape is one of these.
   [[nodiscard]] bool any_has_pieces() const { return any_has_pieces_; }
+  /// True if the boundary of a shape without pieces is flat.
+  [[nodiscard]] bool is_flat(Index shape) const { return shapes_[shape].is_flat; }
   /// Velocity of a conveyor's surface along itself [m/s].
   [[nodiscard]] double surface_speed(Index shape) const { return shapes_[shape].surface_speed; }
   /// True if a shape moves.
@@ -99,6 +101,7 @@ private:
     Index moving;  // its number among those that move; `none`: at rest
     double surface_speed;
     bool has_pieces;
+    bool is_flat;
   };
 
   const System* system_;

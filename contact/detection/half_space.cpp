@@ -1,5 +1,6 @@
 #include <carom/contact/detection/gap_point_half_space.h>
 #include <carom/contact/detection/half_space.h>
+#include <carom/core/vector_length.h>
 
 namespace carom::generic {
 
@@ -26,7 +27,7 @@ void HalfSpaceKind<D>::add(const HalfSpace<D>& part, const PartCheck& check) {
   check.finite({part.point.data(), D}, "point", "m");
   check.direction({part.normal.data(), D}, "normal");
   check.material(part.material);
-  const double length = part.normal.stableNorm();
+  const double length = length_of<D>(part.normal);
   if (!(length > 0.0)) check.refuse("normal", "zero", "a direction of any length > 0");
   if constexpr (D == 2) {
     part.motion.check(check);

@@ -68,6 +68,7 @@ public:
   [[nodiscard]] MaterialId material(Index slot) const override { return parts_[slot].material; }
   [[nodiscard]] ContactFilter filter(Index slot) const override { return parts_[slot].filter; }
   [[nodiscard]] bool moves(Index slot) const override;
+  [[nodiscard]] bool is_flat(Index /*slot*/) const override { return true; }
   [[nodiscard]] double surface_speed(Index slot) const override;
   [[nodiscard]] GroundMotion place(Index slot, double time) const override;
   void discontinuity_times(Index slot, std::vector<double>& out) const override;

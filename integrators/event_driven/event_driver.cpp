@@ -3,7 +3,6 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
-#include <carom/integrators/run/impact_options.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +37,7 @@ void check_options(const EventDriven& options) {
     throw ModelError("event-driven mode: method is " + std::to_string(static_cast<int>(options.method)) +
                      "; allowed: one of FlowMethod, explicit_runge_kutta (0) to one_step (3)");
   }
-  check_options(impact_options(options), "event-driven mode");
+  check_rules(options.impact_rules, "event-driven mode");
   check_failure_directory(options.failure_directory, "event-driven mode");
 }
 

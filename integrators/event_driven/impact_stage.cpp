@@ -57,11 +57,11 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, i
                                  EventInstant& at) {
   list_touching(pairs, at);
   std::vector<Constraint>& touching = memory_->touching;
-  const bool sequential = options_->impact_order == ImpactOrder::sequential;
+  const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
   const bool captured = fastest <= options_->capture_speed && sequence == 0;
   memory_->note = {};
-  memory_->note.cut_sequence = sequential && !captured && sequence >= options_->sequence_limit;
+  memory_->note.cut_sequence = sequential && !captured && sequence >= options_->impact_rules.sequence_limit;
   if (sequential && !captured && !memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
   if (sequential && !captured) ++sequence;
   share_impact_restitution(touching, at.velocities(), 0.0);
@@ -74,7 +74,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, i
     if (!captured) fail_unsolved(at);
     // Slower than the capture speed all that touches closes anyway.
     problem.forget_impulses();
-  } else if (options_->limit_energy_gain && !captured) {
+  } else if (options_->impact_rules.energy_gain == EnergyGain::limit && !captured) {
     const auto again = [&] { return solve(problem, at); };
     memory_->note.restitution_factor = limit_gain(problem, touching, again);
     if (!problem.report().usable()) fail_unsolved(at);
@@ -97,7 +97,7 @@ void ImpactStage::choose_law(IslandProblem& problem) const {
   if (!law) {
     failure_->fail(
         "contacts of one impact have different laws of impact; allowed: one law for all that touch at an "
-        "instant, or impact_order sequential",
+        "instant, or impact_rules.order sequential",
         failure_->names(memory_->touching));
   }
   if (*law != ImpactLaw::newton) problem.use(&memory_->by_law, *law);
@@ -168,8 +168,8 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
     if (problem.impulses()[static_cast<std::size_t>(problem.first_row(c))] > 0.0)
       accumulation_.remember(at.time, contact.key);
   }
-  if (gain == 0.0 || !options_->refuse_energy_gain) return;
-  failure_->fail("an impact adds " + to_text(gain) + " J, which refuse_energy_gain forbids",
+  if (gain == 0.0 || options_->impact_rules.energy_gain != EnergyGain::refuse) return;
+  failure_->fail("an impact adds " + to_text(gain) + " J, which impact_rules.energy_gain forbids",
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
 

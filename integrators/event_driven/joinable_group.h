@@ -18,7 +18,7 @@ namespace carom {
 class CAROM_API JoinableGroup {
 public:
   /// The group must outlive it.
-  explicit JoinableGroup(ClockGroup& group) : group_(&group) {}
+  explicit JoinableGroup(ClockGroup& group) : group_(&group.parts()) {}
 
   /// Takes a state to be looked at by sample(), before ClockGroup::start().
   void place(const State& state);
@@ -35,15 +35,12 @@ public:
   /// Resolves its event: impacts, modes. False if nothing lasting connects its components any more: they are
   /// to go on as other groups then, by part().
   [[nodiscard]] bool resolve(EventBalance& balance);
-  /// True if closed contacts connect all components; GroupMemory::components has what they connect, unless
-  /// there is but one.
-  [[nodiscard]] bool is_connected() const;
   /// Becomes the motion of some groups, which end there, at a time within the steps of all. Their bodies
   /// touch: that is an event. \param output time of the last good state [s] \param state memory
   void join(std::span<ClockGroup* const> groups, double time, double output, State& state,
             EventBalance& balance);
   /// Becomes the motion of some components of a group whose resolve() was false. \param state memory
-  void part(const ClockGroup& from, State& state, EventBalance& balance);
+  void part(const ClockGroup& last, State& state, EventBalance& balance);
   /// Writes the output state, as ClockGroup::advance() does.
   void output(double target, EventBalance& balance);
   /// The motion at a time of the step ahead, or at rest. \param landed as accurate as steps, not by
@@ -54,7 +51,7 @@ private:
   void book_end(EventBalance& balance);
   void end(double time, State& state, EventBalance& balance);
 
-  ClockGroup* group_;
+  GroupParts* group_;
 };
 
 }  // namespace carom

@@ -3,9 +3,9 @@
 /// \file
 /// Options of the event-driven mode (docs/method.md, section 7).
 
-#include <carom/contact/solvers/impact_order.h>
 #include <carom/core/export.h>
 #include <carom/integrators/flow/flow_method.h>
+#include <carom/integrators/run/impact_rules.h>
 
 #include <cstdint>
 #include <string>
@@ -62,16 +62,7 @@ struct EventDriven {
   /// over 2 g, 5e-10 m for the default; the energy is booked as `accumulation`. Of a limit: the rate of its
   /// coordinate, rad/s where that is an angle.
   double capture_speed = 1e-4;
-  /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
-  bool refuse_energy_gain = false;
-  /// Contacts of one impact together or one after the other.
-  ImpactOrder impact_order = ImpactOrder::simultaneous;
-  /// Of sequential impacts: the most at one instant among bodies that touch, >= 1. Then one simultaneous
-  /// problem with e = 0 ends them; its loss is booked as `accumulation`.
-  int sequence_limit = 1000;
-  /// Scale all e of an impact that would add energy by the largest factor that does not (ImpactNote says it).
-  /// Excludes refuse_energy_gain.
-  bool limit_energy_gain = false;
+  ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
   /// After each step velocities are projected onto joints and closed contacts. A projection that changes them
   /// by more than this part of the component's kinetic energy, beyond what the absolute tolerance explains,
   /// ends the run with a SolverError that names the joints, > 0: the position is singular, or too near one.

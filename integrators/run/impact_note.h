@@ -12,7 +12,8 @@ struct ImpactNote {
   double energy_gain = 0.0;
   /// Work of this contact's impulse, P.(gamma^- + gamma^+)/2 [J]: its part of the gain where positive.
   double contact_work = 0.0;
-  /// Factor of all coefficients of restitution of the impact: 1, or less by `limit_energy_gain`.
+  /// Factor of all coefficients of restitution of the impact: 1, less by EnergyGain::limit, 0 where the
+  /// contacts jam (ImpactRules::refuse_jams).
   double restitution_factor = 1.0;
   bool cut_sequence = false;    ///< a simultaneous impact with e = 0 that ended a sequence (`sequence_limit`)
   double rolling_moment = 0.0;  ///< impulse moment of rolling resistance on `body` [N m s]

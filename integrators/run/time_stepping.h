@@ -3,9 +3,10 @@
 /// \file
 /// Options of the time-stepping mode (Johansson 1999, section 4).
 
-#include <carom/contact/solvers/impact_order.h>
 #include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
+#include <carom/integrators/run/impact_rules.h>
+#include <carom/integrators/run/overlap_rules.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -92,16 +93,7 @@ struct TimeStepping {
   /// does not rebound (e = 0). On nothing else of the motion [m/s]. Of a limit: the rate of
   /// its coordinate, rad/s where that is an angle.
   double capture_speed = 1e-2;
-  /// Refuse, with a SolverError, an impact that adds energy (possible where e_n and e_t differ).
-  bool refuse_energy_gain = false;
-  /// Contacts of one impact together or one after the other.
-  ImpactOrder impact_order = ImpactOrder::simultaneous;
-  /// Of sequential impacts: the most at one instant among bodies that touch, >= 1. Then one simultaneous
-  /// problem with e = 0 ends them; its loss is booked as `accumulation`.
-  int sequence_limit = 1000;
-  /// Scale all e of an impact that would add energy by the largest factor that does not (ImpactNote says it).
-  /// Excludes refuse_energy_gain.
-  bool limit_energy_gain = false;
+  ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
 
   ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
   /// Of impacts that are located: the most of one body in one step, >= 1, and as many slow ones. After them
@@ -113,11 +105,12 @@ struct TimeStepping {
   /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does
   /// the step.
   Iteration iteration = Iteration::automatic;
-  /// Move bodies out of shapes on ground at the end of each step, by the smallest displacement in the mass
-  /// norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that closes
-  /// within the step is detected at its end and takes part in the next. Bodies with joints move along their
-  /// joints. The change of the potential energy is booked as `projection`.
+  /// Move bodies out of shapes on ground, and apart, at the end of each step, by the smallest displacement in
+  /// the mass norm: contacts that took part in the step end with gaps >= 0 up to rounding. A contact that
+  /// closes within the step is detected at its end and takes part in the next. Bodies with joints move along
+  /// their joints. The change of the potential energy is booked as `projection`.
   bool project_gaps = false;
+  OverlapRules overlaps{};  ///< bodies that stand in something at the start, or are fast enough to pass it
   /// Adapt the length of steps, beginning with `step`; fixed if not given.
   std::optional<StepControl> control{};
 

@@ -7,10 +7,11 @@
 
 namespace carom {
 
-ContactStage::ContactStage(const Assembly& assembly, const SweepBudget& budget)
+ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options)
     : assembly_(&assembly),
       masses_(assembly),
-      one_body_each_(assembly.components().size() == assembly.layout()->bodies().size()) {
+      one_body_each_(assembly.components().size() == assembly.layout()->bodies().size()),
+      of_problems_{.factored_from = factored_constraints, .plastic_jams = !options.impact_rules.refuse_jams} {
   Index most_blocks = 1, most_runs = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -18,11 +19,11 @@ ContactStage::ContactStage(const Assembly& assembly, const SweepBudget& budget)
   }
   block_problems_.resize(most_blocks);
   chains_.resize(most_runs);
-  for (SolverChain& chain : chains_) chain.set_budget(budget);
+  for (SolverChain& chain : chains_) chain.set_budget(options.contact_budget);
 }
 
 IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
-  if (in_use_ == problems_.size()) problems_.emplace_back().allow_factors();
+  if (in_use_ == problems_.size()) problems_.emplace_back(of_problems_);
   IslandProblem& problem = problems_[in_use_++];
   problem.build(constraints, in.start.v.data());
   return problem;

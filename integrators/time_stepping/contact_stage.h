@@ -21,8 +21,8 @@ namespace carom {
 /// Solves contact. Keeps memory, and statistics of its solvers.
 class CAROM_API ContactStage {
 public:
-  /// \param assembly must outlive it \param budget of large problems
-  ContactStage(const Assembly& assembly, const SweepBudget& budget);
+  /// \param assembly must outlive it
+  ContactStage(const Assembly& assembly, const TimeStepping& options);
 
   /// States the contact problems of an island. \param together its bodies answer together: one problem, whose
   /// matrix is still to be made; else bodies answer for themselves, and constraints that share bodies share a
@@ -81,6 +81,7 @@ private:
   MassResponse masses_;
   bool one_body_each_;  // components are bodies
   IslandPartition partition_;
+  IslandOptions of_problems_;
   std::vector<IslandProblem> problems_;
   std::size_t in_use_ = 0;
   bool by_block_ = true;

@@ -1,4 +1,4 @@
-// Problem: move bodies out of shapes on ground by the smallest displacement.
+// Problem: move bodies out of shapes on ground, and apart from each other, by the smallest displacement.
 
 #include <carom/integrators/time_stepping/gap_projection.h>
 
@@ -12,176 +12,235 @@ namespace {
 
 /// Gaps are brought to this depth: rounding of the coordinates, on the closed side so that a resting body
 /// remains in contact.
-double rounding_depth(const Assembly& assembly, Index component, const State& state) {
-  const Range q = assembly.components()[component].q;
+double rounding_depth(const Assembly& assembly, Range components, const State& state) {
+  const Index begin = assembly.components()[components.begin].q.begin;
+  const Index end = assembly.components()[components.end - 1].q.end;
   double size = 1.0;
-  for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(state.q[i]));
+  for (Index i = begin; i < end; ++i) size = std::max(size, std::abs(state.q[i]));
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
-/// The largest gap of the joints.
-double off(JointConstraints& joints, const State& state, const Evaluation& evaluation) {
-  joints.update_gaps({state.view(), evaluation.rotation.data()});
-  double worst = 0.0;
-  for (std::size_t row = 0; row < joints.size(); ++row) worst = std::max(worst, std::abs(joints.gap(row)));
-  return worst;
+/// What a contact is known by while it is opened: two bodies that are moved touch with other features then.
+ConstraintKey pair_of(ConstraintKey key) {
+  if (key.b.owner == FeatureKey::Owner::body || key.b.owner == FeatureKey::Owner::shape) {
+    key.a.feature = key.b.feature = 0;
+  }
+  return key;
 }
 
-/// The first body of a component that a joint binds; `none` if there is none.
-Index first_jointed(const Assembly& assembly, Index component) {
-  const Range bodies = assembly.components()[component].bodies;
-  for (Index body = bodies.begin; body < bodies.end; ++body) {
-    if (assembly.is_jointed(body)) return body;
-  }
-  return none;
+/// The first body that answers together with one: the first that joints bind in its component, or itself.
+Index first_together(const Assembly& assembly, Index body) {
+  if (!assembly.is_jointed(body)) return body;
+  Index first = assembly.components()[assembly.component_of(body)].bodies.begin;
+  while (!assembly.is_jointed(first)) ++first;
+  return first;
 }
+
+/// Answers of bodies of which joints bind some.
+class BoundResponse final : public BodyResponse {
+public:
+  BoundResponse(const Assembly& assembly, std::span<JointConstraints* const> joints)
+      : assembly_(&assembly), masses_(assembly), joints_(joints) {}
+
+  [[nodiscard]] Range reach(Index body) const override {
+    const JointConstraints* const joints = of(body);
+    return joints == nullptr ? masses_.reach(body) : joints->velocities();
+  }
+  [[nodiscard]] BodyMasses alone(Index body) const override {
+    return of(body) == nullptr ? masses_.alone(body) : BodyMasses{};
+  }
+  void answer(Index body, double* x, std::size_t columns, char* held) override {
+    JointConstraints* const joints = of(body);
+    if (joints == nullptr) return masses_.answer(body, x, columns, held);
+    JointResponse(*joints).answer(body, x, columns, held);
+  }
+
+private:
+  [[nodiscard]] JointConstraints* of(Index body) const {
+    if (joints_.empty()) return nullptr;
+    const Index v = assembly_->layout()->bodies()[body].v;
+    const auto holds = [&](const JointConstraints* joints) {
+      return v >= joints->velocities().begin && v < joints->velocities().end;
+    };
+    const auto found = std::find_if(joints_.begin(), joints_.end(), holds);
+    return found == joints_.end() ? nullptr : *found;
+  }
+
+  const Assembly* assembly_;
+  MassResponse masses_;
+  std::span<JointConstraints* const> joints_;
+};
 
 }  // namespace
 
-/// Contacts near enough to matter, of those that are asked for (both lists are in the detector's order).
-void GapProjection::find(Index component, const Detector& detector, const GroundPlaces& places,
-                         const Which& which, double margin, const State& state,
+/// Contacts near enough to matter, of those that are asked for.
+void GapProjection::find(const Bodies& bodies, const Which& which, double margin, const State& state,
                          const Evaluation& evaluation) {
-  found_.clear();
   contacts_.clear();
-  detector.find(component, state.view(), evaluation, places, nullptr, margin, found_);
-  if (which.all) {
-    contacts_ = found_;
-    return;
-  }
-  auto wanted = which.taking_part.begin();
-  for (const Constraint& contact : found_) {
-    auto at = wanted;
-    while (at != which.taking_part.end() && at->key != contact.key) ++at;
-    if (at == which.taking_part.end()) continue;  // has not taken part
-    wanted = at + 1;
-    contacts_.push_back(contact);
-  }
+  const ContactQuery query{state.view(), evaluation, bodies.places, nullptr, margin};
+  bodies.detector.find(bodies.components, query, contacts_);
+  if (which.of_bodies) bodies.detector.bodies().find(query, search_, contacts_);
+  if (which.all) return;
+  std::erase_if(contacts_, [&](const Constraint& contact) {
+    return !std::binary_search(wanted_.begin(), wanted_.end(), pair_of(contact.key));
+  });
 }
 
-GapProjection::Result GapProjection::project(const Assembly& assembly, Index component,
-                                             const Detector& detector, const GroundPlaces& places,
-                                             const Which& which, SolverChain& chain, State& state,
-                                             Evaluation& evaluation, JointConstraints& joints) {
-  // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
-  constexpr int most_passes = 20;
-  const double depth = rounding_depth(assembly, component, state);
-  const Component& range = assembly.components()[component];
-  if (lengths_.size() != state.v.size()) lengths_ = assembly.length_scales();
+/// No displacement yet, of some velocities.
+void GapProjection::start(const Bodies& bodies, const Which& which, Range v, const State& state) {
+  const std::vector<Component>& components = bodies.assembly.components();
+  if (lengths_.size() != state.v.size()) lengths_ = bodies.assembly.length_scales();
+  const Index first = components[bodies.components.begin].q.begin;
+  const Index end = components[bodies.components.end - 1].q.end;
   unmoved_.resize(state.q.size());
   displacement_.resize(state.v.size());
-  std::copy(state.q.begin() + range.q.begin, state.q.begin() + range.q.end, unmoved_.begin() + range.q.begin);
-  std::fill(displacement_.begin() + range.v.begin, displacement_.begin() + range.v.end, 0.0);
+  towards_.resize(state.v.size());
+  std::copy(state.q.begin() + first, state.q.begin() + end, unmoved_.begin() + first);
+  std::fill(displacement_.begin() + v.begin, displacement_.begin() + v.end, 0.0);
+  wanted_.clear();
+  for (const Constraint& contact : which.taking_part) wanted_.push_back(pair_of(contact.key));
+  std::sort(wanted_.begin(), wanted_.end());
+}
+
+GapProjection::Result GapProjection::project(const Bodies& bodies, const Which& which, SolverChain& chain,
+                                             State& state, Evaluation& evaluation) {
+  // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
+  constexpr int passes = 20;
+  // Bodies that are deep in each other touch with other features from pass to pass, and may do so without
+  // end. Then each pass moves them by the least from where the one before has left them.
+  const int most_passes = which.of_bodies ? 20 * passes : passes;
+  const Assembly& assembly = bodies.assembly;
+  const double depth = rounding_depth(assembly, bodies.components, state);
+  const Range v{assembly.components()[bodies.components.begin].v.begin,
+                assembly.components()[bodies.components.end - 1].v.end};
+  start(bodies, which, v, state);
   Result result{.depth = depth};
   for (int pass = 0; pass < most_passes; ++pass) {
     // Bodies may have been moved too far: those contacts are open now, and looked at too.
-    find(component, detector, places, which, 2.0 * result.shift, state, evaluation);
-    // Bodies that joints bind move together.
-    const Index jointed = first_jointed(assembly, component);
+    find(bodies, which, 2.0 * result.shift, state, evaluation);
+    if (pass >= passes) start(bodies, which, v, state);
     const auto islands =
         partition_.arrange(std::span(contacts_), static_cast<Index>(assembly.layout()->bodies().size()),
-                           [&](Index body) { return assembly.is_jointed(body) ? jointed : body; });
+                           [&](Index body) { return first_together(assembly, body); });
     result.left = nullptr;
     double worst = 2.0 * depth;
     bool improved = false;
     for (const Range island : islands) {
-      const std::span<const Constraint> of_body(contacts_.data() + island.begin, island.size());
-      const BodySlot body = assembly.layout()->bodies()[of_body.front().body()];
-      const bool bound = assembly.is_jointed(of_body.front().body());
-      const Range own = bound ? range.v : Range{body.v, body.v + body.v_size};
-      const bool moved = std::any_of(displacement_.begin() + own.begin, displacement_.begin() + own.end,
-                                     [](double number) { return number != 0.0; });
-      for (const Constraint& contact : of_body) {
+      const std::span<const Constraint> together(contacts_.data() + island.begin, island.size());
+      const bool moved = has_moved(bodies, together);
+      for (const Constraint& contact : together) {
         if (-contact.gap <= worst) continue;
         worst = -contact.gap;
         result.left = &contact;
-        result.together = of_body;
+        result.together = together;
       }
-      const bool deep = std::any_of(of_body.begin(), of_body.end(),
+      const bool deep = std::any_of(together.begin(), together.end(),
                                     [&](const Constraint& at) { return at.gap < -2.0 * depth; });
-      const bool open = moved && std::all_of(of_body.begin(), of_body.end(),
+      const bool open = moved && std::all_of(together.begin(), together.end(),
                                              [](const Constraint& at) { return at.gap > 0.0; });
       // Where turning bodies have been moved far their joints are off by the square of it.
-      const bool loose = bound && moved && off(joints, state, evaluation) > 2.0 * depth;
-      if (deep || open || loose) {
-        const bool better =
-            bound ? move_bound(assembly, component, of_body, chain, state, evaluation, depth, joints)
-                  : move_body(assembly, of_body, chain, state, depth);
-        improved = better || improved;
+      if (deep || open || (moved && is_off(state, evaluation, 2.0 * depth))) {
+        improved = move(bodies, together, chain, state, evaluation, depth) || improved;
       }
     }
     if (!improved) return result;
     result.moved = true;
-    for (Index i = range.v.begin; i < range.v.end; ++i) {
-      result.shift = std::max(result.shift, std::abs(displacement_[i]) * lengths_[i]);
+    double shift = 0.0;
+    for (Index i = v.begin; i < v.end; ++i) shift = std::max(shift, std::abs(displacement_[i]) * lengths_[i]);
+    result.shift = pass < passes ? std::max(result.shift, shift) : result.shift + shift;
+    for (Index component = bodies.components.begin; component < bodies.components.end; ++component) {
+      evaluate_positions(assembly, component, state.view(), evaluation);
     }
-    evaluate_positions(assembly, component, state.view(), evaluation);
   }
   return result;
 }
 
-/// W = G B G^T of the normal rows, each with P >= 0.
-void GapProjection::state_problem(std::span<const Constraint> contacts, BodyResponse& response) {
+/// Lists the bodies and joints of an island, as those at hand. True if any of them has been moved.
+bool GapProjection::has_moved(const Bodies& bodies, std::span<const Constraint> contacts) {
+  const Assembly& assembly = bodies.assembly;
+  of_island_.clear();
+  mechanisms_.clear();
+  const auto add = [&](Index body) {
+    if (!assembly.is_jointed(body)) return of_island_.push_back(body);
+    const Component& all = assembly.components()[assembly.component_of(body)];
+    const auto its =
+        std::find_if(bodies.joints.begin(), bodies.joints.end(),
+                     [&](const JointConstraints* at) { return at->velocities().begin == all.v.begin; });
+    if (its == bodies.joints.end()) return of_island_.push_back(body);
+    if (std::find(mechanisms_.begin(), mechanisms_.end(), *its) != mechanisms_.end()) return;
+    mechanisms_.push_back(*its);
+    for (Index other = all.bodies.begin; other < all.bodies.end; ++other) {
+      if (assembly.is_jointed(other)) of_island_.push_back(other);
+    }
+  };
+  for (const Constraint& contact : contacts) {
+    for (int b = 0; b < contact.bodies; ++b) add(contact.blocks[static_cast<std::size_t>(b)].body);
+  }
+  std::sort(of_island_.begin(), of_island_.end());
+  of_island_.erase(std::unique(of_island_.begin(), of_island_.end()), of_island_.end());
+  return std::any_of(of_island_.begin(), of_island_.end(), [&](Index body) {
+    const BodySlot slot = assembly.layout()->bodies()[body];
+    return std::any_of(displacement_.begin() + slot.v, displacement_.begin() + slot.v + slot.v_size,
+                       [](double number) { return number != 0.0; });
+  });
+}
+
+/// True if a gap of the joints at hand is larger than `depth`.
+bool GapProjection::is_off(const State& state, const Evaluation& evaluation, double depth) const {
+  for (JointConstraints* const joints : mechanisms_) {
+    joints->update_gaps({state.view(), evaluation.rotation.data()});
+    for (std::size_t row = 0; row < joints->size(); ++row) {
+      if (std::abs(joints->gap(row)) > depth) return true;
+    }
+  }
+  return false;
+}
+
+/// d0 of the joints at hand, added to the next displacement.
+void GapProjection::close_joints(const State& state, const Evaluation& evaluation) {
+  std::vector<double>& rows = moved_;  // not in use yet
+  for (JointConstraints* const joints : mechanisms_) {
+    joints->update_and_factor({state.view(), evaluation.rotation.data()});
+    const Range v = joints->velocities();
+    std::fill(towards_.begin() + v.begin, towards_.begin() + v.end, 0.0);
+    rows.resize(joints->size());
+    joints->residuals(JointLevel::change, displacement_.data(), rows.data());
+    for (std::size_t i = 0; i < joints->size(); ++i) rows[i] = joints->gap(i) - rows[i];
+    joints->solve(rows.data());
+    joints->add_response(rows.data(), towards_.data());
+  }
+}
+
+/// Makes a better estimate for the bodies of the island at hand; false if there is none.
+bool GapProjection::move(const Bodies& bodies, std::span<const Constraint> contacts, SolverChain& chain,
+                         State& state, const Evaluation& evaluation, double depth) {
+  const BodySlots& slots = bodies.assembly.layout()->bodies();
+  for (const Index body : of_island_) {
+    std::fill_n(towards_.begin() + slots[body].v, slots[body].v_size, 0.0);
+  }
+  close_joints(state, evaluation);
+  // W = G B G^T of the normal rows, each with y >= 0.
   normals_.clear();
   for (const Constraint& contact : contacts) normals_.push_back({&contact, 0});
+  BoundResponse response(bodies.assembly, mechanisms_);
   delassus_.build(normals_, response);
   problem_.reset(static_cast<int>(contacts.size()));
   delassus_.write(problem_.matrix().data());
   problem_.group();
   multipliers_.assign(contacts.size(), 0.0);
-}
-
-bool GapProjection::move_body(const Assembly& assembly, std::span<const Constraint> contacts,
-                              SolverChain& chain, State& state, double depth) {
-  const BodySlot& body = assembly.layout()->bodies()[contacts.front().body()];
-  const BodyKind& kind = *assembly.body_kinds()[body.kind];
-  const std::size_t columns = body.v_size;
-  double* const displacement = displacement_.data() + body.v;
-  MassResponse masses(assembly);
-  state_problem(contacts, masses);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data());
-  }
-  if (!chain.solve(problem_, multipliers_).usable()) return false;
-  std::fill_n(displacement, columns, 0.0);
-  delassus_.add_response(multipliers_, displacement_.data());
-  moved_.assign(body.q_size, 0.0);
-  kind.advance({body.slot, body.slot + 1}, unmoved_.data() + body.q, displacement, moved_.data());
-  std::copy(moved_.begin(), moved_.end(), state.q.begin() + body.q);
-  return true;
-}
-
-bool GapProjection::move_bound(const Assembly& assembly, Index component,
-                               std::span<const Constraint> contacts, SolverChain& chain, State& state,
-                               const Evaluation& evaluation, double depth, JointConstraints& joints) {
-  const std::size_t size = state.v.size();
-  joints.update_and_factor({state.view(), evaluation.rotation.data()});
-  of_joints_.resize(joints.size());
-  joints.residuals(JointLevel::change, displacement_.data(), of_joints_.data());
-  for (std::size_t i = 0; i < joints.size(); ++i) of_joints_[i] = joints.gap(i) - of_joints_[i];
-  joints.solve(of_joints_.data());
-  towards_.assign(size, 0.0);
-  joints.add_response(of_joints_.data(), towards_.data());
-  JointResponse with_joints(joints);
-  state_problem(contacts, with_joints);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     problem_.vector()[i] = contacts[i].gap + depth - contacts[i].times(0, displacement_.data()) +
                            contacts[i].times(0, towards_.data());
   }
   if (!chain.solve(problem_, multipliers_).usable()) return false;
-  const auto& bodies = assembly.layout()->bodies();
-  const Range all = assembly.components()[component].bodies;
-  moved_.resize(state.q.size());
   delassus_.add_response(multipliers_, towards_.data());
-  for (Index body = all.begin; body < all.end; ++body) {
-    if (!assembly.is_jointed(body)) continue;
-    const BodySlot slot = bodies[body];
-    for (Index k = slot.v; k < slot.v + slot.v_size; ++k) {
-      displacement_[k] = towards_[k];
-    }
-    assembly.body_kinds()[slot.kind]->advance({slot.slot, slot.slot + 1}, unmoved_.data() + slot.q,
-                                              displacement_.data() + slot.v, moved_.data() + slot.q);
-    std::copy(moved_.begin() + slot.q, moved_.begin() + slot.q + slot.q_size, state.q.begin() + slot.q);
+  for (const Index body : of_island_) {
+    const BodySlot slot = slots[body];
+    std::copy_n(towards_.begin() + slot.v, slot.v_size, displacement_.begin() + slot.v);
+    moved_.assign(slot.q_size, 0.0);
+    bodies.assembly.body_kinds()[slot.kind]->advance({slot.slot, slot.slot + 1}, unmoved_.data() + slot.q,
+                                                     displacement_.data() + slot.v, moved_.data());
+    std::copy(moved_.begin(), moved_.end(), state.q.begin() + slot.q);
   }
   return true;
 }

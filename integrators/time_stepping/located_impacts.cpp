@@ -13,7 +13,8 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       detector_(&detector),
       on_(options.impacts == ImpactTimes::located),
       most_impacts_(options.most_impacts),
-      capture_speed_(options.capture_speed) {}
+      capture_speed_(options.capture_speed),
+      refuse_jams_(options.impact_rules.refuse_jams) {}
 
 void LocatedImpacts::clear() {
   in_use_ = 0;
@@ -114,7 +115,8 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, std::span<const Co
 void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                              StepTrial& trial) {
   for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
-    motions_[order_[at].second].advance({in, rule, *detector_, loads, most_impacts_, capture_speed_, trial});
+    motions_[order_[at].second].advance(
+        {in, rule, *detector_, loads, most_impacts_, capture_speed_, refuse_jams_, trial});
   }
 }
 

@@ -98,7 +98,8 @@ bool LocatedMotion::move(const At& at) {
 
 /// A phase from where the body is, without contacts.
 MotionPhase& LocatedMotion::add_phase(const At& at, double begin, double end) {
-  if (used_ == phases_.size()) phases_.emplace_back();
+  if (used_ == phases_.size())
+    phases_.emplace_back().problem = IslandProblem({.plastic_jams = !at.refuse_jams});
   MotionPhase& phase = phases_[used_++];
   phase.begin = begin;
   phase.end = end;

@@ -67,6 +67,7 @@ struct LocatedStep {
   StepLoads loads;
   int most_impacts;      ///< of one body that are fast, >= 1
   double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
+  bool refuse_jams;      ///< contacts that jam are an error
   StepTrial& trial;
 };
 

@@ -14,7 +14,7 @@ void StepBalance::begin(const StepInput& in) {
   result_.stored = {};
   result_.joint_friction_modes.clear();
   result_.contacts.start(in.step);
-  result_.cut_sequences = result_.scaled_impacts = 0;
+  result_.cut_sequences = result_.scaled_impacts = result_.plastic_jams = 0;
   StepReport& report = result_.report;
   static_cast<StepNumbers&>(report) = {};
   report.contacts.clear();
@@ -28,8 +28,6 @@ void StepBalance::begin(const StepInput& in) {
 bool StepBalance::book_couplings(const StepInput& in, Index component, const StepTrial& trial) {
   const Component& all = assembly_->components()[component];
   StoredEnergies& stored = result_.stored;
-  for (std::size_t i = 0; i < stored_energy_count; ++i)
-    stored.values[i] += trial.account.potentials.values[i];
   double total = 0.0, dissipative = 0.0, external = 0.0;
   for (const BlockWorks& works : trial.account.works) {
     stored[StoredEnergy::kinetic] += works.kinetic;
@@ -37,6 +35,9 @@ bool StepBalance::book_couplings(const StepInput& in, Index component, const Ste
     dissipative += works.dissipative;
     external += works.external;
   }
+  // Last: they are written just before, one by one, and are not at hand at once.
+  for (std::size_t i = 0; i < stored_energy_count; ++i)
+    stored.values[i] += trial.account.potentials.values[i];
   double inside = 0.0;
   if (!all.z.empty()) {
     inside = trial.with_step(in, component,
@@ -118,6 +119,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     }
   }
   if (problem.problem().is_factored()) keep_impulses(problem);
+  if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
   if (!(work.gain > 0.0)) return 0.0;
   const double gain = book_gain(problem, work, impact, trial);
   if (gain > 0.0) {
@@ -132,7 +134,7 @@ double StepBalance::book_impact(const IslandProblem& problem, const double* afte
   const std::size_t first = result_.report.contacts.size();
   const double gain = book_contacts(problem, after, in.start.time, in, trial);
   if (note.cut_sequence) ++result_.cut_sequences;
-  if (note.restitution_factor < 1.0) ++result_.scaled_impacts;
+  if (note.restitution_factor < problem.restitution_factor()) ++result_.scaled_impacts;
   for (std::size_t i = first; i < result_.report.contacts.size(); ++i) {
     ContactRecord& entry = result_.report.contacts[i];
     entry.impact = true;
@@ -146,6 +148,7 @@ void StepBalance::add(const StepResult& impacts) {
   for (std::size_t i = 0; i < energy_flow_count; ++i) result_.flows.values[i] += impacts.flows.values[i];
   result_.cut_sequences += impacts.cut_sequences;
   result_.scaled_impacts += impacts.scaled_impacts;
+  result_.plastic_jams += impacts.plastic_jams;
   result_.report.energy_gain += impacts.report.energy_gain;
   result_.report.lasting_gain += impacts.report.lasting_gain;
   result_.report.contacts.insert(result_.report.contacts.end(), impacts.report.contacts.begin(),
@@ -260,6 +263,7 @@ ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t con
   entry.outcome = report.outcome;
   entry.residual = report.residual;
   entry.solver = report.solver;
+  entry.restitution_factor = problem.restitution_factor();
   return entry;
 }
 

@@ -33,6 +33,7 @@ struct StepResult {
   ContactHistory contacts;  ///< of large islands
   int cut_sequences = 0;    ///< of impacts at the start of the step, that their limit ended
   int scaled_impacts = 0;   ///< likewise whose restitution was scaled
+  int plastic_jams = 0;     ///< contact problems solved with e = 0, since they had no answer
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
 };
 

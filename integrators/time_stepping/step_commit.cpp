@@ -79,6 +79,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   add_to(companion.statistics, result.report);
   companion.statistics.cut_sequences += result.cut_sequences;
   companion.statistics.scaled_impacts += result.scaled_impacts;
+  companion.statistics.plastic_jams += result.plastic_jams;
   hand_over(result.report, report);
 }
 

@@ -1,5 +1,6 @@
 // Problem: choose the length of steps by the error of the smooth motion.
 
+#include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/step_controller.h>
 
 #include <algorithm>
@@ -136,27 +137,7 @@ double StepController::error(double step) const {
 void StepController::merge(StepReport& report) {
   first_.findings.swap(report.findings);
   std::swap(report, first_);
-  report.time = second_.time;
-  report.iteration = std::max(report.iteration, second_.iteration);
-  report.fallbacks += second_.fallbacks;
-  report.sweeps = std::max(report.sweeps, second_.sweeps);
-  report.local_sweeps = std::max(report.local_sweeps, second_.local_sweeps);
-  report.contraction = std::max(report.contraction, second_.contraction);
-  if (second_.worst_coupling_rate > report.worst_coupling_rate) {
-    report.worst_coupling = second_.worst_coupling;
-    report.worst_coupling_rate = second_.worst_coupling_rate;
-  }
-  report.energy_gain += second_.energy_gain;
-  report.lasting_gain += second_.lasting_gain;
-  report.projected = std::max(report.projected, second_.projected);
-  report.contacts.insert(report.contacts.end(), second_.contacts.begin(), second_.contacts.end());
-  for (std::size_t i = 0; i < report.joint_impulses.size(); ++i) {
-    JointReaction& sum = report.joint_impulses[i].impulse;
-    const JointReaction& part = second_.joint_impulses[i].impulse;
-    for (std::size_t k = 0; k < sum.force.size(); ++k) sum.force[k] += part.force[k];
-    sum.moment += part.moment;
-    report.joint_impulses[i].time = second_.joint_impulses[i].time;
-  }
+  add(second_, report);
 }
 
 }  // namespace carom

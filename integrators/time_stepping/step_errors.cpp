@@ -3,7 +3,6 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/integrators/run/failure_file.h>
-#include <carom/integrators/run/impact_options.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -31,13 +30,66 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// Obstacles of a problem that move along the normal of a contact: a body that they press has no room.
+std::string pressed_by(const System& system, const IslandProblem& problem) {
+  std::vector<std::string> names;
+  for (const Constraint& contact : problem.constraints()) {
+    const FeatureKey& ground = contact.key.b;
+    if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
+    if (contact.surface_velocity_after[0] == 0.0) continue;
+    const std::string name = system.name(ObstacleId{ground.serial, system.token()});
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names.empty() ? std::string() : "; bodies are pressed by the motion of " + listed(names);
+}
+
+[[noreturn]] void refuse(const char* option, double value, const char* allowed) {
+  throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
+                   "; allowed: " + allowed_instead(value, allowed));
+}
+
+void check_control(const StepControl& control, double step) {
+  if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
+    refuse("control.tolerance", control.tolerance, "finite and > 0 m");
+  }
+  if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
+    refuse("control.smallest", control.smallest, "finite and > 0 s");
+  }
+  if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
+    refuse("control.largest", control.largest, "finite and >= control.smallest");
+  }
+  if (!(step >= control.smallest && step <= control.largest)) {
+    refuse("step", step, "between control.smallest and control.largest");
+  }
+}
+
+void check_budget(const SweepBudget& budget) {
+  if (!(is_admissible(budget.residual) && budget.residual > 0.0)) {
+    refuse("contact_budget.residual", budget.residual, "finite and > 0");
+  }
+  if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
+  if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
+    refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
+  }
+}
+
+/// Options that do not go together.
+void check_exclusions(const TimeStepping& options) {
+  if (options.impacts == ImpactTimes::located && (options.impact_rules.order != ImpactOrder::simultaneous ||
+                                                  options.impact_rules.energy_gain == EnergyGain::limit)) {
+    throw ModelError(
+        "time stepping: impacts is located; allowed where impact_rules.order is sequential or "
+        "impact_rules.energy_gain is limit: at_step_start");
+  }
+  if (options.overlaps.never_tunnel && (options.control || options.impacts == ImpactTimes::located)) {
+    throw ModelError(std::string("time stepping: overlaps.never_tunnel is true; allowed where ") +
+                     (options.control ? "control is given" : "impacts is located") + ": false");
+  }
+}
+
 }  // namespace
 
 void check_options(const TimeStepping& options) {
-  const auto refuse = [](const char* option, double value, const char* allowed) {
-    throw ModelError(std::string("time stepping: ") + option + " is " + to_text(value) +
-                     "; allowed: " + allowed_instead(value, allowed));
-  };
   if (!(is_admissible(options.step) && options.step > 0.0)) refuse("step", options.step, "finite and > 0 s");
   if (!(is_admissible(options.tolerance) && options.tolerance >= 0.0)) {
     refuse("tolerance", options.tolerance, "finite and >= 0 m");
@@ -58,39 +110,17 @@ void check_options(const TimeStepping& options) {
   if (options.threads > 1 && !Workers::several_available()) {
     refuse("threads", options.threads, "1, for the library was built without oneTBB (CAROM_WITH_TBB)");
   }
-  if (options.control) {
-    const StepControl& control = *options.control;
-    if (!(is_admissible(control.tolerance) && control.tolerance > 0.0)) {
-      refuse("control.tolerance", control.tolerance, "finite and > 0 m");
-    }
-    if (!(is_admissible(control.smallest) && control.smallest > 0.0)) {
-      refuse("control.smallest", control.smallest, "finite and > 0 s");
-    }
-    if (!(is_admissible(control.largest) && control.largest >= control.smallest)) {
-      refuse("control.largest", control.largest, "finite and >= control.smallest");
-    }
-    if (!(options.step >= control.smallest && options.step <= control.largest)) {
-      refuse("step", options.step, "between control.smallest and control.largest");
-    }
-  }
+  if (options.control) check_control(*options.control, options.step);
   if (!(is_admissible(options.capture_speed) && options.capture_speed >= 0.0)) {
     refuse("capture_speed", options.capture_speed, "finite and >= 0 m/s");
   }
-  const SweepBudget& budget = options.contact_budget;
-  if (!(is_admissible(budget.residual) && budget.residual > 0.0)) {
-    refuse("contact_budget.residual", budget.residual, "finite and > 0");
+  const std::optional<double>& overlap = options.overlaps.largest_at_start;
+  if (overlap && !(is_admissible(*overlap) && *overlap >= 0.0)) {
+    refuse("overlaps.largest_at_start", *overlap, "finite and >= 0 m");
   }
-  if (budget.sweeps < 1) refuse("contact_budget.sweeps", budget.sweeps, "at least 1");
-  if (!(is_admissible(budget.accepted) && budget.accepted >= 0.0)) {
-    refuse("contact_budget.accepted", budget.accepted, "finite and >= 0");
-  }
-  check_options(impact_options(options), "time stepping");
-  if (options.impacts == ImpactTimes::located &&
-      (options.impact_order != ImpactOrder::simultaneous || options.limit_energy_gain)) {
-    throw ModelError(
-        "time stepping: impacts is located; allowed where impact_order is sequential or "
-        "limit_energy_gain is true: at_step_start");
-  }
+  check_budget(options.contact_budget);
+  check_rules(options.impact_rules, "time stepping");
+  check_exclusions(options);
   check_failure_directory(options.failure_directory, "time stepping");
 }
 
@@ -215,7 +245,14 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   } else {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
-    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_);
+    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_) +
+               pressed_by(system(), problem);
+    if (options_.impact_rules.refuse_jams && problem.constraints().size() > 1) {
+      message +=
+          "; allowed: contacts with an answer (impact_rules.refuse_jams is set; use one e for surfaces "
+          "between which a "
+          "body jams)";
+    }
   }
   throw SolverError(message, std::move(failure));
 }
@@ -287,7 +324,7 @@ void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) co
 void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {
   SolverFailure failure = failure_of(problem);
   std::string message = place(in_) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
-                        " J; allowed: no gain (refuse_energy_gain is set; use e_n = e_t)";
+                        " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)";
   throw SolverError(message, std::move(failure));
 }
 

@@ -18,9 +18,11 @@ constexpr int most_impacts_at_once = 10000;
 
 StepImpacts::StepImpacts(StepParts& parts)
     : parts_(&parts),
-      on_(parts.options.impact_order == ImpactOrder::sequential || parts.options.limit_energy_gain ||
-          has_other_impact_law(parts.constraints.detector())),
+      on_(parts.options.impact_rules.order == ImpactOrder::sequential ||
+          parts.options.impact_rules.energy_gain == EnergyGain::limit ||
+          parts.options.overlaps.never_tunnel || has_other_impact_law(parts.constraints.detector())),
       balance_(*parts.assembly, parts.options),
+      problem_(IslandOptions{.plastic_jams = !parts.options.impact_rules.refuse_jams}),
       response_(*parts.assembly) {
   if (parts.options.impacts == ImpactTimes::located && resists_rolling(parts.constraints.detector())) {
     throw ModelError(
@@ -94,7 +96,7 @@ double StepImpacts::fastest(std::span<const Constraint> contacts) const {
 /// none closes at all.
 void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
   const TimeStepping& options = parts_->options;
-  const bool sequential = options.impact_order == ImpactOrder::sequential;
+  const bool sequential = options.impact_rules.order == ImpactOrder::sequential;
   double noise = 0.0;
   for (const Constraint& contact : contacts) {
     noise = std::max(noise, speed_rounding * contact.speed(0, start_.v.data()));
@@ -108,7 +110,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
         contact.friction = contact.law.friction_at(contact.sliding_speed(start_.v.data()));
     }
     ImpactNote note;
-    note.cut_sequence = sequential && round >= options.sequence_limit;
+    note.cut_sequence = sequential && round >= options.impact_rules.sequence_limit;
     if (sequential && !note.cut_sequence) keep_fastest(touching_, start_.v.data());
     if (note.cut_sequence) {
       for (Constraint& contact : touching_) {
@@ -139,14 +141,16 @@ void StepImpacts::solve_by_law(const StepInput& in, ImpactNote& note) {
     static_cast<void>(solve());
     errors().fail_impacts(problem_,
                           "contacts of one impact have different laws of impact; allowed: one law for all "
-                          "that touch at an instant, or impact_order sequential");
+                          "that touch at an instant, or impact_rules.order sequential");
   }
   if (law && *law != ImpactLaw::newton && !note.cut_sequence) problem_.use(&by_law_, *law);
   if (!solve()) errors().fail_contact(problem_);
-  if (!parts_->options.limit_energy_gain) return;
-  const auto again = [&] { return solve(); };
-  note.restitution_factor = limit_gain(problem_, touching_, again);
-  if (!problem_.report().usable()) errors().fail_contact(problem_);
+  if (parts_->options.impact_rules.energy_gain == EnergyGain::limit) {
+    const auto again = [&] { return solve(); };
+    note.restitution_factor = limit_gain(problem_, touching_, again);
+    if (!problem_.report().usable()) errors().fail_contact(problem_);
+  }
+  note.restitution_factor *= problem_.restitution_factor();
 }
 
 double StepImpacts::kinetic_energy(const StepInput& in) const {
@@ -183,7 +187,7 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
       flows[line] = known[line];
     }
   }
-  if (gain > 0.0 && parts_->options.refuse_energy_gain) {
+  if (gain > 0.0 && parts_->options.impact_rules.energy_gain == EnergyGain::refuse) {
     parts_->errors(in, in.assembly.component_of(touching_.front().body())).refuse_gain(problem_, gain);
   }
 }

@@ -2,9 +2,10 @@
 
 /// \file
 /// Impacts at the start of a step, where not every contact follows Newton's law, or impacts are sequential,
-/// or their energy is limited: what closes faster than the capture speed is resolved at the velocities v_j,
-/// as in the event-driven mode; the step follows from the velocities after it, and its contacts have e = 0.
-/// A contact that closes more slowly does not rebound. Friction in joints takes no part in these impacts.
+/// or their energy is limited, or nothing may pass through anything: what closes faster than the capture
+/// speed is resolved at the velocities v_j, as in the event-driven mode; the step follows from the velocities
+/// after it, and its contacts have e = 0. A contact that closes more slowly does not rebound. Friction in
+/// joints takes no part in these impacts.
 
 #include <carom/contact/impact_rules.h>
 #include <carom/contact/island_partition.h>

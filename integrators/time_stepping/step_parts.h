@@ -27,7 +27,7 @@ struct StepParts {
         options(chosen),
         rule(chosen.force_rule),
         constraints(model, chosen),
-        contacts(model, chosen.contact_budget),
+        contacts(model, chosen),
         located(model, constraints.detector(), chosen),
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),

@@ -16,12 +16,9 @@ namespace {
 /// Options that know of contact with shapes on ground only. Throws ModelError naming them.
 void demand_options_for_bodies(const Detector& detector, const TimeStepping& options) {
   if (!detector.bodies_touch()) return;
-  const std::string where = " where bodies may touch each other";
-  if (options.impacts == ImpactTimes::located) {
-    throw ModelError("time stepping: impacts is located" + where + "; allowed: at_step_start");
-  }
-  if (options.project_gaps)
-    throw ModelError("time stepping: project_gaps is true" + where + "; allowed: false");
+  if (options.impacts != ImpactTimes::located) return;
+  throw ModelError(
+      "time stepping: impacts is located where bodies may touch each other; allowed: at_step_start");
 }
 
 }  // namespace
@@ -32,6 +29,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       prescribed_(assembly),
       iteration_(parts_, stop),
       balance_(assembly, options),
+      projection_(parts_),
       couplings_(assembly) {
   demand_options_for_bodies(parts_.constraints.detector(), options);
   if (!impacts_->on()) impacts_.reset();
@@ -200,7 +198,7 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   }
   book_contacts(island, in);
-  if (parts_.options.project_gaps) project_positions(island, in);
+  if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
 }
 
 /// Bodies that are hit within the step, under constant loads: they are moved again, and booked anew.
@@ -258,7 +256,7 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
     }
   }
   book_contacts(island, in);
-  if (parts_.options.project_gaps) project_positions(island, in);
+  if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
 }
 
 void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
@@ -286,46 +284,10 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 void TimeStepper::book_contact_problem(const IslandProblem& problem, const double* after, double time,
                                        const StepInput& in) {
   const double gain = balance_.book_contacts(problem, after, time, in, parts_.trial);
-  if (gain > 0.0 && parts_.options.refuse_energy_gain) {
+  if (gain > 0.0 && parts_.options.impact_rules.energy_gain == EnergyGain::refuse) {
     parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()))
         .refuse_gain(problem, gain);
   }
-}
-
-/// Bodies of contacts that took part are moved by the smallest displacement, along their joints.
-void TimeStepper::project_positions(const StepIsland& island, const StepInput& in) {
-  const auto component_of = [&](const Constraint& at) { return in.assembly.component_of(at.body()); };
-  for (std::size_t first = 0, last = 0; first < island.constraints.size(); first = last) {
-    const Index component = component_of(island.constraints[first]);
-    while (last < island.constraints.size() && component_of(island.constraints[last]) == component) ++last;
-    project_component(component, island.constraints.subspan(first, last - first), in);
-  }
-}
-
-void TimeStepper::project_component(Index component, std::span<const Constraint> constraints,
-                                    const StepInput& in) {
-  const Assembly& assembly = *parts_.assembly;
-  const auto potentials = [&] {
-    StoredEnergies sum;
-    add_potentials(assembly, component, parts_.trial.end.view(), parts_.trial.at_end, sum);
-    return sum;
-  };
-  evaluate_positions(assembly, component, parts_.trial.end.view(), parts_.trial.at_end);
-  const StoredEnergies before = potentials();
-  JointStage* const stage = parts_.joints.of(component);
-  JointConstraints none_there;
-  JointConstraints& joints = stage != nullptr ? stage->rows().at_end() : none_there;
-  const GapProjection::Result result = projection_.project(
-      assembly, component, parts_.constraints.detector(), parts_.constraints.places_at_end(), {constraints},
-      parts_.contacts.chain(), parts_.trial.end, parts_.trial.at_end, joints);
-  if (result.left != nullptr) parts_.errors(in, component).fail_projection(*result.left);
-  if (!result.moved) return;
-  if (stage != nullptr) balance_.book_velocity_projection(stage->project_velocities(parts_.trial));
-  // Mean loads are those that acted.
-  if (!parts_.rule.is_mean()) {
-    parts_.schedule.evaluate(parts_.stages(in, component), LoadsKnown::by_cause, false);
-  }
-  balance_.book_projection(result, before, potentials());
 }
 
 /// Loads at the start, where the last step did not leave them: a function of the state.

@@ -23,11 +23,11 @@
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_impacts.h>
 #include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_projection.h>
 
 #include <memory>
 #include <span>
@@ -46,6 +46,8 @@ public:
   /// those at its end and `report` tells what happened; on an error none of the three has changed.
   void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
 
+  /// Options.
+  [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
@@ -64,8 +66,6 @@ private:
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,
                             const StepInput& in);
-  void project_positions(const StepIsland& island, const StepInput& in);
-  void project_component(Index component, std::span<const Constraint> constraints, const StepInput& in);
   void evaluate_start(const State& state, Companion& companion);
 
   StepParts parts_;
@@ -76,7 +76,7 @@ private:
   IslandIteration iteration_;
   StepBalance balance_;
   StepMemory memory_;
-  GapProjection projection_;
+  StepProjection projection_;
   CouplingWatch couplings_;
 };
 

@@ -4,11 +4,11 @@ Names, defaults and units are those of the C++ library; functions stay functions
 attributes. `from` is a word of Python: that argument is `from_`.
 """
 
-from . import planar, spatial
+from . import planar, spatial, tables
 from ._core import *  # noqa: F403
-from .recording import Recorder, Recording, load_recording
-from .viewer import write_view
+from .recording import Recorder as Recorder, Recording as Recording, load_recording as load_recording
 from .scene import Scene, SceneError, load_scene, save_scene
+from .viewer import write_view as write_view
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -3,6 +3,7 @@
     carom run scene.json --until 10 --mode event-driven --record run.h5 --view run.html
     carom check scene.json
     carom view run.h5
+    carom import robot.urdf scene.json
     carom schema
 
 Exit codes: 0 done; 1 a file is wrong, or `check` found something; 2 wrong command line; 3 the run failed; 130
@@ -21,10 +22,11 @@ from pathlib import Path
 from typing import Any, Optional
 
 from . import _core
-from .scene import Scene, load_scene, schema
+from .scene import Scene, load_scene, load_urdf, save_scene, schema
 from .scene.build import MODES
 from .scene.findings import examine
 from .scene.references import SECTIONS
+from .scene.urdf import PLANES
 
 WRONG, FAILED, INTERRUPTED = 1, 3, 130
 
@@ -139,6 +141,13 @@ def view(options: argparse.Namespace) -> int:
     return 0
 
 
+def convert(options: argparse.Namespace) -> int:
+    """carom import: a scene file from a robot description (URDF) that moves in a plane."""
+    save_scene(load_urdf(options.robot, options.plane), options.scene)
+    print(f"scene: {options.scene}")
+    return 0
+
+
 def print_schema(options: argparse.Namespace) -> int:
     """carom schema: the JSON schema of scene files."""
     print(json.dumps(schema(), indent=2, ensure_ascii=False))
@@ -171,6 +180,12 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--output", type=Path, metavar="PAGE", help="else the recording's name with .html")
     command.add_argument("--open", action="store_true", help="open it in the browser")
     command.set_defaults(action=view)
+
+    command = commands.add_parser("import", help="make a scene of a robot", description=convert.__doc__)
+    command.add_argument("robot", type=Path, metavar="robot.urdf")
+    command.add_argument("scene", type=Path, metavar="scene.json")
+    command.add_argument("--plane", choices=list(PLANES), default="xz", help="right and up; xz if not given")
+    command.set_defaults(action=convert)
 
     command = commands.add_parser(
         "schema", help="print the JSON schema of scenes", description=print_schema.__doc__

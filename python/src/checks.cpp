@@ -162,6 +162,7 @@ nb::list described() {
     item["module"] = record->module;
     item["role"] = record->role;
     item["doc"] = record->doc;
+    item["structs"] = Convert<std::vector<std::string>>::cast(record->structs);
     item["type"] = nb::borrow(record->type);
     item["writable"] = record->writable;
     item["fields"] = fields;

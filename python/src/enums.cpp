@@ -24,6 +24,7 @@ void bind_enums(nb::module_& core) {
   bind_enum<ForceRule>(core);
   bind_enum<ImpactTimes>(core);
   bind_enum<Iteration>(core);
+  bind_enum<EnergyGain>(core);
   bind_enum<ImpactOrder>(core);
   bind_enum<ImpactLaw>(core);
   bind_enum<FlowMethod>(core);

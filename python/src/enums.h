@@ -43,6 +43,7 @@ constexpr auto numbered(const char* const (&names)[N]) {
 CAROM_PYTHON_ENUM(carom::ForceRule, "ForceRule", "trapezoidal", "energy_momentum")
 CAROM_PYTHON_ENUM(carom::ImpactTimes, "ImpactTimes", "at_step_start", "located")
 CAROM_PYTHON_ENUM(carom::Iteration, "Iteration", "fixed_point", "anderson", "linearly_implicit", "automatic")
+CAROM_PYTHON_ENUM(carom::EnergyGain, "EnergyGain", "report", "limit", "refuse")
 CAROM_PYTHON_ENUM(carom::ImpactOrder, "ImpactOrder", "simultaneous", "sequential")
 CAROM_PYTHON_ENUM(carom::ImpactLaw, "ImpactLaw", "newton", "poisson", "energetic")
 CAROM_PYTHON_ENUM(carom::FlowMethod, "FlowMethod", "explicit_runge_kutta", "adams", "bdf", "one_step")

@@ -1,5 +1,7 @@
 #include "parts.h"
 
+#include "python_element.h"
+
 #include <map>
 
 namespace carom_python {
@@ -19,6 +21,20 @@ const PartType* part_type(nb::handle type) {
 }
 
 void register_part(nb::handle type, const PartType& part) { table()[type.ptr()] = part; }
+
+std::string part_types(std::string_view role) {
+  std::string types;
+  for (const Record* record : records()) {
+    if (record->role != role) continue;
+    types += (types.empty() ? "" : " | ") + record->module + "." + record->name;
+  }
+  return types;
+}
+
+bool has_role(nb::handle part, carom::Role role) {
+  const PartType* const type = part_type(part.type());
+  return type != nullptr ? type->role == role : role == carom::Role::force && is_python_element(part);
+}
 
 const char* role_name(carom::Role role) {
   switch (role) {

@@ -23,6 +23,16 @@ struct PartType {
 /// That of a Python type; null if none.
 [[nodiscard]] const PartType* part_type(nb::handle type);
 void register_part(nb::handle type, const PartType& part);
+/// Types of one role, as in signatures: "carom._core.planar.Particle | ...". \param role as Record::role
+[[nodiscard]] std::string part_types(std::string_view role);
+
+/// An argument that is a part of one role: what overloads of System.add() are told apart by.
+template <carom::Role role>
+struct PartOf {
+  nb::handle object;
+};
+/// Whether an object is a part of that role, one written in Python too.
+[[nodiscard]] bool has_role(nb::handle part, carom::Role role);
 [[nodiscard]] const char* role_name(carom::Role role);
 
 /// Binds a part.
@@ -46,3 +56,16 @@ void bind_part(nb::module_& module, const char* name, const std::vector<std::str
 }
 
 }  // namespace carom_python
+
+namespace nanobind::detail {
+
+template <carom::Role role>
+struct type_caster<carom_python::PartOf<role>> {
+  NB_TYPE_CASTER(carom_python::PartOf<role>, const_name("object"))
+  bool from_python(handle from, uint8_t /*flags*/, cleanup_list* /*cleanup*/) noexcept {
+    value.object = from;
+    return carom_python::has_role(from, role);
+  }
+};
+
+}  // namespace nanobind::detail

@@ -53,8 +53,7 @@ void add_property(nb::handle type, const Record& record, const Field& field) {
   const std::string getter = "def " + field.python() + "(self) -> " + field.type->names.gives;
   const std::string setter =
       "def " + field.python() + "(self, value: " + field.type->names.accepts + ") -> None";
-  // Without a scope: in one, functions of the same name are overloads, and the setter takes the getter's
-  // place.
+  // Without a scope: the setter would become an overload of the getter there.
   nb::object read =
       nb::cpp_function(get, nb::is_getter(), nb::is_method(), nb::sig(getter.c_str()), field.doc.c_str());
   nb::object write = nb::none();
@@ -83,7 +82,8 @@ const Record* record_of(nb::handle type) {
 }
 
 const Field* Record::find(std::string_view field) const {
-  const auto found = std::ranges::find_if(fields, [&](const Field& each) { return each.name == field; });
+  const auto found = std::ranges::find_if(
+      fields, [&](const Field& each) { return each.name == field || each.python() == field; });
   return found != fields.end() ? &*found : nullptr;
 }
 
@@ -99,7 +99,7 @@ void Record::set(void* record, const nb::args& given, const nb::kwargs& named) c
   std::size_t seen = given.size();
   for (const auto& [key, value] : named) {
     const auto word = nb::cast<std::string_view>(key);
-    const Field* const field = find(word == "from_" ? word.substr(0, 4) : word);
+    const Field* const field = find(word);
     if (field == nullptr || (given.size() == 1 && field == &fields.front())) {
       std::string text = name + (field == nullptr ? " has no argument '" : " has two values of '") +
                          std::string(word) + "'; arguments:";

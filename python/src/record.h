@@ -53,8 +53,8 @@ struct Field {
   std::string doc, unit;
   nb::handle default_value;  ///< shown in signatures; lives as long as the program
 
-  /// Its name in Python, where `from` is a word of the language.
-  [[nodiscard]] std::string python() const { return name == "from" ? "from_" : name; }
+  /// Its name in Python, where `from` and `with` are words of the language.
+  [[nodiscard]] std::string python() const { return name == "from" || name == "with" ? name + "_" : name; }
 
   [[nodiscard]] void* of(void* record) const { return static_cast<char*>(record) + offset; }
   [[nodiscard]] const void* of(const void* record) const { return static_cast<const char*>(record) + offset; }
@@ -63,14 +63,15 @@ struct Field {
 /// One struct: its name in Python, the module it is in, its fields.
 struct Record {
   std::string name, module, doc;
-  std::string role;  ///< of a part: "body", "force", ...; "" of others
+  std::string role;                  ///< of a part: "body", "element", ...; "" of others
+  std::vector<std::string> structs;  ///< names in C++: its own, those of its bases
   std::deque<Field> fields;
   nb::handle type;
   bool writable = true;
 
   /// Sets fields from arguments. Raises TypeError naming the field.
   void set(void* record, const nb::args& given, const nb::kwargs& named) const;
-  /// Field of that name, null if none.
+  /// Field of that name, in C++ or in Python; null if none.
   [[nodiscard]] const Field* find(std::string_view field) const;
   /// "RigidBody(mass=..., angle=0.5)": fields that are not as by default.
   [[nodiscard]] std::string text(const void* record) const;
@@ -123,6 +124,7 @@ nb::class_<P> bind_record(nb::module_& module, const char* name, const std::vect
   record.module = nb::cast<std::string>(module.attr("__name__"));
   record.doc = doc(doc_keys.front());
   record.writable = writable;
+  record.structs = doc_keys;
   Fields<P> fields(record);
   describe(fields);
   nb::class_<P> type(module, name, record.doc.c_str());

@@ -111,9 +111,10 @@ void bind_statistics(nb::module_& core) {
         "forces_not_unique", &P::forces_not_unique)("energy_gains", &P::energy_gains)(
         "energy_gained", &P::energy_gained)("lasting_gains", &P::lasting_gains)(
         "lasting_gained", &P::lasting_gained)("cut_sequences", &P::cut_sequences)(
-        "scaled_impacts", &P::scaled_impacts)("deepest_gap", &P::deepest_gap)(
-        "worst_residual", &P::worst_residual)("events", &P::events)("flow_steps", &P::flow_steps)(
-        "flow_evaluations", &P::flow_evaluations)("flow_restarts", &P::flow_restarts);
+        "scaled_impacts", &P::scaled_impacts)("plastic_jams", &P::plastic_jams)(
+        "deepest_gap", &P::deepest_gap)("worst_residual", &P::worst_residual)("events", &P::events)(
+        "flow_steps", &P::flow_steps)("flow_evaluations", &P::flow_evaluations)("flow_restarts",
+                                                                                &P::flow_restarts);
   });
   bind_record<ChainStatistics>(core, "ChainStatistics", {"ChainStatistics"}, false, [](auto& fields) {
     using P = ChainStatistics;

@@ -81,8 +81,8 @@ void Runner::stop_when(StopFunction stop) {
 }
 
 std::size_t Runner::keep(nb::handle function) {
-  kept_.push_back(nb::borrow(function));
-  return kept_.size() - 1;
+  kept_.emplace(next_, nb::borrow(function));
+  return next_++;
 }
 
 void Runner::forget_model() {

@@ -7,9 +7,12 @@
 #include <carom/integrators/simulation.h>
 
 #include <atomic>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace carom_python {
@@ -49,18 +52,22 @@ public:
   [[nodiscard]] nb::object system();
   void edit(nb::handle change);
   void switch_to(const carom::Mode& mode);
-  /// Keeps a function of the user as long as the simulation; returns its number.
+  /// Keeps a function of the user until it is dropped; returns its number.
   std::size_t keep(nb::handle function);
-  [[nodiscard]] nb::handle kept(std::size_t number) const { return kept_[number]; }
+  void drop(std::size_t number) { (void)kept_.extract(number); }  // freed once it is out of the list
+  /// That function, which may drop itself while it runs.
+  [[nodiscard]] nb::object kept(std::size_t number) const { return kept_.at(number); }
   /// Forgets all functions, and that they are called (for the collector of garbage).
-  void clear() { kept_.clear(); }
-  [[nodiscard]] const std::vector<nb::object>& all_kept() const { return kept_; }
+  void clear() { std::exchange(kept_, {}); }
+  [[nodiscard]] const std::map<std::size_t, nb::object>& all_kept() const { return kept_; }
   [[nodiscard]] const Journal& journal() const { return journal_; }
   /// Asks `stop` from now on; a null one ends that.
   void stop_when(carom::StopFunction stop);
   /// First coordinate and velocity of every body, in the order in which bodies were added.
   [[nodiscard]] const std::vector<std::pair<carom::BodyId, carom::BodySlot>>& slots();
   void forget_model();
+
+  std::optional<std::size_t> log_sink{};  ///< number of the function that gets the lines of the log
 
 private:
   struct Restore {
@@ -74,7 +81,8 @@ private:
 
   Journal journal_;
   std::unique_ptr<carom::Simulation> simulation_;
-  std::vector<nb::object> kept_;
+  std::map<std::size_t, nb::object> kept_;
+  std::size_t next_ = 0;
   carom::StopFunction stop_;
   bool python_laws_ = false;
   nb::object system_;

@@ -18,39 +18,64 @@ using namespace carom;
 
 namespace {
 
-CallbackId observe(Runner& self, nb::handle observer) {
+/// A function of the user that a simulation calls.
+struct Callback {
+  CallbackId id;
+  std::size_t number = 0;
+};
+
+// Keeps a function, and lets `begin` hand it to the simulation by its number.
+template <class Begin>
+Callback keep(Runner& self, nb::handle function, const Begin& begin) {
+  const std::size_t number = self.keep(function);
+  try {
+    return {begin(number), number};
+  } catch (...) {
+    self.drop(number);
+    throw;
+  }
+}
+
+Callback observe(Runner& self, nb::handle observer) {
   if (PyCallable_Check(observer.ptr()) == 0)
     refuse("observe(): observer", "a function of a Simulation", observer);
-  const std::size_t number = self.keep(observer);
-  return self.get().observe([&self, number](const Simulation&) {
-    const nb::gil_scoped_acquire lock;
-    self.kept(number)(nb::find(self));
+  return keep(self, observer, [&](std::size_t number) {
+    return self.get().observe([&self, number](const Simulation&) {
+      const nb::gil_scoped_acquire lock;
+      self.kept(number)(nb::find(self));
+    });
   });
 }
 
-CallbackId every(Runner& self, double interval, nb::handle action) {
+Callback every(Runner& self, double interval, nb::handle action) {
   if (PyCallable_Check(action.ptr()) == 0) refuse("every(): action", "a function of a Simulation", action);
-  const std::size_t number = self.keep(action);
-  return self.get().every(interval, [&self, number](Simulation&) {
-    const nb::gil_scoped_acquire lock;
-    self.kept(number)(nb::find(self));
+  return keep(self, action, [&](std::size_t number) {
+    return self.get().every(interval, [&self, number](Simulation&) {
+      const nb::gil_scoped_acquire lock;
+      self.kept(number)(nb::find(self));
+    });
   });
 }
 
 void set_log(Runner& self, nb::handle sink, nb::handle level) {
+  const std::optional<std::size_t> before = self.log_sink;
   if (sink.is_none()) {
     self.get().log() = Log();
+    if (before) self.drop(*before);
+    self.log_sink.reset();
     return;
   }
   if (PyCallable_Check(sink.ptr()) == 0) refuse("set_log(): sink", "a function of a level and a text", sink);
   const auto least = read<LogLevel>(level, "set_log(): level");
   const std::size_t number = self.keep(sink);
+  self.log_sink = number;
   self.get().log() = Log(
       [&self, number](LogLevel of, std::string_view text) {
         const nb::gil_scoped_acquire lock;
         self.kept(number)(nb::cast(of), nb::str(text.data(), text.size()));
       },
       least);
+  if (before) self.drop(*before);
 }
 
 // Numbers of all bodies, in the order in which they were added; `bodies` says which.
@@ -103,8 +128,12 @@ void bind_runs(Class& type) {
           nb::sig("def __init__(self, system: System, mode: TimeStepping | EventDriven) -> None"),
           doc("Simulation.Simulation"))
       .def(
-          "step", [](Runner& self) { self.run([](Simulation& simulation) { simulation.step(); }); },
-          doc("Simulation.step"))
+          "step",
+          [](Runner& self) {
+            self.run([](Simulation& simulation) { simulation.step(); });
+            return self.get().report();
+          },
+          (std::string(doc("Simulation.step")) + " Returns the report of the step: a copy.").c_str())
       .def(
           "run_until",
           [](Runner& self, nb::handle time) {
@@ -121,7 +150,11 @@ void bind_runs(Class& type) {
                    "typing.Any]) -> CallbackId"),
            doc("Simulation.every"))
       .def(
-          "remove_callback", [](Runner& self, const CallbackId& id) { self.get().remove_callback(id); },
+          "remove_callback",
+          [](Runner& self, const Callback& callback) {
+            self.get().remove_callback(callback.id);
+            self.drop(callback.number);
+          },
           nb::arg("callback"), doc("Simulation.remove_callback"))
       .def(
           "stop_when",
@@ -260,7 +293,7 @@ void bind_arrays(Class& type) {
 int traverse(PyObject* self, visitproc visit, void* arg) {
   Py_VISIT(Py_TYPE(self));
   if (!nb::inst_ready(self)) return 0;
-  for (const nb::object& kept : nb::inst_ptr<Runner>(self)->all_kept()) Py_VISIT(kept.ptr());
+  for (const auto& kept : nb::inst_ptr<Runner>(self)->all_kept()) Py_VISIT(kept.second.ptr());
   return 0;
 }
 int clear(PyObject* self) {
@@ -274,7 +307,7 @@ PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
 }  // namespace
 
 void bind_simulation(nb::module_& core) {
-  nb::class_<CallbackId>(core, "CallbackId", doc("CallbackId")).def(nb::init<>());
+  nb::class_<Callback>(core, "CallbackId", doc("CallbackId")).def(nb::init<>());
   Class type(core, "Simulation", nb::type_slots(slots), doc("Simulation"));
   bind_runs(type);
   bind_results(type);

@@ -48,8 +48,45 @@ void drop(Model& model, Role role, Id id) {
 
 Index serial_of(nb::handle id) { return nb::cast<Index>(id.attr("serial")); }
 
-// add(part), add(part, "name"), add(part, surface), add(part, surface, "name").
-nb::object add(Model& model, nb::handle part, nb::handle surface, nb::handle name) {
+// Adds a part; `surface` of a shape on ground, or null.
+nb::object add(Model& model, nb::handle part, const Surface* surface, std::string name) {
+  Entry entry;
+  if (surface != nullptr) entry.surface = *surface;
+  entry.name = name;
+  nb::object id;
+  if (const PartType* const type = part_type(part.type())) {
+    entry.role = type->role;
+    entry.part = type->copy(nb::inst_ptr<void>(part));
+    id = type->add(model.get(), nb::inst_ptr<void>(entry.part), surface, std::move(name));
+  } else {
+    entry.role = Role::force;
+    entry.part = nb::borrow(part);
+    id = add_python_element(model.get(), part, std::move(name));
+  }
+  entry.serial = serial_of(id);
+  entry.id = id;
+  model.entries.push_back(std::move(entry));
+  return id;
+}
+
+template <Role role>
+void bind_add(nb::class_<Model>& type, const char* id) {
+  std::string types = part_types(role_name(role));
+  if (role == Role::force) types += " | carom._core.planar.ForceElement | carom._core.spatial.ForceElement";
+  const std::string signature = "def add(self, part: " + types + ", name: str | None = None) -> " + id;
+  type.def(
+      "add",
+      [](Model& self, PartOf<role> part, std::optional<std::string> name) {
+        return add(self, part.object, nullptr, std::move(name).value_or(""));
+      },
+      nb::arg("part"), nb::arg("name") = nb::none(), nb::sig(signature.c_str()), doc("System.add"));
+}
+
+// Of shapes on ground, and what fits no other overload: add(part), add(part, "name"), add(part, surface),
+// add(part, surface, "name").
+nb::object add_obstacle(Model& model, nb::handle part, nb::handle surface, nb::handle name) {
+  const bool known = part_type(part.type()) != nullptr || is_python_element(part);
+  if (!known) refuse("add(): part", "a part of carom.planar or carom.spatial", part);
   std::string label;
   std::optional<Surface> law;
   if (nb::isinstance<nb::str>(surface) && name.is_none()) {
@@ -58,30 +95,10 @@ nb::object add(Model& model, nb::handle part, nb::handle surface, nb::handle nam
     Convert<std::optional<Surface>>::load(surface, law, "add(): surface");
   }
   if (!name.is_none()) Convert<std::string>::load(name, label, "add(): name");
-
-  Entry entry;
-  entry.surface = law;
-  entry.name = label;
-  const PartType* const type = part_type(part.type());
-  nb::object id;
-  if (type != nullptr) {
-    if (law && type->role != Role::obstacle) {
-      throw nb::type_error("add(): surface: only shapes on ground are added with a Surface");
-    }
-    const void* const data = nb::inst_ptr<void>(part);
-    entry.role = type->role;
-    entry.part = type->copy(data);
-    id = type->add(model.get(), nb::inst_ptr<void>(entry.part), law ? &*law : nullptr, label);
-  } else {
-    id = add_python_element(model.get(), part, label);
-    if (!id.is_valid()) refuse("add(): part", "a part of carom.planar or carom.spatial", part);
-    entry.role = Role::force;
-    entry.part = nb::borrow(part);
+  if (law && !has_role(part, Role::obstacle)) {
+    throw nb::type_error("add(): surface: only shapes on ground are added with a Surface");
   }
-  entry.serial = serial_of(id);
-  entry.id = id;
-  model.entries.push_back(std::move(entry));
-  return id;
+  return add(model, part, law ? &*law : nullptr, std::move(label));
 }
 
 MaterialId material(Model& model, const std::string& name) {
@@ -281,16 +298,19 @@ void bind_laws_of(nb::class_<Model>& type) {
 void bind_system(nb::module_& core) {
   bind_entry(core);
   nb::class_<Model> type(core, "System", doc("System"));
-  type.def(nb::init<>())
-      .def("__copy__",
-           [](Model& self) {
-             self.get();
-             return Model(self);
-           })
-      .def("add", &add, nb::arg("part"), nb::arg("surface") = nb::none(), nb::arg("name") = nb::none(),
-           nb::sig("def add(self, part: typing.Any, surface: Surface | str | None = None, name: str | None = "
-                   "None) -> typing.Any"),
-           doc("System.add"));
+  type.def(nb::init<>()).def("__copy__", [](Model& self) {
+    self.get();
+    return Model(self);
+  });
+  bind_add<Role::body>(type, "BodyId");
+  bind_add<Role::force>(type, "ElementId");
+  bind_add<Role::joint>(type, "JointId");
+  bind_add<Role::shape>(type, "ShapeId");
+  const std::string obstacle =
+      "def add(self, part: " + part_types(role_name(Role::obstacle)) +
+      ", surface: Surface | str | None = None, name: str | None = None) -> ObstacleId";
+  type.def("add", &add_obstacle, nb::arg("part"), nb::arg("surface") = nb::none(),
+           nb::arg("name") = nb::none(), nb::sig(obstacle.c_str()), doc("System.add"));
   bind_for<BodyId>(type);
   bind_for<ElementId>(type);
   bind_for<JointId>(type);

@@ -38,6 +38,10 @@ struct Convert<carom::planar::PrescribedMotion> : BoundRecord<carom::planar::Pre
 template <>
 struct Convert<carom::StepControl> : BoundRecord<carom::StepControl> {};
 template <>
+struct Convert<carom::ImpactRules> : BoundRecord<carom::ImpactRules> {};
+template <>
+struct Convert<carom::OverlapRules> : BoundRecord<carom::OverlapRules> {};
+template <>
 struct Convert<carom::SweepBudget> : BoundRecord<carom::SweepBudget> {};
 template <>
 struct Convert<carom::TimeStepping> : BoundRecord<carom::TimeStepping> {};

@@ -2,6 +2,7 @@
 
 import pathlib
 import runpy
+import sys
 
 import pytest
 
@@ -23,4 +24,8 @@ def pytest_generate_tests(metafunc):
 @pytest.fixture(scope="session")
 def programs():
     """The program of each scene, by name."""
-    return runpy.run_path(str(PYTHON / "examples" / "scenes.py"))["SCENES"]
+    sys.path.insert(0, str(PYTHON / "examples"))
+    try:
+        return runpy.run_path(str(PYTHON / "examples" / "scenes.py"))["SCENES"]
+    finally:
+        sys.path.pop(0)

@@ -89,9 +89,11 @@ def test_check_names_what_it_finds(tmp_path, capsys):
     assert "units: bodies[2].position is 2000 m, 2.0e+07 times shapes[0].radius ('dot'), 0.0001 m" in said
 
 
-def test_schema_is_printed(capsys):
-    assert main(["schema"]) == 0
-    assert json.loads(capsys.readouterr().out) == scene.schema()
+def test_schema_is_printed():
+    out = subprocess.run(
+        [sys.executable, "-m", "carom", "schema"], check=True, capture_output=True, text=True
+    )
+    assert json.loads(out.stdout) == scene.schema()
 
 
 def test_recording_and_view_say_what_is_missing(monkeypatch, capsys, tmp_path):
@@ -110,31 +112,66 @@ def test_run_records_and_shows(tmp_path, capsys):
     assert times[0] == 0.0 and times[-1] == 2.0 and len(times) == 21
 
 
+PROGRAM = (
+    "import sys; from carom.command import main; print('started', flush=True); sys.exit(main(sys.argv[1:]))"
+)
+
+
 def process(*words):
-    """The command in a process of its own, which Ctrl-C may end."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "carom", *words],
+    """The command in a process of its own, which Ctrl-C may end; it has begun."""
+    child = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
+    assert child.stdout.readline() == "started\n"
+    return child
 
 
-@pytest.mark.parametrize("mode", ["time-stepping", "event-driven"])
-def test_ctrl_c_ends_a_run(mode, tmp_path):
-    endless = tmp_path / "scene.json"
-    endless.write_text(
+def test_view_makes_a_page_of_a_recording(tmp_path, capsys):
+    pytest.importorskip("carom.viewer")
+    pytest.importorskip("h5py")
+    words = ["run", str(BALL), "--record", str(tmp_path / "run.h5"), "--view", str(tmp_path / "now.html")]
+    assert main(words) == 0
+    assert main(["view", str(tmp_path / "run.h5")]) == 0
+    assert (tmp_path / "run.html").stat().st_size == (tmp_path / "now.html").stat().st_size > 1000
+
+
+@pytest.fixture
+def endless(tmp_path):
+    """A scene that nobody waits for: an oscillator until 1e7 s."""
+    file = tmp_path / "endless.json"
+    file.write_text(
         '{"carom": 1, "bodies": [{"type": "Particle", "mass": 1, "contact": false, "position": [2, 0]}], '
         '"elements": [{"type": "SpringDamper", "from": "ground", "to": 0, "stiffness": 1, "free_length": 1}]}'
     )
-    words = ["run", str(endless), "--until", "1e7", "--mode", mode]
-    with process(*words) as child:
-        time.sleep(2.0)  # it has started
+    return file
+
+
+def interrupted(*words):
+    """Ends a run by Ctrl-C a second after its start."""
+    with process("run", *words) as child:
+        time.sleep(1.0)
         os.kill(child.pid, signal.SIGINT)
         out, errors = child.communicate(timeout=60)
     assert child.returncode == 130
     assert "ended by Ctrl-C at" in errors and "residual" in out
+
+
+@pytest.mark.parametrize("mode", ["time-stepping", "event-driven"])
+def test_ctrl_c_ends_a_run(mode, endless):
+    interrupted(str(endless), "--until", "1e7", "--mode", mode)
+
+
+def test_ctrl_c_leaves_a_record_that_can_be_read(endless, tmp_path):
+    recording = pytest.importorskip("carom.recording")
+    pytest.importorskip("h5py")
+    record = tmp_path / "run.h5"
+    words = [str(endless), "--until", "1e7", "--mode", "time-stepping", "--step", "0.01"]
+    interrupted(*words, "--record", str(record), "--interval", "0.5")
+    assert 0.0 < recording.load_recording(record).times[-1] < 1e7
 
 
 def test_a_reader_that_has_enough_is_no_error():

@@ -6,7 +6,7 @@ import pytest
 
 import carom
 from carom import ModelError, SceneError, Surface, System, TimeStepping, ground, planar, scene, spatial
-from carom.planar import Disc, Gravity, HalfPlane, Particle, RigidBody
+from carom.planar import Disc, Particle, RigidBody
 
 # What the slow ones run, so that each takes less than half a second.
 SHORT = {"discs_in_a_box": 0.05, "bars_in_a_drum": 0.2}
@@ -169,7 +169,7 @@ ERRORS = [
     ),
     ('"position": [0.0, 1.0]', '"mass": 2', "5: bodies[0].mass: is given twice; first in line 4"),
     ('"inertia": 0.5', '"inertia": -0.5', "6: bodies[1].mass.inertia: rigid body 'rod'"),
-    ('"Particle"', '"particle"', '4: bodies[0].type: must be one of Particle, RigidBody, not "particle"'),
+    ('"Particle"', '"particle"', '4: bodies[0].type: is "particle"; the nearest known: "Particle"'),
     ('"name": "rod"', '"name": "ball"', "6: bodies[1]: rigid body 'ball': name is taken"),
     (
         '"body": "rod"',
@@ -180,11 +180,27 @@ ERRORS = [
     ('"body": "rod"', '"body": 1.0', "8: shapes[0].body: must be the name of a body, not 1.0"),
     ('"radius": 0.5', '"radius": 0', "8: shapes[0].radius: disc"),
     ('"friction": 0.5', '"friction": -0.5', "10: obstacles[0].surface.friction: half-plane"),
-    ('"event-driven"', '"events"', "12: simulation.mode: must be one of time-stepping, event-driven"),
+    ('"event-driven"', '"events"', '12: simulation.mode: is "events"; allowed: time-stepping, event-driven'),
     ('"interval": 0.1', '"step": 0.1', "12: simulation.options.step: EventDriven has no such field"),
+    (
+        '"interval": 0.1',
+        '"interval": 0',
+        "12: simulation.options.interval: event-driven mode: interval is 0; allowed",
+    ),
+    (
+        '"event-driven", "options": {"interval": 0.1}',
+        '"time-stepping", "options": {"contact_budget": {"sweeps": -1}}',
+        "12: simulation.options.contact_budget.sweeps: time stepping: contact_budget.sweeps is -1; allowed",
+    ),
     ('"interval": 0.1', '"event_limit": []', "12: simulation.options.event_limit: must be a number"),
     ('"carom": 1', '"carom": 2', "2: carom: the file is of version 2; this carom reads versions up to 1"),
     ('"carom": 1', '"carom": 1.0', "2: carom: must be the version"),
+    (
+        '"event-driven"',
+        '"event_driven"',
+        '12: simulation.mode: is "event_driven"; the nearest known: "event-driven"',
+    ),
+    ('"event-driven"', "1", "12: simulation.mode: is 1; allowed: time-stepping"),
     ('"carom": 1,', "", "1: a scene needs the field 'carom'"),
     ('"shapes"', '"shape"', '8: shape: a scene has no such field; the nearest known: "shapes"'),
     ('"radius": 0.5}]', '"radius": 0.5}', "9: shapes: needs ',' or ']' after item 1, not \":\""),

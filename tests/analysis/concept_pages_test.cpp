@@ -236,7 +236,8 @@ TEST(ContactLawPage, UnequalCoefficientsGainEnergyAsItSays) {
     EXPECT_NEAR(energy.total() / energy.initial() - 1.0, row.part, 1e-14);
     EXPECT_NEAR(simulation.report().energy_gain, std::max(row.part, 0.0) * energy.initial(), 1e-14);
   }
-  Simulation refused(strikes_at_its_corner(1.0, 0.0), EventDriven{.refuse_energy_gain = true});
+  Simulation refused(strikes_at_its_corner(1.0, 0.0),
+                     EventDriven{.impact_rules = {.energy_gain = EnergyGain::refuse}});
   EXPECT_THROW(refused.step(), SolverError);
 }
 
@@ -348,8 +349,11 @@ TEST(ErrorsPage, CommonFailuresSayWhatItSays) {
       {"does not contract",
        [&] { run(strut(1e6), TimeStepping{.step = 1e-2, .iteration = Iteration::fixed_point}); }},
       {"are not finite", [&] { run(blown_up(), TimeStepping{}); }},
-      {"refuse_energy_gain",
-       [&] { run(strikes_at_its_corner(1.0, 0.0), TimeStepping{.refuse_energy_gain = true}); }},
+      {"impact_rules.energy_gain",
+       [&] {
+         run(strikes_at_its_corner(1.0, 0.0),
+             TimeStepping{.impact_rules = {.energy_gain = EnergyGain::refuse}});
+       }},
       {"events per second", [&] { run(ball_over_floor(1e-5, hard), EventDriven{.event_limit = 100.0}); }},
       {"at the smallest step",
        [&] {

@@ -34,6 +34,8 @@ System bodies() {
   return system;
 }
 
+constexpr IslandOptions in_factors{.factored_from = factored_constraints};
+
 class FactoredIsland : public testing::Test {
 protected:
   FactoredIsland() : assembly_(bodies()), masses_(assembly_) {
@@ -77,8 +79,7 @@ protected:
 TEST_F(FactoredIsland, IsTheSameProblem) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const std::vector<Constraint> list = constraints(60 + static_cast<int>(seed), seed);
-    IslandProblem island;
-    island.allow_factors();
+    IslandProblem island(in_factors);
     island.build(list, before_.data());
     island.respond(masses_);
     ASSERT_TRUE(island.problem().is_factored());
@@ -124,16 +125,14 @@ TEST_F(FactoredIsland, IsTheSameProblem) {
 
 TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
   const std::vector<Constraint> list = constraints(80, 4);
-  IslandProblem island;
-  island.allow_factors();
+  IslandProblem island(in_factors);
   island.build(list, before_.data());
   island.respond(masses_);
   island.set_free_velocity(free_.data());
   ASSERT_TRUE(island.solve(chain_).usable());
   EXPECT_GT(island.report().iterations, 0);
   const std::vector<double> answer(island.impulses().begin(), island.impulses().end());
-  IslandProblem next;
-  next.allow_factors();
+  IslandProblem next(in_factors);
   next.build(list, before_.data());
   next.respond(masses_);
   next.start_from(answer);
@@ -151,7 +150,7 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
     return island.problem().is_factored();
   };
   EXPECT_FALSE(respond(constraints(factored_constraints, 1)));  // not allowed
-  island.allow_factors();
+  island = IslandProblem(in_factors);
   EXPECT_FALSE(respond(constraints(factored_constraints - 1, 1)));
   EXPECT_TRUE(respond(constraints(factored_constraints, 1)));
   std::vector<Constraint> of_one = constraints(factored_constraints, 1);

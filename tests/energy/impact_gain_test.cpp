@@ -82,7 +82,8 @@ TEST(ImpactGain, GainedExactlyWhereTheFormulaSays) {
 }
 
 TEST(ImpactGain, CanBeRefused) {
-  Simulation simulation(inconsistent(1.0, 0.0), TimeStepping{.refuse_energy_gain = true});
+  Simulation simulation(inconsistent(1.0, 0.0),
+                        TimeStepping{.impact_rules = {.energy_gain = EnergyGain::refuse}});
   const State before = simulation.state();
   try {
     simulation.step();
@@ -98,7 +99,8 @@ TEST(ImpactGain, CanBeRefused) {
   EXPECT_EQ(simulation.state().v, before.v);
   EXPECT_EQ(simulation.statistics().steps, 0);
   // A law that gains nothing passes.
-  Simulation allowed(inconsistent(1.0, 1.0), TimeStepping{.refuse_energy_gain = true});
+  Simulation allowed(inconsistent(1.0, 1.0),
+                     TimeStepping{.impact_rules = {.energy_gain = EnergyGain::refuse}});
   EXPECT_NO_THROW(allowed.step());
 }
 

@@ -109,7 +109,7 @@ TEST(LastingGain, IsSavedWithTheStatistics) {
 
 // It is no gain of the law, which alone is refused.
 TEST(LastingGain, IsNotRefused) {
-  Simulation simulation(tumbling(), TimeStepping{.refuse_energy_gain = true});
+  Simulation simulation(tumbling(), TimeStepping{.impact_rules = {.energy_gain = EnergyGain::refuse}});
   EXPECT_NO_THROW(simulation.run_until(1.0));
   EXPECT_GT(simulation.statistics().lasting_gains, 0);
 }

@@ -89,6 +89,28 @@ TEST(EnergyRecorder, RecordsImpactsAsEvents) {
   EXPECT_EQ(events[0].text, "particle 'lower' on half-plane 'plane', slip+");
 }
 
+TEST(EnergyRecorder, PenetrationCountsBodiesInEachOther) {
+  // Two discs, 1.5 steps apart, meet at 2 m/s: at the end of the second step they are half a step deep, which
+  // the row of that state must know although no step has begun there.
+  constexpr double h = 1e-3, v = 1.0, radius = 0.1;
+  System system;
+  const MaterialId rubber = system.material("rubber");
+  system.between(rubber, rubber, Surface{.friction = 0.0, .normal_restitution = 0.5});
+  for (const double side : {-1.0, 1.0}) {
+    const BodyId body = system.add(planar::RigidBody{.mass = planar::disc(1.0, radius),
+                                                     .position = {side * (radius + 1.5 * h * v), 0.0},
+                                                     .velocity = {-side * v, 0.0}});
+    system.add(planar::Disc{.body = body, .radius = radius, .material = rubber});
+  }
+  Simulation simulation(system, TimeStepping{.step = h});
+  const EnergyRecorder every(simulation);
+  simulation.run_until(2.0 * h);
+  const std::vector<double> depth = every.trace().values("penetration");
+  ASSERT_EQ(depth.size(), 3U);
+  EXPECT_EQ(depth[1], 0.0);
+  EXPECT_NEAR(depth[2], h * v, 1e-15);  // rounding of the coordinates
+}
+
 TEST(EnergyRecorder, PenetrationIsTheDeepestSinceTheRowBefore) {
   // A ball falls at 3 m/s, without gravity, from 10.4 steps above the floor: in the 11th step it goes 0.6
   // steps deep, in the 12th the impact turns it: at (1 - e)/2 less speed it goes on to its deepest.

@@ -179,10 +179,11 @@ TEST(EventBadInput, AnEnergyGainThatIsRefused) {
   Simulation allowed(system, EventDriven{});
   allowed.run_until(0.1);
   EXPECT_NEAR(allowed.statistics().energy_gained, 2.0 / 15.0 * 2.5, 1e-12);
-  Simulation refused(system, EventDriven{.refuse_energy_gain = true});
+  Simulation refused(system, EventDriven{.impact_rules = {.energy_gain = EnergyGain::refuse}});
   refused.run_until(0.04);
   const auto before = bits_of(refused);
-  EXPECT_THROWS(SolverError, refused.run_until(0.1), "refuse_energy_gain", "'foot'", "half-plane 'floor'");
+  EXPECT_THROWS(SolverError, refused.run_until(0.1), "impact_rules.energy_gain", "'foot'",
+                "half-plane 'floor'");
   EXPECT_EQ(refused.statistics().energy_gains, 0);
   EXPECT_LE(refused.time(), 0.05);  // it would hit then
   refused.switch_to(EventDriven{});

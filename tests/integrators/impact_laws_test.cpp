@@ -5,6 +5,7 @@
 #include "tests/integrators/throws.h"
 #include "tests/random.h"
 #include "tests/reference/reference_data.h"
+#include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
 
@@ -39,7 +40,7 @@ struct Cradle {
 template <class Mode>
 Mode mode(ImpactOrder order) {
   Mode options;
-  options.impact_order = order;
+  options.impact_rules.order = order;
   return options;
 }
 
@@ -104,7 +105,7 @@ TEST(ImpactLaws, SequenceEndsAtItsLimit) {
   // e = 0 hands on half of each approach for ever; the limit ends it with all discs at one speed.
   const Cradle cradle(5, 0.0, 0.5);
   Simulation simulation(cradle.system,
-                        EventDriven{.impact_order = ImpactOrder::sequential, .sequence_limit = 7});
+                        EventDriven{.impact_rules = {.order = ImpactOrder::sequential, .sequence_limit = 7}});
   simulation.run_until(0.6);
   for (const BodyId disc : cradle.discs) EXPECT_NEAR(simulation.state().velocity(disc)[0], 0.2, 1e-13);
   EXPECT_EQ(simulation.statistics().cut_sequences, 1);
@@ -114,10 +115,16 @@ TEST(ImpactLaws, SequenceEndsAtItsLimit) {
   EXPECT_LE(std::abs(simulation.energy().residual()), 1e-14);
   const Cradle near(5, 0.0, 0.0);
   Simulation stepping(
-      near.system, TimeStepping{.step = 1e-6, .impact_order = ImpactOrder::sequential, .sequence_limit = 7});
+      near.system,
+      TimeStepping{.step = 1e-6, .impact_rules = {.order = ImpactOrder::sequential, .sequence_limit = 7}});
   stepping.step();
   for (const BodyId disc : near.discs) EXPECT_NEAR(stepping.state().velocity(disc)[0], 0.2, 1e-13);
   EXPECT_EQ(stepping.statistics().cut_sequences, 1);
+  const TemporaryFolder folder;
+  stepping.save(folder / "checkpoint");
+  Simulation again(near.system, TimeStepping{});
+  again.load(folder / "checkpoint");
+  EXPECT_EQ(again.statistics().cut_sequences, 1);
 }
 
 /// A box in a box, which strikes walls with its corners: with e_n > e_t some impacts gain energy.
@@ -156,7 +163,7 @@ TEST(ImpactLaws, GainsAreReportedWithTheirContactsAndCanBeLimited) {
       ++gains;
     }
     EXPECT_EQ(sum > 0.0, simulation.statistics().energy_gains > 0) << i;
-    Simulation limit(system, EventDriven{.limit_energy_gain = true});
+    Simulation limit(system, EventDriven{.impact_rules = {.energy_gain = EnergyGain::limit}});
     limit.run_until(0.7);
     EXPECT_EQ(limit.statistics().energy_gains, 0) << i;
     for (const EventRecord& event : limit.events()) {
@@ -169,7 +176,7 @@ TEST(ImpactLaws, GainsAreReportedWithTheirContactsAndCanBeLimited) {
     }
     // Energies of 10 J, and the relative tolerance of the flow.
     EXPECT_LE(std::abs(limit.energy().residual()), 1e-9) << i;
-    Simulation steps(system, TimeStepping{.limit_energy_gain = true});
+    Simulation steps(system, TimeStepping{.impact_rules = {.energy_gain = EnergyGain::limit}});
     steps.run_until(0.7);
     EXPECT_EQ(steps.statistics().energy_gains, 0) << i;
     EXPECT_LE(std::abs(steps.energy().residual()), 1e-11) << i;
@@ -232,14 +239,16 @@ TEST(ImpactLaws, BadInputIsNamed) {
   EXPECT_THROWS(ModelError, add({.friction = 0.1, .normal_restitution = 0.5, .rolling_resistance = nan}),
                 "rolling_resistance", "nan");
   const Cradle cradle(3, 0.5, 0.1);
-  EXPECT_THROWS(ModelError, Simulation(cradle.system, EventDriven{.sequence_limit = 0}), "sequence_limit",
-                "0");
-  EXPECT_THROWS(ModelError, Simulation(cradle.system, TimeStepping{.sequence_limit = -1}), "sequence_limit");
+  EXPECT_THROWS(ModelError, Simulation(cradle.system, EventDriven{.impact_rules = {.sequence_limit = 0}}),
+                "sequence_limit", "0");
+  EXPECT_THROWS(ModelError, Simulation(cradle.system, TimeStepping{.impact_rules = {.sequence_limit = -1}}),
+                "sequence_limit");
+  EXPECT_THROWS(
+      ModelError,
+      Simulation(cradle.system, EventDriven{.impact_rules = {.energy_gain = static_cast<EnergyGain>(7)}}),
+      "energy_gain", "7");
   EXPECT_THROWS(ModelError,
-                Simulation(cradle.system, EventDriven{.refuse_energy_gain = true, .limit_energy_gain = true}),
-                "limit_energy_gain", "refuse_energy_gain");
-  EXPECT_THROWS(ModelError,
-                Simulation(cradle.system, TimeStepping{.impact_order = ImpactOrder::sequential,
+                Simulation(cradle.system, TimeStepping{.impact_rules = {.order = ImpactOrder::sequential},
                                                        .impacts = ImpactTimes::located}),
                 "located", "sequential");
 }

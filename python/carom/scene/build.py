@@ -7,8 +7,9 @@ import re
 from typing import Any, Callable, Optional, TypeVar, Union
 
 from .. import _core
-from .errors import Path, SceneError, nearest, shown
-from .forms import Form, List, Number, RecordForm, Text, demand_fields, parts, records
+from .errors import Path, SceneError, one_of, shown
+from .forms import Boolean, Form, List, Number, Text, demand_fields
+from .records import RecordForm, parts, records
 from .references import SECTIONS, Names
 
 VERSION = 1
@@ -16,21 +17,9 @@ VERSION = 1
 
 MODES = {"time-stepping": "TimeStepping", "event-driven": "EventDriven"}
 SPACES = ("planar", "spatial")
-KEYS = (
-    *(
-        "carom",
-        "space",
-        "materials",
-        "laws",
-        "default_law",
-        "bodies",
-        "joints",
-        "elements",
-        "shapes",
-        "obstacles",
-    ),
-    *("contacts", "keep_place", "simulation"),
-)
+_FIRST = ("carom", "space", "materials", "laws", "default_law")
+KEYS = (*_FIRST, *SECTIONS.values(), "contacts", "keep_place", "simulation")
+
 
 Mode = Union[_core.TimeStepping, _core.EventDriven]
 Data = dict[str, Any]
@@ -123,7 +112,7 @@ def to_dict(
     data: Data = {"carom": VERSION, "space": SPACES[1] if scene.dimension() == 3 else SPACES[0]}
     if scene.materials:
         data["materials"] = list(scene.materials)
-    for i, name in enumerate(scene.materials):
+    for name in scene.materials:
         names.add("materials", scene.material(name), name)
     surface = record("Surface")
     laws = []
@@ -160,13 +149,6 @@ def _object(value: Any, path: Path) -> Data:
     return value
 
 
-def _word(value: Any, allowed: Any, path: Path) -> str:
-    if not isinstance(value, str) or value not in allowed:
-        hint = nearest(value if isinstance(value, str) else "", allowed)
-        raise SceneError(f"must be one of {', '.join(allowed)}, not {shown(value)}{hint}", path)
-    return value
-
-
 def _field_in(quantity: str, forms: dict[str, Form], value: Data) -> Path:
     """The field that an error of the library speaks of: "moment of inertia" is of ("mass", "inertia")."""
     for name in sorted(value.keys() & forms.keys(), key=len, reverse=True):
@@ -192,7 +174,7 @@ def _attempt(
         return action(*arguments)
     except (_core.Error, TypeError) as error:
         inner: Path = ()
-        said = re.search(r"(?:'|#\d+): (.*?) is ", str(error))
+        said = re.search(r"(?:'|#\d+|^time stepping|^event-driven mode): (.*?) is ", str(error))
         if said and form is not None:
             inner = _field_in(said.group(1), {**form.forms, "surface": record("Surface")}, value)
         raise SceneError(str(error), (*path, *inner)) from error
@@ -227,14 +209,14 @@ def _list(data: Data, key: str) -> list[Any]:
 def _read_part(value: Any, section: str, space: str, path: Path, system: _core.System, names: Names) -> None:
     if "type" not in _object(value, path):
         raise SceneError("a part needs the field 'type'", path)
-    form = parts(space)[section][_word(value["type"], parts(space)[section], (*path, "type"))]
+    form = parts(space)[section][one_of(value["type"], parts(space)[section], (*path, "type"))]
     beside = ("type", "name", "surface") if section == "obstacles" else ("type", "name")
     part = form.read(value, path, names, beside)
     name = Text().read(value.get("name", ""), (*path, "name"), names)
-    surface = None
+    given = [part, name]
     if "surface" in value:
-        surface = record("Surface").read(value["surface"], (*path, "surface"), names)
-    identity = _attempt(path, system.add, part, surface, name, form=form, value=value)
+        given.insert(1, record("Surface").read(value["surface"], (*path, "surface"), names))
+    identity = _attempt(path, system.add, *given, form=form, value=value)
     names.add(section, identity, name)
 
 
@@ -247,7 +229,7 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
                 f"must be a list of two bodies, not {shown(item['between'])}", (*path, "between")
             )
         a, b = (names.find("bodies", each, (*path, "between", k)) for k, each in enumerate(item["between"]))
-        allowed = Form().read(item["allowed"], (*path, "allowed"), names)
+        allowed = Boolean().read(item["allowed"], (*path, "allowed"), names)
         _attempt(path, system.allow_contact, a, b, allowed)
     for i, reference in enumerate(_list(data, "keep_place")):
         body = names.find("bodies", reference, ("keep_place", i))
@@ -257,8 +239,13 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
 def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
     path: Path = ("simulation",)
     demand_fields(_object(value, path), ("mode", "options", "until"), ("mode",), path, "the simulation")
-    word = _word(value["mode"], MODES, (*path, "mode"))
-    mode = record(MODES[word]).read(value.get("options", {}), (*path, "options"), names)
+    word = one_of(value["mode"], MODES, (*path, "mode"))
+    form, options = record(MODES[word]), value.get("options", {})
+    mode = form.read(options, (*path, "options"), names)
+    # Options are checked where a simulation is made; the smallest there is.
+    trial = _core.System()
+    trial.add(_core.planar.Particle(mass=1.0, contact=False))
+    _attempt((*path, "options"), _core.Simulation, trial, mode, form=form, value=options)
     until = value.get("until")
     if "until" in value:
         until = Number().read(until, (*path, "until"), names)
@@ -282,7 +269,7 @@ def from_dict(data: Any) -> Scene:
             f"the file is of version {version}; this carom reads versions up to {VERSION}", ("carom",)
         )
     demand_fields(data, KEYS, (), (), "a scene")
-    space = _word(data.get("space", SPACES[0]), SPACES, ("space",))
+    space = one_of(data.get("space", SPACES[0]), SPACES, ("space",))
     system, names = _core.System(), Names()
     _read_laws(data, system, names)
     for section in SECTIONS.values():

@@ -21,7 +21,7 @@ def path_text(path: Path) -> str:
         elif step.isidentifier():
             text += f".{step}" if text else step
         else:
-            text += f"[{json.dumps(step)}]"
+            text += f"[{shown(step)}]"
     return text
 
 
@@ -31,15 +31,23 @@ def shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: Any, known: Iterable[str]) -> str:
     """An addition to a message: the known word that is most like the given one, or all of a few."""
     import difflib
 
     names = list(known)
-    close = difflib.get_close_matches(word, names, n=1)
+    close = difflib.get_close_matches(word, names, n=1) if isinstance(word, str) else []
     if close:
         return f"; the nearest known: {json.dumps(close[0], ensure_ascii=False)}"
     return f"; allowed: {', '.join(names)}" if 0 < len(names) <= 30 else ""
+
+
+def one_of(value: Any, known: Iterable[str], path: Path) -> str:
+    """A word that is one of some. Raises SceneError."""
+    names = list(known)
+    if isinstance(value, str) and value in names:
+        return value
+    raise SceneError(f"is {shown(value)}{nearest(value, names)}", path)
 
 
 class SceneError(ModelError):

@@ -9,7 +9,7 @@ from typing import Any, Optional
 from .. import _core
 from .build import Scene
 from .errors import Path, path_text
-from .forms import RecordForm, parts, same
+from .records import RecordForm, parts, same
 from .references import SECTIONS
 
 _SUSPICIOUS = 1e6

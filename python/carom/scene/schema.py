@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from .build import KEYS, MODES, SPACES, VERSION, record
-from .forms import Form, List, Reference, RecordForm, Schema, Text, parts, records
+from .forms import Boolean, List, Reference, Schema, Text
+from .records import RecordForm, parts, records
 from .references import SECTIONS
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -78,7 +79,7 @@ def schema() -> Schema:
             "items": _closed(
                 {
                     "between": {"type": "array", "items": body, "minItems": 2, "maxItems": 2},
-                    "allowed": Form().schema(),
+                    "allowed": Boolean().schema(),
                 },
                 ["between", "allowed"],
             ),

@@ -11,11 +11,12 @@ import bisect
 import json
 import math
 import re
-from typing import Any
+from typing import Any, NoReturn
 
 from .errors import Path, SceneError, shown
 
 _DEPTH = 32
+_LONGEST_INTEGER = 300  # digits; no double is longer
 _SPACE = re.compile(r"[ \t\n\r]*")
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _WORD = re.compile(r"[-+]?[A-Za-z0-9_.+-]+")
@@ -44,7 +45,7 @@ class Places:
     def _line_at(self, place: int) -> int:
         return bisect.bisect_left(self._breaks, place) + 1
 
-    def _refuse(self, place: int, path: Path, message: str) -> None:
+    def _refuse(self, place: int, path: Path, message: str) -> NoReturn:
         raise SceneError(message, path, self._line_at(place))
 
     def _skip(self, place: int) -> int:
@@ -72,7 +73,6 @@ class Places:
             return _STRING.raw_decode(self._text, place)
         except json.JSONDecodeError as error:
             self._refuse(min(error.pos, len(self._text)), path, f"text in quotes: {error.msg.lower()}")
-            raise
 
     def _word(self, place: int, path: Path) -> tuple[Any, int]:
         match = _WORD.match(self._text, place)
@@ -80,13 +80,14 @@ class Places:
             found = self._next(place)
             end = "the end of the file" if not found else shown(found)
             self._refuse(place, path, f"must be a value, not {end}")
-        word = match.group() if match else ""
+        word = match.group()
         if word in _CONSTANTS:
             return _CONSTANTS[word], place + len(word)
         number = _NUMBER.fullmatch(word)
         if number is None:
             self._refuse(place, path, f"must be a value of JSON (numbers are finite), not {word[:40]}")
-        elif number.group(1) is None and number.group(2) is None and len(word) < 300:
+        is_integer = number.group(1) is None and number.group(2) is None
+        if is_integer and len(word) < _LONGEST_INTEGER:
             return int(word), place + len(word)
         value = float(word)
         if not math.isfinite(value):

@@ -72,7 +72,9 @@ protected:
   }
   ~SolveContactProgram() override { std::filesystem::remove(path_); }
 
-  void save_gaining() const { save_failure(gaining_, {.refuse_energy_gain = true}, path_); }
+  void save_gaining() const {
+    save_failure(gaining_, {.impact_rules = {.energy_gain = EnergyGain::refuse}}, path_);
+  }
   void save_jammed() const { save_failure(jammed_, {}, path_); }
   [[nodiscard]] std::string file() const { return "'" + path_ + "'"; }
 

@@ -5,6 +5,7 @@
 #include "tests/reference/reference_data.h"
 
 #include <carom/carom.h>
+#include <carom/contact/detection/body_pairs.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/integrators/event_driven/motion_memory.h>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 namespace {
@@ -144,7 +146,11 @@ std::vector<double> forces_at_rest(const System& system) {
   const Detector detector(assembly);
   const EventDriven options;
   MotionMemory memory(assembly);
-  GroupComponents all{{}, detector.body_pairs()};
+  const BodyPairs pairs(assembly, detector.bodies().outlines());
+  std::vector<Index> bodies(assembly.layout()->bodies().size());
+  std::iota(bodies.begin(), bodies.end(), Index{0});
+  GroupComponents all;
+  pairs.append(bodies, all.body_pairs);
   for (Index i = 0; i < assembly.components().size(); ++i) all.components.push_back(i);
   SmoothMotion motion(assembly, detector, all, options, memory);
   std::vector<double> y(motion.size());

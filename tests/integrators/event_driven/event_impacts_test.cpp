@@ -296,7 +296,7 @@ TEST(EventImpacts, ImpactsThatGainEnergyAreToldAndCanBeRefused) {
     EXPECT_NEAR(impact.energy_after - impact.energy_before, change, 1e-12) << value;
     EXPECT_TRUE(ledger.closes()) << value;
 
-    options.refuse_energy_gain = true;
+    options.impact_rules.energy_gain = EnergyGain::refuse;
     Simulation strict(system, options);
     if (change > 1e-12) {
       ++gains;

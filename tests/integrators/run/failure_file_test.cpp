@@ -69,8 +69,8 @@ TEST_F(FailureFile, AlsoOfARefusedGain) {
   const BodyId body =
       system.add(RigidBody{.mass = {.mass = 1.0, .inertia = 1.0}, .position = {0, 1}, .velocity = {1, -2}});
   system.add(Point{.body = body, .position = {-1, -1}});
-  Simulation simulation(system,
-                        TimeStepping{.refuse_energy_gain = true, .failure_directory = directory_.string()});
+  Simulation simulation(system, TimeStepping{.impact_rules = {.energy_gain = EnergyGain::refuse},
+                                             .failure_directory = directory_.string()});
   EXPECT_THROWS(SolverError, simulation.step(), "no gain", "the problem is in '");
   EXPECT_EQ(files(), 1u);
 }

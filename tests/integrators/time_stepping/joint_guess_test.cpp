@@ -110,6 +110,24 @@ TEST(JointGuess, CheckpointsOfTheVersionBeforeAreRead) {
   expect_same(1e-9);
 }
 
+// Likewise data/chain_version_7.checkpoint, which lacks some counts of the statistics only.
+TEST(JointGuess, CheckpointsOfVersion7AreRead) {
+  Simulation whole(chain(6), options);
+  whole.run_until(0.3);
+  Simulation other(chain(6), options);
+  other.load(carom_test::source_file("tests/integrators/time_stepping/data/chain_version_7.checkpoint"));
+  for (int i = 0; i < 20; ++i) {
+    whole.step();
+    other.step();
+  }
+  EXPECT_EQ(other.statistics().steps, whole.statistics().steps);
+  EXPECT_EQ(other.statistics().cut_sequences, 0);
+  // The run before was another compiler's: rounding, in 20 steps of a chain.
+  for (std::size_t i = 0; i < whole.state().q.size(); ++i) {
+    EXPECT_NEAR(other.state().q[i], whole.state().q[i], 1e-11) << i;
+  }
+}
+
 TEST(JointGuess, AFailedStepLeavesItAsItWas) {
   const carom_test::TemporaryFolder folder;
   for (const Iteration iteration :

@@ -1,0 +1,198 @@
+// Problem: end a step before something is so deep in a thin thing that it would leave it on the far side.
+
+#include <carom/contact/detection/convex_outline.h>
+#include <carom/integrators/time_stepping/passage_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <span>
+
+namespace carom {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+// Share of the radii of the circles in both that a pair may come deep.
+constexpr double deep = 1.0 / 8.0;
+// Stands for the thickness of what has none [m].
+constexpr double least_depth = 1e-9;
+
+/// Radius of a circle in a convex set: a third of its width (W. Blaschke, Kreis und Kugel, 1916), and what
+/// widens it.
+double circle_in(const ConvexOutline& of) {
+  constexpr Index polygon = 3;
+  double width = of.size() < polygon ? 0.0 : infinite;
+  for (Index i = 0; i < of.size() && of.size() >= polygon; ++i) {
+    const OutlineEdge edge(of, i);
+    double height = 0.0;
+    for (const Vec<2>& vertex : of.vertices) height = std::max(height, -edge.height(vertex));
+    width = std::min(width, height);
+  }
+  return of.radius + width / 3.0;
+}
+
+double circle_in(const GroundPieces& pieces, Index outline) {
+  const GroundOutline& of = pieces.outlines()[outline];
+  if (of.is_hollow()) return infinite;
+  return of.is_chain() ? 0.5 * of.depth : circle_in(pieces.view(outline));
+}
+
+}  // namespace
+
+PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
+    : assembly_(&assembly),
+      detector_(&detector),
+      at_(assembly.initial_state()),
+      evaluation_(make_evaluation(assembly)) {
+  reach_.assign(assembly.layout()->bodies().size(), 0.0);
+  displacement_.resize(at_.v.size());
+  const auto add_all = [&](const BodyOutlines& outlines) {
+    for (const BodyOutline& outline : outlines.list()) {
+      add(outline.key, circle_in(outlines.described(outline)));
+      reach_[outline.body] = std::max(reach_[outline.body], outline.reach);
+    }
+  };
+  if (detector.bodies_touch()) add_all(detector.bodies().outlines());
+  if (!detector.pieces().empty()) {
+    add_all(detector.pieces().outlines());
+    const GroundPieces& pieces = detector.pieces().pieces();
+    for (Index i = 0; i < pieces.outlines().size(); ++i) {
+      add(pieces.outlines()[i].key, circle_in(pieces, i));
+    }
+  }
+  set_thinnest();
+}
+
+void PassageSearch::add(const FeatureKey& key, double thickness) { thickness_.emplace(key, thickness); }
+
+/// Less than any pair may come deep: twice the thinnest of bodies, or that and the thinnest ground.
+void PassageSearch::set_thinnest() {
+  double body = infinite, any = infinite;
+  for (const auto& [key, thickness] : thickness_) {
+    any = std::min(any, thickness);
+    if (key.owner != FeatureKey::Owner::obstacle) body = std::min(body, thickness);
+  }
+  thinnest_ = std::max(least_depth, deep * (body + any));
+}
+
+/// The outline that a feature is of; the end where it is one without pieces (half-planes).
+std::map<FeatureKey, double>::const_iterator PassageSearch::outline(const FeatureKey& key) const {
+  const auto behind = thickness_.upper_bound(key);
+  if (behind == thickness_.begin()) return thickness_.end();
+  const auto found = std::prev(behind);
+  const bool same = found->first.owner == key.owner && found->first.serial == key.serial;
+  return same ? found : thickness_.end();
+}
+
+PassageSearch::Pair PassageSearch::pair_of(const Constraint& contact) const {
+  return {outline(contact.key.a)->first, outline(contact.key.b)->first};
+}
+
+/// How deep the pair of a contact may come; infinite of what cannot be passed [m].
+double PassageSearch::allowed(const Constraint& contact) const {
+  if (contact.type != ConstraintType::contact) return infinite;
+  const auto a = outline(contact.key.a), b = outline(contact.key.b);
+  if (a == thickness_.end() || b == thickness_.end()) return infinite;
+  return std::max(least_depth, deep * (a->second + b->second));
+}
+
+/// How much nearer the pair of a contact may come along its normal over a whole step [m].
+double PassageSearch::approach(const Constraint& contact) const {
+  constexpr double caution = 2.0;  // in between ground may go faster than it does now and at the end
+  const double speed = contact.surface_velocity[0], change = contact.surface_velocity_after[0] - speed;
+  double sum = (speed + caution * std::abs(change)) * step_;
+  const double* row = contact.row(0);
+  for (int b = 0; b < contact.bodies; ++b) {
+    const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
+    sum -= row[0] * displacement_[block.v] + row[1] * displacement_[block.v + 1];
+    constexpr int turning = 3;
+    if (block.columns == turning) sum += reach_[block.body] * std::abs(displacement_[block.v + 2]);
+    row += block.columns;
+  }
+  return sum;
+}
+
+/// Takes the displacements of a step. Returns how much nearer any two things may come in it [m].
+double PassageSearch::most_approach(const State& start, const State& end) {
+  double most = 0.0;
+  Index body = 0;
+  for (const BodySlot& slot : assembly_->layout()->bodies()) {
+    // Coordinates and velocities of the plane correspond one to one.
+    for (Index i = 0; i < slot.v_size; ++i) {
+      displacement_[slot.v + i] = end.q[slot.q + i] - start.q[slot.q + i];
+    }
+    double moved = std::hypot(displacement_[slot.v], displacement_[slot.v + 1]);
+    if (slot.v_size > 2) moved += reach_[body] * std::abs(displacement_[slot.v + 2]);
+    most = std::max(most, moved);
+    ++body;
+  }
+  most *= 2.0;
+  if (!detector_->has_moving_ground()) return most;
+  // Of ground twice what its speed at either end makes of it.
+  double fastest = 0.0;
+  const GroundPieces& pieces = detector_->pieces().pieces();
+  for (const GroundOutline& outline : pieces.outlines()) {
+    if (!detector_->pieces().shapes().moves(outline.shape)) continue;
+    for (const double time : {start.time, end.time}) {
+      const GroundMotion motion = detector_->pieces().shapes().motion(outline.shape, time);
+      fastest = std::max(fastest, std::hypot(motion.velocity[0], motion.velocity[1]) +
+                                      outline.reach * std::abs(motion.spin));
+    }
+  }
+  return most + 2.0 * step_ * fastest;
+}
+
+/// Finds what is near at a share of the step.
+void PassageSearch::look(const State& start, double share) {
+  at_.time = start.time + share * step_;
+  for (const BodySlot& slot : assembly_->layout()->bodies()) {
+    for (Index i = 0; i < slot.v_size; ++i) {
+      at_.q[slot.q + i] = start.q[slot.q + i] + share * displacement_[slot.v + i];
+    }
+  }
+  evaluate_positions(*assembly_, at_.view(), evaluation_);
+  detector_->place(at_.time, places_);
+  contacts_.clear();
+  const ContactQuery query{at_.view(), evaluation_, places_, &places_at_end_, margin_};
+  detector_->find({0, static_cast<Index>(assembly_->components().size())}, query, contacts_);
+  if (detector_->bodies_touch()) detector_->bodies().find(query, search_, contacts_);
+  std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
+}
+
+PassageSearch::Passage PassageSearch::first(const State& start, const State& end) {
+  if (thickness_.empty()) return {};
+  step_ = end.time - start.time;
+  const double most = most_approach(start, end);
+  if (!(most > thinnest_)) return {};
+  at_.v = start.v;
+  detector_->place(end.time, places_at_end_);
+  margin_ = most;
+  look(start, 0.0);
+  depth_at_start_.clear();
+  for (const Constraint& contact : contacts_) {
+    if (contact.gap >= 0.0) continue;
+    double& depth = depth_at_start_[pair_of(contact)];
+    depth = std::max(depth, -contact.gap);
+  }
+  for (double share = 0.0;;) {
+    Passage next;
+    for (const Constraint& contact : contacts_) {
+      const auto known = depth_at_start_.find(pair_of(contact));
+      const double most_deep = allowed(contact);
+      const double left = contact.gap + most_deep + (known == depth_at_start_.end() ? 0.0 : known->second);
+      if (!(left > 0.0)) return {share, contact.key};
+      const double nearer = approach(contact);
+      if (!(nearer > 0.0)) continue;
+      const double safe = share + std::max(left, 0.5 * most_deep) / nearer;
+      if (safe < next.share) next = {safe, contact.key};
+    }
+    if (!(next.share < 1.0)) return {};
+    share = next.share;
+    margin_ = most * (1.0 - share);
+    look(start, share);
+  }
+}
+
+}  // namespace carom

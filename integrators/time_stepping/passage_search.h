@@ -1,0 +1,70 @@
+#pragma once
+
+/// \file
+/// Passages: where on the way of a step something would come deeper into another thing than it may, and could
+/// leave it on the far side (OverlapRules::never_tunnel).
+///
+/// The way of a step is the chord between its ends: positions and angles change evenly, ground moves as it is
+/// prescribed. Two convex things that are apart by g along a normal n stay apart for at least g/c, c the
+/// largest rate at which they come nearer along n: that of their translation, and for each turning one the
+/// size of its spin times its reach. So looks from one such time to the next miss nothing (conservative
+/// advancement: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, Berkeley 1996, chapter
+/// 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the step's end.
+
+#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/state.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Searches steps for passages. Keeps memory only.
+class CAROM_API PassageSearch {
+public:
+  /// A time at which a pair is deep enough for a step to end there.
+  struct Passage {
+    double share = 2.0;  ///< of the step; above 1: there is none
+    ConstraintKey key;   ///< of the pair
+  };
+
+  /// Both must outlive it.
+  PassageSearch(const Assembly& assembly, const Detector& detector);
+
+  /// The first passage on the way from one state to another. A pair may come as deep as an eighth of the
+  /// radii of the largest circles in both, beyond its depth at the start; found is a depth up to half as much
+  /// more. Of things without a thickness (points, bare segments) 1e-9 m stands for it.
+  [[nodiscard]] Passage first(const State& start, const State& end);
+
+private:
+  using Pair = std::pair<FeatureKey, FeatureKey>;  // first features of two outlines
+  void add(const FeatureKey& key, double thickness);
+  void set_thinnest();
+  [[nodiscard]] std::map<FeatureKey, double>::const_iterator outline(const FeatureKey& key) const;
+  [[nodiscard]] Pair pair_of(const Constraint& contact) const;
+  [[nodiscard]] double allowed(const Constraint& contact) const;
+  [[nodiscard]] double approach(const Constraint& contact) const;
+  [[nodiscard]] double most_approach(const State& start, const State& end);
+  void look(const State& start, double share);
+
+  const Assembly* assembly_;
+  const Detector* detector_;
+  std::map<FeatureKey, double> thickness_;  // of outlines, by their first feature: a circle in them [m]
+  std::vector<double> reach_;               // by body, from its centre of mass [m]
+  double thinnest_ = 0.0;                   // depth that any pair may have [m]
+  State at_;
+  Evaluation evaluation_;
+  GroundPlaces places_, places_at_end_;
+  BodyContactSearch search_;
+  std::vector<Constraint> contacts_;
+  std::vector<double> displacement_;       // over all velocities, of the whole step
+  std::map<Pair, double> depth_at_start_;  // of pairs that overlap then [m]
+  double step_ = 0.0;                      // [s]
+  double margin_ = 0.0;                    // of what may come near in the rest of the step [m]
+};
+
+}  // namespace carom

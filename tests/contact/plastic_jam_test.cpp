@@ -1,0 +1,168 @@
+// Contacts that jam a body: by enumeration of all modes the law of impact has no answer where e differ, and
+// always has one without restitution.
+
+#include "tests/random.h"
+
+#include <carom/carom.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/solution_list.h>
+#include <carom/core/assembly.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::Random;
+
+/// A body of 1 kg whose points touch a half-plane each.
+struct Touch {
+  Vec<2> point, normal;
+  Surface law;
+};
+
+class Jam {
+public:
+  explicit Jam(const std::vector<Touch>& touches) : assembly_(body_that(touches)) {
+    const State state = assembly_.initial_state();
+    Evaluation evaluation = make_evaluation(assembly_);
+    evaluate_positions(assembly_, 0, state.view(), evaluation);
+    Detector(assembly_).find(0, state.view(), evaluation, 0.0, contacts_);
+    for (Constraint& contact : contacts_) contact.friction = contact.law.friction;
+  }
+
+  /// States an impact from a velocity; solve() solves it.
+  IslandProblem impact(const std::array<double, 3>& velocity, bool plastic_jams) {
+    IslandProblem problem(IslandOptions{.plastic_jams = plastic_jams});
+    state(problem, velocity);
+    return problem;
+  }
+  void state(IslandProblem& problem, const std::array<double, 3>& velocity) {
+    problem.build(contacts_, velocity.data());
+    MassResponse masses(assembly_);
+    problem.respond(masses);
+    problem.set_free_velocity(velocity.data());
+  }
+  /// Change of kinetic energy by its impulses [J].
+  double gain(const IslandProblem& problem, const std::array<double, 3>& velocity) const {
+    std::array<double, 3> after = velocity;
+    problem.map().add_velocities(after.data());
+    const std::array<double, 3> masses{1.0, 1.0, inertia};
+    double change = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      change += 0.5 * masses[i] * (after[i] * after[i] - velocity[i] * velocity[i]);
+    }
+    return change;
+  }
+  SolverChain chain;
+
+private:
+  static constexpr double inertia = 0.1;
+
+  static System body_that(const std::vector<Touch>& touches) {
+    System system;
+    const BodyId body = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = inertia}});
+    unsigned group = 1;
+    for (const Touch& touch : touches) {
+      const ContactFilter alone{.groups = group, .touches = group};
+      system.add(Point{.body = body, .position = touch.point, .filter = alone});
+      system.add(
+          HalfPlane{.point = touch.point + 1e-9 * touch.normal, .normal = touch.normal, .filter = alone},
+          touch.law);
+      group *= 2;
+    }
+    return system;
+  }
+
+  Assembly assembly_;
+  std::vector<Constraint> contacts_;
+};
+
+/// Between a floor and a ceiling: their impulses cancel each other. It falls onto the floor.
+std::vector<Touch> corridor(double floor, double ceiling) {
+  return {{{0.0, 0.0}, {0.0, 1.0}, {.friction = 0.3, .normal_restitution = floor}},
+          {{0.0, 0.0}, {0.0, -1.0}, {.friction = 0.3, .normal_restitution = ceiling}}};
+}
+
+constexpr std::array<double, 3> falls{1.0, -1.0, 0.0};
+
+TEST(PlasticJam, UnequalRestitutionHasNoAnswer) {
+  // xi_1 + xi_2 = e_1 gamma_1 + e_2 gamma_2 = e_2 - e_1 < 0 for all impulses: both cannot be >= 0.
+  Jam jam(corridor(0.5, 0.2));
+  IslandProblem problem = jam.impact(falls, false);
+  EXPECT_EQ(SolutionList().enumerate(problem.problem()), Outcome::no_solution);
+  EXPECT_FALSE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 1.0);
+}
+
+TEST(PlasticJam, TheOtherWayRoundThereIsOne) {
+  Jam jam(corridor(0.2, 0.5));
+  IslandProblem problem = jam.impact(falls, true);
+  EXPECT_NE(SolutionList().enumerate(problem.problem()), Outcome::no_solution);
+  EXPECT_TRUE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 1.0);
+}
+
+TEST(PlasticJam, IsSolvedWithoutRestitution) {
+  Jam jam(corridor(0.5, 0.2));
+  IslandProblem problem = jam.impact(falls, true);
+  ASSERT_TRUE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 0.0);
+  EXPECT_LE(problem.report().residual, 1e-12);  // as any answer of the exact solvers
+  std::array<double, 3> after = falls;
+  problem.map().add_velocities(after.data());
+  EXPECT_NEAR(after[1], 0.0, 1e-14);
+  EXPECT_LE(jam.gain(problem, falls), 0.0);
+  // It holds in all sweeps of a step, with other loads too, and ends with the next build().
+  problem.set_free_velocity(std::array<double, 3>{1.0, -1.5, 0.0}.data());
+  ASSERT_TRUE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 0.0);
+  EXPECT_EQ(problem.problem().vector()[0], -1.5);
+  const std::array<double, 3> rises{1.0, 1.0, 0.0};
+  jam.state(problem, rises);
+  ASSERT_TRUE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 1.0);
+}
+
+TEST(PlasticJam, IsTakenOfRandomJamsWhereEnumerationFindsNoAnswerAndOnlyThere) {
+  int without = 0, jammed = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    Random random(seed);
+    const bool one = random.below(4) == 0;  // one restitution for all rows
+    const double common = random.uniform(0.0, 1.0);
+    const auto e = [&] { return one ? common : random.uniform(0.0, 1.0); };
+    std::vector<Touch> touches(2 + random.below(2));
+    for (Touch& touch : touches) {
+      touch = {random.vec<2>(0.5), random.vec<2>(1.0).normalized(), {}};
+      touch.law = {
+          .friction = random.uniform(0.0, 1.5), .normal_restitution = e(), .tangential_restitution = e()};
+    }
+    Jam jam(touches);
+    const std::array<double, 3> velocity{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-3, 3)};
+    IslandProblem problem = jam.impact(velocity, true);
+    const Outcome listed = SolutionList().enumerate(problem.problem());
+    const bool usable = problem.solve(jam.chain).usable();
+    ASSERT_TRUE(usable) << seed;
+    EXPECT_LE(problem.report().residual, 1e-10) << seed;  // tolerated_residual
+    if (listed == Outcome::no_solution) ++without;
+    if (problem.restitution_factor() == 1.0) {
+      EXPECT_NE(listed, Outcome::no_solution) << seed;
+      continue;
+    }
+    ++jammed;
+    EXPECT_EQ(listed, Outcome::no_solution) << seed;
+    EXPECT_FALSE(one) << seed;
+    // Rounding of an energy of about 1 J with impulses of a few N s.
+    EXPECT_LE(jam.gain(problem, velocity), 1e-12) << seed;
+  }
+  EXPECT_GE(without, 20);  // else nothing was tried
+  EXPECT_EQ(jammed, without);
+}
+
+}  // namespace

@@ -1,0 +1,128 @@
+// Polygons that jam in a trough, where e_n differs from e_t: every step is solved, and says how.
+
+#include "tests/energy/ledger_check.h"
+#include "tests/random.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::ledger_closes;
+using carom_test::Random;
+
+/// Polygons fall into a steep trough: impulses on both sides meet in their cones.
+System trough(std::uint64_t seed, int bodies) {
+  Random random(seed);
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  const Surface law{.friction = random.uniform(0.3, 0.8), .normal_restitution = 0.3};
+  if (bodies > 1) system.set_default_law(law);  // else nothing is there to touch
+  const double slope = random.uniform(1.15, 1.35);
+  const Vec<2> left(-2.0 * std::cos(slope), 2.0 * std::sin(slope)), right(-left[0], left[1]);
+  system.add(Wall{.from = {-0.05, 0.0}, .to = left, .radius = 0.05}, law, "left");
+  system.add(Wall{.from = {0.05, 0.0}, .to = right, .radius = 0.05}, law, "right");
+  for (int i = 0; i < bodies; ++i) {
+    std::vector<Vec<2>> vertices;
+    const unsigned corners = 3 + random.below(4);
+    for (unsigned k = 0; k < corners; ++k) {
+      const double at = 6.283185307179586 * (k + random.uniform(0.0, 0.5)) / corners;
+      vertices.emplace_back(0.15 * std::cos(at), 0.15 * std::sin(at));
+    }
+    const MassProperties<2> mass = polygon(random.uniform(0.3, 3.0), vertices);
+    for (Vec<2>& vertex : vertices) vertex -= mass.centre;
+    const BodyId body = system.add(RigidBody{.mass = centred(mass),
+                                             .position = {random.uniform(-0.05, 0.05), 0.9 + 0.35 * i},
+                                             .angle = random.uniform(-3.0, 3.0),
+                                             .spin = random.uniform(-10.0, 10.0)});
+    system.add(Polygon{.body = body, .vertices = vertices});
+  }
+  return system;
+}
+
+bool says_jam(const ContactRecord& contact) { return contact.restitution_factor == 0.0; }
+
+struct JamRuns {
+  int refused = 0;         // runs that refuse_jams ends
+  std::int64_t jams = 0;   // in the others
+  std::int64_t noted = 0;  // contacts whose record says so
+};
+
+/// A run that refuses jams ends at the first one, by the names of its contacts and with the problem.
+void run_refusing(const System& system, TimeStepping options, std::int64_t jams, JamRuns& runs) {
+  options.impact_rules.refuse_jams = true;
+  Simulation simulation(system, options);
+  try {
+    simulation.run_until(1.0);
+    EXPECT_EQ(jams, 0);
+  } catch (const SolverError& error) {
+    ++runs.refused;
+    EXPECT_GT(jams, 0);
+    ASSERT_TRUE(error.has_problem()) << error.what();
+    EXPECT_EQ(error.failure().parts.size(), error.problem().groups().size()) << error.what();
+    EXPECT_NE(std::string(error.what()).find("refuse_jams"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(simulation.statistics().plastic_jams, 0);
+  EXPECT_TRUE(ledger_closes(simulation.energy()));
+}
+
+JamRuns run_troughs(int bodies, const TimeStepping& options, std::uint64_t scenes) {
+  JamRuns runs;
+  for (std::uint64_t seed = 0; seed < scenes; ++seed) {
+    SCOPED_TRACE(seed);
+    const System system = trough(seed, bodies);
+    Simulation simulation(system, options);
+    simulation.observe([&](const Simulation& now) {
+      const std::vector<ContactRecord>& contacts = now.report().contacts;
+      runs.noted += std::count_if(contacts.begin(), contacts.end(), says_jam);
+      // Where all contacts jam no impact adds energy.
+      const double gained = now.report().energy_gain - now.report().lasting_gain;
+      if (std::all_of(contacts.begin(), contacts.end(), says_jam)) EXPECT_EQ(gained, 0.0);
+    });
+    EXPECT_NO_THROW(simulation.run_until(1.0));
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+    runs.jams += simulation.statistics().plastic_jams;
+    run_refusing(system, options, simulation.statistics().plastic_jams, runs);
+  }
+  return runs;
+}
+
+void expect_jams(const JamRuns& runs) {
+  EXPECT_GT(runs.refused, 0);  // else nothing jams
+  EXPECT_GE(runs.jams, runs.refused);
+  EXPECT_GE(runs.noted, 2 * runs.jams);  // at least two contacts jam
+}
+
+TEST(Jams, OfSeveralBodiesAreSolvedWithoutRestitutionAndCounted) {
+  expect_jams(run_troughs(4, {.step = 1e-3}, 5));
+}
+
+TEST(Jams, WhereImpactsAreLocated) {
+  expect_jams(run_troughs(1, {.step = 1e-3, .impacts = ImpactTimes::located}, 10));
+}
+
+TEST(Jams, WhereImpactsAreResolvedAtTheStartOfSteps) {
+  expect_jams(run_troughs(2, {.step = 1e-3, .limit_energy_gain = true}, 10));
+}
+
+TEST(Jams, SequentialImpactsTakeOneContactAtATime) {
+  const JamRuns runs = run_troughs(2, {.step = 1e-3, .impact_order = ImpactOrder::sequential}, 10);
+  EXPECT_EQ(runs.jams, 0);
+  EXPECT_EQ(runs.refused, 0);
+}
+
+TEST(JamsLong, RandomTroughsAreAlwaysSolved) {
+  expect_jams(run_troughs(4, {.step = 1e-3}, 40));
+  expect_jams(run_troughs(1, {.step = 1e-3, .impacts = ImpactTimes::located}, 200));
+}
+
+}  // namespace

@@ -1,0 +1,189 @@
+// Nothing passes through anything, however fast and thin it is.
+
+#include "tests/energy/ledger_check.h"
+#include "tests/integrators/throws.h"
+#include "tests/model_error.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::ledger_closes;
+
+constexpr double h = 1e-3;
+const TimeStepping safe{.step = h, .overlaps = {.never_tunnel = true}};
+const std::vector<double> speeds{1e2, 1e3, 1e4, 1e5};
+
+BodyId add_disc(System& system, double radius, const Vec<2>& place, const Vec<2>& velocity = Vec<2>::Zero()) {
+  const BodyId body =
+      system.add(RigidBody{.mass = disc(1.0, radius), .position = place, .velocity = velocity});
+  system.add(Disc{.body = body, .radius = radius});
+  return body;
+}
+
+/// A wall of 1 mm across the way of a bullet.
+constexpr double wall_at = 0.0371, half_thickness = 5e-4;
+
+System bullet_before_wall(double speed, double restitution) {
+  System system;
+  system.add(Wall{.from = Vec<2>(wall_at, -1.0), .to = Vec<2>(wall_at, 1.0), .radius = half_thickness},
+             Surface{.friction = 0.0, .normal_restitution = restitution}, "wall");
+  system.add(Particle{.mass = 0.01, .velocity = {speed, 0.0}}, "bullet");
+  return system;
+}
+
+TEST(NeverTunnel, BulletsAndAThinWall) {
+  const double surface = wall_at - half_thickness;
+  for (const double speed : speeds) {
+    Simulation passes(bullet_before_wall(speed, 0.5), TimeStepping{.step = h});
+    passes.step();
+    EXPECT_GT(passes.state().q[0], wall_at) << speed;
+    for (const double e : {0.0, 0.5, 1.0}) {
+      Simulation simulation(bullet_before_wall(speed, e), safe);
+      simulation.step();
+      const double way = speed * h - surface;  // that is left behind the wall
+      // It is stopped up to an eighth and a half of the half thickness deep.
+      EXPECT_NEAR(simulation.state().q[0], surface - e * way, 0.19 * half_thickness * (1.0 + e)) << speed;
+      EXPECT_NEAR(simulation.state().v[0], -e * speed, 1e-12 * speed);
+      EXPECT_EQ(simulation.time(), h);
+      EXPECT_EQ(simulation.report().step, h);
+      EXPECT_EQ(simulation.statistics().impacts, 1);
+      EXPECT_TRUE(ledger_closes(simulation.energy()));
+    }
+  }
+}
+
+TEST(NeverTunnel, ABulletBetweenTwoWalls) {
+  for (const double speed : speeds) {
+    System system = bullet_before_wall(speed, 1.0);
+    system.add(Block{.vertices = {{-0.031, -1.0}, {-0.03, -1.0}, {-0.03, 1.0}, {-0.031, 1.0}}},
+               Surface{.friction = 0.0, .normal_restitution = 1.0});
+    Simulation simulation(system, safe);
+    simulation.run_until(0.02);
+    EXPECT_LT(simulation.state().q[0], wall_at) << speed;
+    EXPECT_GT(simulation.state().q[0], -0.0305) << speed;
+    const double bounces = speed * 0.02 / (wall_at - half_thickness + 0.03);
+    EXPECT_NEAR(static_cast<double>(simulation.statistics().impacts), bounces, 1.0 + 0.01 * bounces);
+    EXPECT_NEAR(std::abs(simulation.state().v[0]), speed, 1e-9 * speed);
+  }
+}
+
+TEST(NeverTunnel, BothMove) {
+  for (const double speed : speeds) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+    const BodyId left = add_disc(system, 0.01, {-0.4, 0.0}, {speed, 0.0});
+    const BodyId right = add_disc(system, 0.01, {0.3, 0.001}, {-speed, 0.0});
+    Simulation simulation(system, safe);
+    for (int i = 0; i < 20; ++i) {
+      simulation.step();
+      const Vec<2> apart = simulation.state().position(right) - simulation.state().position(left);
+      EXPECT_GT(apart[0], 0.0) << speed;
+    }
+    EXPECT_EQ(simulation.statistics().impacts, 1);
+    // Equal masses, no friction: speeds are exchanged along the normal, sin 0.05 of which is across.
+    EXPECT_NEAR(simulation.state().velocity(left)[0], -speed, 0.02 * speed);
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+}
+
+TEST(NeverTunnel, AFastDiscAndALineOfDiscs) {
+  for (const double speed : speeds) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+    std::vector<BodyId> line{add_disc(system, 0.01, {-0.1, 0.0}, {speed, 0.0})};
+    for (int i = 0; i < 10; ++i) line.push_back(add_disc(system, 0.01, {0.05 * i, 0.0}));
+    Simulation simulation(system, safe);
+    simulation.run_until(1.0 / speed + 5.0 * h);
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const double gap =
+          simulation.state().position(line[i])[0] - simulation.state().position(line[i - 1])[0] - 0.02;
+      EXPECT_GT(gap, -0.004) << speed << " between " << i - 1 << " and " << i;  // of 0.02 m: 0.19 of 2 radii
+      EXPECT_NEAR(simulation.state().velocity(line[i - 1])[0], 0.0, 1e-9 * speed);
+    }
+    EXPECT_NEAR(simulation.state().velocity(line.back())[0], speed, 1e-9 * speed);
+    EXPECT_EQ(simulation.statistics().impacts, 10);
+  }
+}
+
+TEST(NeverTunnel, AWallThatMoves) {
+  // It sweeps over a particle at rest, which it takes along.
+  for (const double speed : speeds) {
+    System system;
+    Wall wall{.from = Vec<2>(0.0, -1.0), .to = Vec<2>(0.0, 1.0), .radius = half_thickness};
+    wall.motion.displacement = [=](double t) { return Vec<2>(speed * t, 0.0); };
+    wall.motion.velocity = [=](double) { return Vec<2>(speed, 0.0); };
+    wall.motion.acceleration = [](double) { return Vec<2>(0.0, 0.0); };
+    system.add(wall, Surface{.friction = 0.0, .normal_restitution = 0.0});
+    system.add(Particle{.mass = 1.0, .position = {0.0123, 0.2}});
+    Simulation simulation(system, safe);
+    for (int i = 0; i < 10; ++i) {
+      simulation.step();
+      const double ahead = simulation.state().q[0] - speed * simulation.time();
+      EXPECT_GT(ahead, 0.5 * half_thickness) << speed;
+    }
+    EXPECT_NEAR(simulation.state().v[0], speed, 1e-12 * speed);
+  }
+}
+
+TEST(NeverTunnel, ABarThatTurns) {
+  // A bar of 2 mm, 1 m long, turns by more than a whole turn in a step; a disc of 4 mm stands in its way.
+  for (const double spin : {1e2, 1e3, 1e4}) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 0.0});
+    const BodyId bar = system.add(RigidBody{.mass = rod(10.0, 1.0), .spin = spin}, "bar");
+    system.add(Segment{.body = bar, .from = {-0.5, 0.0}, .to = {0.5, 0.0}, .radius = 1e-3});
+    const BodyId stone = add_disc(system, 2e-3, {0.0, 0.4});
+    Simulation simulation(system, safe);
+    while (simulation.time() < 2.0 / spin + h) simulation.step();
+    EXPECT_EQ(simulation.statistics().impacts > 0, true) << spin;
+    EXPECT_LT(simulation.state().velocity(stone)[0], -0.1 * spin) << spin;
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+}
+
+TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {
+  // Beside that impacts are resolved at the start of steps, as limit_energy_gain resolves them.
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
+  system.add(Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}}});
+  add_disc(system, 0.2, {0.0, 0.5}, {1.0, 0.0});
+  add_disc(system, 0.2, {0.1, 1.1});
+  Simulation with(system, safe), without(system, TimeStepping{.step = h, .limit_energy_gain = true});
+  with.run_until(1.0);
+  without.run_until(1.0);
+  EXPECT_EQ(with.state().q, without.state().q);
+  EXPECT_EQ(with.statistics().steps, 1000);
+}
+
+TEST(NeverTunnel, AStepWithoutEndIsRefusedByName) {
+  // 1 mm between two walls at 1e8 m/s: 1e8 bounces a step.
+  System system = bullet_before_wall(1e8, 1.0);
+  system.add(Wall{.from = Vec<2>(-0.002, -1.0), .to = Vec<2>(-0.002, 1.0), .radius = half_thickness},
+             Surface{.friction = 0.0, .normal_restitution = 1.0}, "other wall");
+  Simulation simulation(system, safe);
+  const State before = simulation.state();
+  EXPECT_THROWS(SolverError, simulation.step(), "never_tunnel", "'bullet'");
+  EXPECT_EQ(simulation.state().q, before.q);
+  EXPECT_EQ(simulation.time(), 0.0);
+}
+
+TEST(NeverTunnel, ExcludesStepControlAndLocatedImpacts) {
+  TimeStepping controlled = safe, located = safe;
+  controlled.control = StepControl{};
+  located.impacts = ImpactTimes::located;
+  const System system = bullet_before_wall(1.0, 0.0);
+  EXPECT_MODEL_ERROR(Simulation(system, controlled), "never_tunnel", "control");
+  EXPECT_MODEL_ERROR(Simulation(system, located), "never_tunnel", "located");
+}
+
+}  // namespace
