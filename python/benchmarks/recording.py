@@ -1,5 +1,5 @@
-"""Costs of a recording, in memory and in a file: time of a sample beside that of a copy of its numbers, and memory that
-is taken beside what is recorded.
+"""Costs of a recording, in memory and in a file: time of a sample beside that of a copy of its numbers, and
+memory that is taken beside what is recorded.
 
     python python/benchmarks/recording.py [number of bodies]
 """
@@ -52,14 +52,21 @@ def main() -> None:
     for i in range(SAMPLES):
         copies[i] = numbers
     copy = (time.process_time() - begin) / SAMPLES
-    print(f"{bodies} bodies, {SAMPLES} samples of {row / 1e3:.0f} kB, which takes {1e6 * copy:.0f} us to copy")
+    print(
+        f"{bodies} bodies, {SAMPLES} samples of {row / 1e3:.0f} kB, which takes {1e6 * copy:.0f} us to copy"
+    )
     print(f"a step without recorder: {1e6 * alone / SAMPLES:.0f} us")
-    print(f"in memory: {1e6 * (spent - alone) / SAMPLES:.0f} us a sample; memory grew by {memory / (row * SAMPLES):.2f} "
-          "of the recorded bytes")
+    print(
+        f"in memory: {1e6 * (spent - alone) / SAMPLES:.0f} us a sample; "
+        f"memory grew by {memory / (row * SAMPLES):.2f} of the recorded bytes"
+    )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.h5"
         spent, _ = run(bodies, lambda simulation: Recorder(simulation, path, interval=0.0))
-        print(f"in a file: {1e6 * (spent - alone) / SAMPLES:.0f} us a sample, {path.stat().st_size / 1e6:.0f} MB")
+        print(
+            f"in a file: {1e6 * (spent - alone) / SAMPLES:.0f} us a sample, "
+            f"{path.stat().st_size / 1e6:.0f} MB"
+        )
 
 
 if __name__ == "__main__":

@@ -1,15 +1,15 @@
 """What there is to draw of a model: outlines, ground, links and joints, as plain numbers for the viewer.
 
-Everything stands on a *pose*, a place with an angle: pose 0 is the fixed frame, then come the bodies in the order
-of Recording.positions, then the shapes on ground, each at the point about which it turns. Places are in the frame
-of their pose [m].
+Everything stands on a *pose*, a place with an angle: pose 0 is the fixed frame, then come the bodies in the
+order of Recording.positions, then the shapes on ground, each at the point about which it turns. Places are in
+the frame of their pose [m].
 
     capsules  [pose, x, y, x, y, radius]      of discs both ends are the same
     polygons  [pose, radius, [x, y, ...]]     convex, widened by the radius
     particles [pose]
     fills     [pose, [x, y, ...]]             triangles of solid ground, three points each
     lines     [pose, [x, y, ...]]             its surface
-    struts    [pose, x, y]                    from the centre of a body without outline to an end of a link or joint
+    struts    [pose, x, y]                    from the centre of a body without outline to an end
     links     [kind, pose, x, y, pose, x, y]  springs and rods between two ends
     joints    [kind, pose, x, y, axis or null]
 """
@@ -171,14 +171,21 @@ class Drawing:
     def _add_box(self, pose: int, lower: Point, upper: Point) -> None:
         inner = [lower, (upper[0], lower[1]), upper, (lower[0], upper[1])]
         band = 0.03 * max(upper[0] - lower[0], upper[1] - lower[1])
-        outer = [(x + math.copysign(band, x - _middle(lower, upper)[0]),
-                  y + math.copysign(band, y - _middle(lower, upper)[1])) for x, y in inner]
+        outer = [
+            (
+                x + math.copysign(band, x - _middle(lower, upper)[0]),
+                y + math.copysign(band, y - _middle(lower, upper)[1]),
+            )
+            for x, y in inner
+        ]
         self._add_ring(pose, inner, outer)
 
     def _add_circle(self, pose: int, centre: Point, radius: float) -> None:
         turns = [2.0 * math.pi * i / _ARC for i in range(_ARC)]
         inner = [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in turns]
-        outer = [(centre[0] + 1.05 * radius * math.cos(a), centre[1] + 1.05 * radius * math.sin(a)) for a in turns]
+        outer = [
+            (centre[0] + 1.05 * radius * math.cos(a), centre[1] + 1.05 * radius * math.sin(a)) for a in turns
+        ]
         self._add_ring(pose, inner, outer)
         for i in range(0, _ARC, _ARC // 8):  # marks that show how it turns
             self.lines.append([pose, _flat([inner[i], outer[i]])])

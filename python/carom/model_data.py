@@ -71,8 +71,8 @@ def to_data(value: Any) -> Data:
 def describe(system: _core.System) -> dict[str, Data]:
     """The model: `dimension`, `fingerprint`, `bodies` (name of each, in the order of positions), `parts`.
 
-    A part has `role`, `type`, `serial`, `name` (empty if none was given), `fields`. `scene`: the data of a scene
-    file, of which the model can be made again; None where a part has a function of the user.
+    A part has `role`, `type`, `serial`, `name` (empty if none was given), `fields`. `scene`: the data of a
+    scene file, of which the model can be made again; None where a part has a function of the user.
     """
     bodies = sorted(system.bodies(), key=lambda body: body.serial)
     parts = []

@@ -8,8 +8,8 @@
     /complete                    number of samples up to which all of this is written
 
 The file is in the mode of HDF5 for one writer and several readers: its own structure is whole after every
-flush. Rows are written first, the count of complete samples last, so a reader that believes the count finds all
-rows.
+flush. Rows are written first, the count of complete samples last, so a reader that believes the count finds
+all rows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any
 import numpy
 
 from . import _core
-from .recording import Recording, ledger_type, units_of
+from .recorded import Recording, ledger_type, units_of
 
 try:
     import h5py
@@ -113,7 +113,8 @@ class FileStore:
         with _open(path) as before:
             if before.attrs["fingerprint"] != model["fingerprint"]:
                 raise _core.ModelError(
-                    f"recording '{path}' is of another model: its fingerprint is {before.attrs['fingerprint']}, "
+                    f"recording '{path}' is of another model: its fingerprint is "
+                    f"{before.attrs['fingerprint']}, "
                     f"that of the simulation {model['fingerprint']}"
                 )
             frames = _complete(before)
@@ -152,7 +153,9 @@ class FileStore:
         data = name.encode()
         longest = self._file["names"].dtype.itemsize
         if len(data) > longest:
-            raise _core.FileError(f"recording '{self._path}': the name {name!r} is longer than {longest} bytes")
+            raise _core.FileError(
+                f"recording '{self._path}': the name {name!r} is longer than {longest} bytes"
+            )
         return data
 
     def _append(self, name: str, rows: Any) -> None:
@@ -174,7 +177,8 @@ class FileStore:
 def _is_open(path: Path) -> bool:
     """True of a file that its writer did not close: it runs, or was killed.
 
-    Read from the superblock, as HDF5 itself tries for minutes to read a file for several readers that is cut off.
+    Read from the superblock, as HDF5 itself tries for minutes to read a file for several readers that is cut
+    off.
     Raises FileError for a file that is cut off, or no HDF5 file.
     """
     try:
@@ -202,7 +206,9 @@ def _open(path: Path) -> Any:
     except _core.FileError:
         raise
     except (OSError, RuntimeError, KeyError) as error:
-        raise _core.FileError(f"recording '{path}' cannot be read: it is cut off or damaged ({error})") from error
+        raise _core.FileError(
+            f"recording '{path}' cannot be read: it is cut off or damaged ({error})"
+        ) from error
     if found == FORMAT and version <= VERSION:
         return file
     file.close()
@@ -252,5 +258,7 @@ def load(path: Path) -> Recording:
             model = json.loads(file["model"][()])
             moved = [int(serial) for serial in file.attrs["moved"]]
         except (OSError, KeyError, ValueError) as error:
-            raise _core.FileError(f"recording '{path}' cannot be read: it is cut off or damaged ({error})") from error
+            raise _core.FileError(
+                f"recording '{path}' cannot be read: it is cut off or damaged ({error})"
+            ) from error
     return Recording(model["dimension"], model, moved, arrays)

@@ -1,7 +1,7 @@
 """A recording as one page for a browser, which needs no network: written to a file, or shown in a notebook.
 
-    carom.write_view(recording, "run.html")
-    recording.view()                                    # in a notebook
+carom.write_view(recording, "run.html")
+recording.view()                                    # in a notebook
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy
 
 from . import _core
 from .drawing import Drawing
-from .recording import Recording
+from .recorded import Recording
 
 PAGE = "viewer.html"
 _CODES = {"f8": "<f8", "f4": "<f4", "i4": "<i4", "u1": "u1"}
@@ -57,13 +57,17 @@ def _bounds(recording: Recording, drawing: Drawing, size: float) -> list[float]:
     low, high = every.min(axis=0), every.max(axis=0)
     for pose, flat in drawing.lines:
         local = numpy.asarray(flat).reshape(-1, 2)
-        if pose in poses and numpy.ptp(local, axis=0).max() >= size:  # a half-plane: its point below what is seen
+        if (
+            pose in poses and numpy.ptp(local, axis=0).max() >= size
+        ):  # a half-plane: its point below what is seen
             along = (local[-1] - local[0]) / numpy.linalg.norm(local[-1] - local[0])
             start = local[0] + poses[pose]
             foot = start + along * float(along @ (0.5 * (low + high) - start))
             if numpy.abs(foot - 0.5 * (low + high)).max() < 2.0 * (high - low).max():
                 low, high = numpy.minimum(low, foot), numpy.maximum(high, foot)
-    margin = max([0.06 * float((high - low).max()), *(capsule[5] for capsule in drawing.capsules)] or [0.0]) or 0.5
+    margin = (
+        max([0.06 * float((high - low).max()), *(capsule[5] for capsule in drawing.capsules)] or [0.0]) or 0.5
+    )
     return [*(low - margin).tolist(), *(high + margin).tolist()]
 
 
@@ -143,9 +147,9 @@ def write_view(
 ) -> None:
     """Writes a page that shows a recording; everything is in this one file.
 
-    title: the heading; unless given, the name of the file. every: only each so many samples are taken, and the
-    last. Places, contacts and energies are rounded to 24 bits (float32), times are not. Raises FileError where the
-    page cannot be written or was not built; ModelError for a recording that is empty or in space.
+    title: the heading; unless given, the name of the file. every: only each so many samples are taken, and
+    the last. Places, contacts and energies are rounded to 24 bits (float32), times are not. Raises FileError
+    where the page cannot be written or was not built; ModelError for a recording that is empty or in space.
     """
     target = Path(path)
     page = _page(recording, target.stem if title is None else title, every)
@@ -158,7 +162,9 @@ def write_view(
 class View:
     """A recording as a page: shown inline in notebooks."""
 
-    def __init__(self, recording: Recording, every: int = 1, height: int = 640, title: str = "Recording") -> None:
+    def __init__(
+        self, recording: Recording, every: int = 1, height: int = 640, title: str = "Recording"
+    ) -> None:
         self._page = _page(recording, title, every)
         self.height = height
 

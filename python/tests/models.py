@@ -60,9 +60,13 @@ def everything() -> System:
     system.add(HalfPlane(point=(0.0, -1.2), normal=(0.0, 1.0)), name="floor")
     system.add(Terrain(vertices=[(-3.0, -0.4), (-2.2, -0.8), (-1.4, -0.7)], depth=0.2), name="hill")
     system.add(Wall(from_=(1.8, -0.9), to=(2.6, -0.5), radius=0.05), name="wall")
-    system.add(Block(vertices=[(-0.3, -1.2), (0.3, -1.2), (0.3, -1.0), (-0.3, -1.0)], radius=0.02), name="block")
+    system.add(
+        Block(vertices=[(-0.3, -1.2), (0.3, -1.2), (0.3, -1.0), (-0.3, -1.0)], radius=0.02), name="block"
+    )
     shaken = PrescribedMotion(displacement=lambda t: (0.15 * math.sin(6.0 * t), 0.0))
-    system.add(Block(vertices=[(0.9, -0.6), (1.5, -0.6), (1.5, -0.5), (0.9, -0.5)], motion=shaken), name="shaker")
+    system.add(
+        Block(vertices=[(0.9, -0.6), (1.5, -0.6), (1.5, -0.5), (0.9, -0.5)], motion=shaken), name="shaker"
+    )
     in_drum = ContactFilter(groups=2, touches=2)  # outside the drum all is solid
     shell = drum((-2.3, 0.9), 0.5, 2.0)
     shell.filter = in_drum

@@ -23,11 +23,23 @@ pytest.importorskip("h5py", reason="h5py is optional; recordings in files need i
 
 def equal(one, other) -> None:
     """All arrays of two recordings have the same bits."""
-    for name in ("times", "positions", "velocities", "ground", "ledger", "contacts", "contact_ends", "events", "event_ends"):
+    for name in (
+        "times",
+        "positions",
+        "velocities",
+        "ground",
+        "ledger",
+        "contacts",
+        "contact_ends",
+        "events",
+        "event_ends",
+    ):
         a, b = getattr(one, name), getattr(other, name)
         assert a.dtype.names == b.dtype.names and a.shape == b.shape, name
         for field in a.dtype.names or [None]:
-            numpy.testing.assert_array_equal(a if field is None else a[field], b if field is None else b[field], name)
+            numpy.testing.assert_array_equal(
+                a if field is None else a[field], b if field is None else b[field], name
+            )
     assert one.names == other.names
     assert one.model == other.model
 
@@ -41,8 +53,17 @@ def test_rows_are_those_of_the_simulation(mode):
             simulation.run_until(0.02 * k)
             terms = simulation.energy().terms()
             count = sum(1 for contact in simulation.report().contacts)
-            seen.append((simulation.time(), simulation.positions(), simulation.angles(), simulation.velocities(),
-                         simulation.spins(), terms, count))
+            seen.append(
+                (
+                    simulation.time(),
+                    simulation.positions(),
+                    simulation.angles(),
+                    simulation.velocities(),
+                    simulation.spins(),
+                    terms,
+                    count,
+                )
+            )
     recording = recorder.recording()
     assert len(recording) == 11 and recording.times[0] == 0.0
     for row, (now, places, angles, velocities, spins, terms, count) in enumerate(seen, 1):
@@ -84,7 +105,9 @@ def test_events_are_those_of_the_event_driven_mode():
     events = again.events()
     assert len(recording.events) == len(events) > 10
     for row, event in zip(recording.events, events):
-        assert row["time"] == event.time and row["kind"] == event.kind.value and row["mode"] == event.mode.value
+        assert (
+            row["time"] == event.time and row["kind"] == event.kind.value and row["mode"] == event.mode.value
+        )
         assert tuple(row["impulse"]) == event.impulse[:2] and tuple(row["point"]) == event.point[:2]
         assert recording.names[row["name"]] == again.name(event) == "particle 'ball' on half-plane 'floor'"
 
@@ -92,7 +115,9 @@ def test_events_are_those_of_the_event_driven_mode():
 def test_impacts_of_time_stepping_are_events():
     simulation = Simulation(falling_ball(), TimeStepping(step=1e-3))
     impacts = []
-    simulation.observe(lambda now: impacts.extend((c.time, c.impulse[0]) for c in now.report().contacts if c.impact))
+    simulation.observe(
+        lambda now: impacts.extend((c.time, c.impulse[0]) for c in now.report().contacts if c.impact)
+    )
     with Recorder(simulation, interval=0.1) as recorder:
         simulation.run_until(1.5)
     events = recorder.recording().events
@@ -157,7 +182,9 @@ CHILD = """
 def kill_a_recording(path: Path, after: float) -> None:
     """Runs a program that records, and kills it some seconds after its recorder has begun."""
     here = str(Path(__file__).parent)
-    child = subprocess.Popen([sys.executable, "-c", textwrap.dedent(CHILD), str(path), here], stdout=subprocess.PIPE)
+    child = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(CHILD), str(path), here], stdout=subprocess.PIPE
+    )
     try:
         assert child.stdout is not None and child.stdout.readline() == b"runs\n"
         time.sleep(after)

@@ -28,7 +28,9 @@ def written(recording, path, monkeypatch, **options):
     """Description and arrays of a page."""
     monkeypatch.setattr(viewer, "_template", lambda: PAGE)
     carom.write_view(recording, path, **options)
-    found = re.fullmatch(r'<script id="description">(.*)</script><script id="arrays">(.*)</script>', path.read_text())
+    found = re.fullmatch(
+        r'<script id="description">(.*)</script><script id="arrays">(.*)</script>', path.read_text()
+    )
     description, data = json.loads(found[1]), base64.b64decode(found[2])
     types = {"f8": "<f8", "f4": "<f4", "i4": "<i4", "u1": "u1"}
     arrays = {
@@ -40,7 +42,14 @@ def written(recording, path, monkeypatch, **options):
 
 def test_every_part_that_has_a_place_is_drawn():
     drawing = Drawing(describe(everything()), 100.0).data()
-    assert [item["name"] for item in drawing["obstacles"]] == ["floor", "hill", "wall", "block", "shaker", "drum"]
+    assert [item["name"] for item in drawing["obstacles"]] == [
+        "floor",
+        "hill",
+        "wall",
+        "block",
+        "shaker",
+        "drum",
+    ]
     bodies = 9
     assert [item["pose"] for item in drawing["obstacles"]] == [bodies + 1 + i for i in range(6)]
     assert drawing["capsules"] == [
@@ -76,7 +85,9 @@ def test_arrays_are_those_of_the_recording(tmp_path, monkeypatch):
         expected = getattr(recording, name).astype("f4").reshape(-1)
         numpy.testing.assert_array_equal(arrays[name], expected)
     numpy.testing.assert_array_equal(arrays["contact_ends"], recording.contact_ends)
-    numpy.testing.assert_array_equal(arrays["contact_impulse"], recording.contacts["impulse"].astype("f4").reshape(-1))
+    numpy.testing.assert_array_equal(
+        arrays["contact_impulse"], recording.contacts["impulse"].astype("f4").reshape(-1)
+    )
     numpy.testing.assert_array_equal(arrays["event_time"], numpy.sort(recording.events["time"]))
 
 

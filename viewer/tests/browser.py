@@ -75,7 +75,10 @@ class Page:
         """Column and row in the window of a point of the scene."""
         across, down, left, top = self.script(
             "const box = document.getElementById('scene').getBoundingClientRect();"
-            "return [...caromPage.camera.pixelAt(arguments[0], arguments[1]), box.left, box.top]", float(x), float(y))
+            "return [...caromPage.camera.pixelAt(arguments[0], arguments[1]), box.left, box.top]",
+            float(x),
+            float(y),
+        )
         return round(across + left), round(down + top)
 
     def colour(self, x: float, y: float, picture=None) -> str:

@@ -77,7 +77,7 @@ def main() -> None:
         try:
             driver.set_script_timeout(60)
             begin = time.perf_counter()
-            page = Page(driver, path.as_uri(), recording)
+            Page(driver, path.as_uri(), recording)
             print(f"opened in {time.perf_counter() - begin:.1f} s")
             frames, milliseconds = driver.execute_async_script(COUNT)
             print(f"pictures: {1000 * frames / milliseconds:.1f} a second over {milliseconds / 1000:.1f} s")

@@ -44,11 +44,17 @@ def test_bodies_are_where_the_recording_has_them(show):
         page.seek(recording.times[sample])
         picture = page.picture()
         for name in ("ball", "bar", "brick", "tumbler"):
-            assert page.colour(*place(recording, name, sample), picture) == body_colour(recording, name), (name, sample)
+            assert page.colour(*place(recording, name, sample), picture) == body_colour(recording, name), (
+                name,
+                sample,
+            )
         names = recording.body_names()
         x, y, angle = recording.positions[sample, names.index("rigid body 'dumbbell'")]
         for side in (-0.2, 0.2):
-            disc = (x + side * numpy.cos(angle) - 0.05 * numpy.cos(angle), y + side * numpy.sin(angle) - 0.05 * numpy.sin(angle))
+            disc = (
+                x + side * numpy.cos(angle) - 0.05 * numpy.cos(angle),
+                y + side * numpy.sin(angle) - 0.05 * numpy.sin(angle),
+            )
             assert page.colour(*disc, picture) == body_colour(recording, "dumbbell")
         assert page.colour(x, y, picture) == AIR  # between its discs
 
@@ -278,7 +284,9 @@ def test_nothing_is_loaded_from_elsewhere(show, tmp_path):
 def test_a_notebook_shows_it_inline(browser, recordings, tmp_path):
     view = recordings["ball"].view()
     path = tmp_path / "notebook.html"
-    path.write_text(f"<!doctype html><title>notebook</title><body>{view._repr_html_()}</body>", encoding="utf-8")
+    path.write_text(
+        f"<!doctype html><title>notebook</title><body>{view._repr_html_()}</body>", encoding="utf-8"
+    )
     browser.get(path.as_uri())
     browser.switch_to.frame(browser.find_element(By.TAG_NAME, "iframe"))
     try:
