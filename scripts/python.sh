@@ -13,7 +13,7 @@ cmake --build build/release --target carom all_examples reference_runs --paralle
 
 venv="$PWD/build/python-test"
 python3 -m venv --clear "$venv"
-"$venv/bin/pip" -q install pytest jsonschema mypy nbclient nbformat ipykernel
+"$venv/bin/pip" -q install pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 "$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
 
 status=0

@@ -3,6 +3,8 @@
 #   scripts/setup.sh            compiler, libraries, plotting
 #   scripts/setup.sh --docs     also what scripts/docs.sh needs
 #   scripts/setup.sh --python   also what scripts/python.sh needs
+#   scripts/setup.sh --node     also what builds the page of the viewer
+#   scripts/setup.sh --browser  also what tests it
 #   scripts/setup.sh --checks   also what .ci/run checks with
 set -euo pipefail
 
@@ -17,9 +19,11 @@ for argument in "$@"; do
   case "$argument" in
     --docs) packages+=(doxygen graphviz) ;;
     --python) packages+=(python3-venv python3-dev) ;;
+    --node) packages+=(nodejs npm) ;;
+    --browser) packages+=(chromium chromium-driver fonts-dejavu-core) ;;
     --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen graphviz) ;;
     *)
-      echo "usage: $0 [--docs | --python | --checks]" >&2
+      echo "usage: $0 [--docs | --python | --node | --browser | --checks]" >&2
       exit 2
       ;;
   esac

@@ -6,10 +6,14 @@ attributes. `from` is a word of Python: that argument is `from_`.
 
 from . import planar, spatial, tables
 from ._core import *  # type: ignore[no-redef]  # noqa: F403  # it has modules planar, spatial, too
+from .recording import Recorder as Recorder
+from .recording import Recording as Recording
+from .recording import load_recording as load_recording
 from .scene import Scene as Scene
 from .scene import SceneError as SceneError
 from .scene import load_scene as load_scene
 from .scene import save_scene as save_scene
+from .viewer import write_view as write_view
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -24,6 +24,7 @@ void bind_records(nanobind::module_& core);
 void bind_energy(nanobind::module_& core);
 void bind_simulation(nanobind::module_& core);
 void bind_recorders(nanobind::module_& core);
+void bind_recording(nanobind::module_& core);
 void bind_analysis(nanobind::module_& core);
 void bind_problems(nanobind::module_& core);
 void bind_checks(nanobind::module_& core);

@@ -24,6 +24,7 @@ NB_MODULE(_core, core) {
   bind_energy(core);
   bind_simulation(core);
   bind_recorders(core);
+  bind_recording(core);
   bind_analysis(core);
   bind_problems(core);
   bind_checks(core);

@@ -1,0 +1,264 @@
+"""Recordings as HDF5 files, written so that a program killed at any moment leaves one that can be read.
+
+    /model                       JSON: every part with its fields (carom.model_data)
+    /states/times, positions, velocities, ground            a row for each sample
+    /states/contact_ends, event_ends                        rows of the tables up to and with each sample
+    /ledger/rows, /contacts/rows, /events/rows              tables
+    /names                       what `name` in the tables counts
+    /complete                    number of samples up to which all of this is written
+
+The file is in the mode of HDF5 for one writer and several readers: its own structure is whole after every
+flush. Rows are written first, the count of complete samples last, so a reader that believes the count finds
+all rows.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy
+
+from . import _core
+from .recorded import Recording, ledger_type, units_of
+
+try:
+    import h5py
+except ImportError as missing:
+    raise ImportError("carom: recordings in files need h5py: pip install h5py") from missing
+
+FORMAT = "carom recording"
+VERSION = 1
+_STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
+_TABLES = ("contacts", "events")
+_CHUNK_BYTES = 1 << 16
+
+
+def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = "") -> Any:
+    """An empty data set that grows along its first axis."""
+    row = numpy.dtype(kind).itemsize * max(1, int(numpy.prod(shape, dtype=int)))
+    chunk = (max(1, min(4096, _CHUNK_BYTES // row)), *(max(1, size) for size in shape))
+    most = tuple(size or None for size in shape)  # HDF5 has no parts of data sets without columns
+    made = group.create_dataset(name, (0, *shape), kind, maxshape=(None, *most), chunks=chunk)
+    if unit:
+        made.attrs["unit"] = unit
+    return made
+
+
+def _name_length(model: dict[str, Any]) -> int:
+    """Bytes that the longest name of two parts and what joins them needs."""
+    given = [part["name"] for part in model["parts"]] + [body["name"] for body in model["bodies"]]
+    return 96 + 3 * max((len(name.encode()) for name in given), default=0)
+
+
+class FileStore:
+    """Writes blocks of samples to a file."""
+
+    def __init__(self, file: Any, path: Path, names: list[str], last: float, counts: dict[str, int]) -> None:
+        events = file["events/rows"]
+        self.instant = int(events[-1]["instant"]) + 1 if len(events) else 0
+        self._file = file
+        self._path = path
+        self._frames = len(file["states/times"])
+        self.names = names
+        self.last = last
+        self.counts = counts
+        file.swmr_mode = True
+
+    @classmethod
+    def create(
+        cls, path: Path, model: dict[str, Any], types: dict[str, Any], moved: list[int], interval: float
+    ) -> FileStore:
+        """A new file; one of that name is replaced. Raises FileError."""
+        try:
+            file = h5py.File(path, "w", libver="latest")
+        except OSError as error:
+            raise _core.FileError(f"recording '{path}' cannot be written: {error}") from error
+        file.attrs.update(
+            format=FORMAT,
+            version=VERSION,
+            dimension=model["dimension"],
+            fingerprint=model["fingerprint"],
+            interval=interval,
+            moved=numpy.array(moved, dtype="i8"),
+        )
+        file.create_dataset("model", data=json.dumps(model))
+        bodies = len(model["bodies"])
+        units = units_of(model["dimension"])
+        states = file.create_group("states")
+        shapes: dict[str, tuple[int, ...]] = {
+            "positions": (bodies, 3),
+            "velocities": (bodies, 3),
+            "ground": (len(moved), 3),
+        }
+        for name in _STATES:
+            kind = "i8" if name.endswith("_ends") else "f8"
+            _rows(states, name, shapes.get(name, ()), kind, units.get(name, ""))
+        _rows(file.create_group("ledger"), "rows", (), ledger_type(), "J")
+        for table in _TABLES:
+            rows = _rows(file.create_group(table), "rows", (), types[table])
+            for field in types[table].names:
+                if field in units:
+                    rows.attrs[f"unit of {field}"] = units[field]
+        _rows(file, "names", (), f"S{_name_length(model)}")
+        file.create_dataset("complete", data=0, dtype="i8")
+        return cls(file, path, [], numpy.nan, {"contact_ends": 0, "event_ends": 0})
+
+    @classmethod
+    def resume(cls, path: Path, model: dict[str, Any], types: dict[str, Any], time: float) -> FileStore:
+        """A file that is continued from a time [s]. Raises FileError; ModelError for one of another model."""
+        with _open(path) as before:
+            if before.attrs["fingerprint"] != model["fingerprint"]:
+                raise _core.ModelError(
+                    f"recording '{path}' is of another model: its fingerprint is "
+                    f"{before.attrs['fingerprint']}, "
+                    f"that of the simulation {model['fingerprint']}"
+                )
+            frames = _complete(before)
+            times = before["states/times"][:frames]
+            kept = int(numpy.searchsorted(times, time, side="right"))
+            counts = {name: _count(before, name, kept) for name in ("contact_ends", "event_ends")}
+            later = before["events/rows"]["time"][counts["event_ends"] : _count(before, "event_ends", frames)]
+            counts["event_ends"] += int(numpy.count_nonzero(later <= time))
+            names = [name.decode() for name in before["names"][()]]
+            last = float(times[kept - 1]) if kept else numpy.nan
+        file = _reopen(path)
+        lengths = {f"states/{name}": kept for name in _STATES}
+        lengths.update({"ledger/rows": kept, "contacts/rows": counts["contact_ends"]})
+        lengths.update({"events/rows": counts["event_ends"], "names": len(names)})
+        file["complete"][()] = kept
+        for name, length in lengths.items():
+            file[name].resize(length, axis=0)
+        return cls(file, path, names, last, counts)
+
+    def append(self, block: dict[str, Any]) -> None:
+        """Writes the rows of a block, then the count. Raises FileError."""
+        try:
+            self._append("names", numpy.array([self._encoded(name) for name in block["names"]]))
+            for table in (*_TABLES, "ledger"):
+                self._append(f"{table}/rows", block[table])
+            for name in _STATES:
+                self._append(f"states/{name}", block[name])
+            self._file.flush()
+            self._frames += block["frames"]
+            self._file["complete"][()] = self._frames
+            self._file["complete"].flush()
+        except OSError as error:
+            raise _core.FileError(f"recording '{self._path}' cannot be written: {error}") from error
+
+    def _encoded(self, name: str) -> bytes:
+        data = name.encode()
+        longest = self._file["names"].dtype.itemsize
+        if len(data) > longest:
+            raise _core.FileError(
+                f"recording '{self._path}': the name {name!r} is longer than {longest} bytes"
+            )
+        return data
+
+    def _append(self, name: str, rows: Any) -> None:
+        if len(rows) == 0:
+            return
+        target = self._file[name]
+        start = len(target)
+        target.resize(start + len(rows), axis=0)
+        target[start:] = rows
+
+    def close(self) -> None:
+        """Ends the file. Raises FileError."""
+        try:
+            self._file.close()
+        except (OSError, RuntimeError) as error:
+            raise _core.FileError(f"recording '{self._path}' cannot be written: {error}") from error
+
+
+def _is_open(path: Path) -> bool:
+    """True of a file that its writer did not close: it runs, or was killed.
+
+    Read from the superblock, as HDF5 itself tries for minutes to read a file for several readers that is cut
+    off.
+    Raises FileError for a file that is cut off, or no HDF5 file.
+    """
+    try:
+        size = path.stat().st_size
+        with open(path, "rb") as file:
+            start = file.read(48)
+    except OSError as error:
+        raise _core.FileError(f"recording '{path}' cannot be read: {error}") from error
+    # HDF5 file format 3.0, section II.A, version 3: flags, then base, extension, end of file and root.
+    if not start.startswith(b"\x89HDF\r\n\x1a\n"):
+        raise _core.FileError(f"'{path}' is not a recording: it is no HDF5 file")
+    end = struct.unpack_from("<Q", start, 28)[0] if len(start) == 48 and start[8] in (2, 3) else 0
+    if len(start) < 48 or size < end:
+        raise _core.FileError(f"recording '{path}' is cut off: it has {size} bytes of {max(end, 48)}")
+    return start[8] == 3 and start[11] & 5 != 0
+
+
+def _open(path: Path) -> Any:
+    """A recording to be read, whether its writer closed it, runs, or was killed. Raises FileError."""
+    if not path.exists():
+        raise _core.FileError(f"recording '{path}' does not exist")
+    try:
+        file = h5py.File(path, "r", libver="latest", swmr=_is_open(path))
+        found, version = file.attrs.get("format"), file.attrs.get("version", 0)
+    except _core.FileError:
+        raise
+    except (OSError, RuntimeError, KeyError) as error:
+        raise _core.FileError(
+            f"recording '{path}' cannot be read: it is cut off or damaged ({error})"
+        ) from error
+    if found == FORMAT and version <= VERSION:
+        return file
+    file.close()
+    if found != FORMAT:
+        raise _core.FileError(f"'{path}' is not a recording: it is an HDF5 file of something else")
+    raise _core.FileError(f"recording '{path}' is of version {version}; this carom reads up to {VERSION}")
+
+
+def _reopen(path: Path) -> Any:
+    """A recording to be written on. One that was not closed is copied, as HDF5 refuses to write on it."""
+    try:
+        return h5py.File(path, "r+", libver="latest")
+    except OSError:
+        pass
+    copy = path.with_name(path.name + ".copy")
+    try:
+        with _open(path) as source, h5py.File(copy, "w", libver="latest") as target:
+            target.attrs.update(source.attrs)
+            for name in source:
+                source.copy(name, target)
+        os.replace(copy, path)
+        return h5py.File(path, "r+", libver="latest")
+    except OSError as error:
+        raise _core.FileError(f"recording '{path}' cannot be continued: {error}") from error
+
+
+def _complete(file: Any) -> int:
+    """Number of samples whose rows are all there."""
+    shortest = min([len(file[f"states/{name}"]) for name in _STATES] + [len(file["ledger/rows"])])
+    return min(shortest, int(file["complete"][()]))
+
+
+def _count(file: Any, ends: str, frames: int) -> int:
+    return int(file[f"states/{ends}"][frames - 1]) if frames else 0
+
+
+def load(path: Path) -> Recording:
+    """The recording in a file. Raises FileError."""
+    with _open(path) as file:
+        try:
+            frames = _complete(file)
+            arrays: dict[str, Any] = {name: file[f"states/{name}"][:frames] for name in _STATES}
+            arrays["ledger"] = file["ledger/rows"][:frames]
+            for table, ends in (("contacts", "contact_ends"), ("events", "event_ends")):
+                arrays[table] = file[f"{table}/rows"][: _count(file, ends, frames)]
+            arrays["names"] = [name.decode() for name in file["names"][()]]
+            model = json.loads(file["model"][()])
+            moved = [int(serial) for serial in file.attrs["moved"]]
+        except (OSError, KeyError, ValueError) as error:
+            raise _core.FileError(
+                f"recording '{path}' cannot be read: it is cut off or damaged ({error})"
+            ) from error
+    return Recording(model["dimension"], model, moved, arrays)

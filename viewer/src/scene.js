@@ -1,0 +1,195 @@
+// The scene: what the recording has, as layers, and what changes with time in them.
+
+import { Color, Scene, Vector3, WebGLRenderer } from "three";
+import * as colours from "./colours.js";
+import { lastNotAfter } from "./data.js";
+import { Arrows, capsules, fills, lines, Marks } from "./layers.js";
+import { along, fan, link, widened } from "./outlines.js";
+import { Poses } from "./poses.js";
+
+const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
+const MOST_FLASHES = 400;
+const CLEAR_FLASHES = 20; // the marks of older events are fainter, so that many do not hide the bodies
+const ARROW = [10, 60]; // least and most pixels of the arrow of a large impulse, three bodies long between
+const DOT = [0.8, 2.2]; // least and most pixels of the radius of a contact's mark
+
+const within = ([least, most], value) => Math.min(Math.max(value, least), most);
+
+export class RunScene {
+  constructor(canvas, recording) {
+    this.recording = recording;
+    this.canvas = canvas;
+    this.poses = new Poses(recording);
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    this.renderer.setClearColor(new Color("#fbfbf9"), 1);
+    this.three = new Scene();
+    this.uniforms = {
+      poses: { value: this.poses.texture }, pixel: { value: 1 }, picked: { value: -1 }, arrowScale: { value: 1 },
+      pickedColour: { value: new Vector3(...colours.rgb(colours.PICKED)) },
+    };
+    this.showsContacts = true;
+    this.modeColours = recording.modes.map((mode) => colours.rgb(colours.MODES[mode]));
+    this.impactColour = colours.rgb(colours.IMPACT);
+    this.kindColours = recording.kinds.map((kind) => colours.rgb(colours.KINDS[kind]));
+    this.addGround();
+    this.addBodies();
+    this.addLinks();
+    this.addContacts();
+    this.largeImpulse = largeImpulse(recording.contact_impulse);
+    this.bodySize = bodySize(recording);
+  }
+
+  isGround(pose) { return pose === 0 || pose > this.recording.bodies.length; }
+
+  look(pose) {
+    const ground = this.isGround(pose);
+    return {
+      fill: colours.rgb(ground ? colours.GROUND : colours.BODIES[(pose - 1) % colours.BODIES.length]),
+      edge: colours.rgb(ground ? colours.GROUND_EDGE : colours.BODY_EDGE),
+    };
+  }
+
+  addGround() {
+    const { recording, uniforms, three } = this;
+    const fill = colours.rgb(colours.GROUND), edge = colours.rgb(colours.GROUND_EDGE);
+    three.add(fills(recording.fills.map(([pose, points]) => ({ pose, points, colour: fill })), uniforms, 0));
+    three.add(lines(recording.lines.flatMap(([pose, points]) => along(pose, points, false, 1.6, edge)), uniforms, 1));
+  }
+
+  addBodies() {
+    const { recording, uniforms, three } = this;
+    const round = recording.capsules.map(([pose, ax, ay, bx, by, radius]) => (
+      { pose, ax, ay, bx, by, radius, ...this.look(pose) }));
+    const outlines = recording.polygons.map(([pose, radius, points]) => ({ pose, points: widened(points, radius) }));
+    three.add(capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2));
+    three.add(fills(outlines.map(({ pose, points }) => (
+      { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3));
+    three.add(lines(outlines.flatMap(({ pose, points }) => (
+      along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4));
+    three.add(capsules(round.filter((item) => !this.isGround(item.pose)), uniforms, 5));
+  }
+
+  addLinks() {
+    const { recording, uniforms, three } = this;
+    const dark = colours.rgb(colours.LINK), rod = colours.rgb(colours.ROD);
+    const axes = recording.joints.filter(([kind]) => kind === "axis");
+    const list = recording.links.flatMap((item) => (
+      link(item, item[0] === "rod" ? 3.2 : 1.5, item[0] === "rod" ? rod : dark)));
+    const reach = 0.12 * Math.hypot(recording.bounds[2] - recording.bounds[0], recording.bounds[3] - recording.bounds[1]);
+    for (const [, pose, x, y, [ux, uy]] of axes) {
+      list.push({ poseA: pose, ax: x - reach * ux, ay: y - reach * uy, poseB: pose, bx: x + reach * ux,
+        by: y + reach * uy, width: 0.8, colour: dark });
+    }
+    for (const [pose, x, y] of recording.struts) {
+      list.push({ poseA: pose, ax: 0, ay: 0, poseB: pose, bx: x, by: y, width: 3.2, colour: rod });
+    }
+    three.add(lines(list, uniforms, 6));
+    const ends = recording.links.flatMap(([, a, ax, ay, b, bx, by]) => [[a, ax, ay], [b, bx, by]]);
+    const rest = recording.joints.filter(([kind]) => kind !== "axis");
+    const marks = new Marks(recording.particles.length + ends.length + rest.length, uniforms, 7);
+    for (const [pose, x, y] of ends) marks.add(pose, x, y, 2.5, this.isGround(pose) ? 2 : 0, dark);
+    for (const pose of recording.particles) marks.add(pose, 0, 0, 6, 0, colours.rgb("#7d93ad"));
+    const forms = { pin: [4, 1], weld: [4, 2], slide: [5, 2], slot: [4, 1], point: [1.8, 0], centre: [3, 0] };
+    for (const [kind, pose, x, y] of rest) marks.add(pose, x, y, ...forms[kind], dark);
+    marks.update();
+    three.add(marks.mesh);
+  }
+
+  addContacts() {
+    const ends = this.recording.contact_ends;
+    let most = 0;
+    for (let i = 0; i < ends.length; ++i) most = Math.max(most, ends[i] - (i ? ends[i - 1] : 0));
+    this.dots = new Marks(most, this.uniforms, 8);
+    this.arrows = new Arrows(most, this.uniforms, 9);
+    this.flashes = new Marks(MOST_FLASHES, this.uniforms, 10);
+    this.three.add(this.dots.mesh, this.arrows.mesh, this.flashes.mesh);
+  }
+
+  contactRange(sample) {
+    const ends = this.recording.contact_ends;
+    return [sample > 0 ? ends[sample - 1] : 0, ends[sample]];
+  }
+
+  colourOfContact(i) {
+    return this.recording.contact_impact[i] ? this.impactColour : this.modeColours[this.recording.contact_mode[i]];
+  }
+
+  fillContacts(sample) {
+    const { contact_point: point, contact_normal: normal, contact_impulse: impulse } = this.recording;
+    const [first, end] = this.showsContacts ? this.contactRange(sample) : [0, 0];
+    this.dots.clear();
+    this.arrows.clear();
+    for (let i = first; i < end; ++i) {
+      const [x, y, nx, ny] = [point[2 * i], point[2 * i + 1], normal[2 * i], normal[2 * i + 1]];
+      const [pn, pt] = [impulse[2 * i], impulse[2 * i + 1]];
+      const colour = this.colourOfContact(i);
+      this.dots.add(0, x, y, this.dotSize, 0, colour);
+      if (pn !== 0 || pt !== 0) this.arrows.add(x, y, pn * nx + pt * ny, pn * ny - pt * nx, colour);
+    }
+    this.dots.update();
+    this.arrows.update();
+  }
+
+  fillFlashes(time, speed) {
+    const { event_time: times, event_point: point, event_kind: kind, event_normal: normal } = this.recording;
+    this.flashes.clear();
+    const last = lastNotAfter(times, time), length = FLASH * speed;
+    for (let i = last; i >= 0 && times[i] > time - length && this.flashes.count < MOST_FLASHES; --i) {
+      if (normal[2 * i] === 0 && normal[2 * i + 1] === 0) continue; // it is at no place
+      const age = (time - times[i]) / length;
+      const clear = last - i < CLEAR_FLASHES ? 1 : CLEAR_FLASHES / (last - i);
+      this.flashes.add(0, point[2 * i], point[2 * i + 1], 4 + 7 * age, 3, this.kindColours[kind[i]], clear * (1 - age));
+    }
+    this.flashes.update();
+  }
+
+  /** Impulse of the arrow of the legend [N s]. */
+  impulseOfArrow() { return this.largeImpulse; }
+
+  /** Length of that arrow [pixels]. */
+  arrowLength(camera) { return within(ARROW, 3 * this.bodySize * camera.scale); }
+
+  draw(camera, { sample, fraction, time, speed }) {
+    if (sample !== this.sample || fraction !== this.fraction) this.poses.fill(sample, fraction);
+    const dotSize = within(DOT, 0.25 * this.bodySize * camera.scale);
+    const isOther = this.contactsShown !== this.showsContacts || Math.abs(dotSize - this.dotSize) > 0.1;
+    if (sample !== this.sample || isOther) {
+      this.dotSize = dotSize;
+      this.fillContacts(sample);
+    }
+    [this.sample, this.fraction, this.contactsShown] = [sample, fraction, this.showsContacts];
+    this.fillFlashes(time, speed);
+    camera.follow();
+    camera.update();
+    this.uniforms.pixel.value = 1 / camera.scale;
+    this.uniforms.arrowScale.value =
+      this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
+    this.renderer.render(this.three, camera.three);
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+  }
+}
+
+/** Width of a body in the middle of all [m]. */
+function bodySize({ capsules: round, polygons, bounds }) {
+  const sizes = [
+    ...round.map(([, ax, ay, bx, by, radius]) => 2 * radius + Math.hypot(bx - ax, by - ay)),
+    ...polygons.map(([, radius, points]) => 2 * radius + Math.max(...points) - Math.min(...points)),
+  ].sort((a, b) => a - b);
+  return sizes.length ? sizes[sizes.length >> 1] : 0.05 * Math.max(bounds[2] - bounds[0], bounds[3] - bounds[1]);
+}
+
+/** An impulse that few exceed: of a sorted sample of all. */
+function largeImpulse(impulse) {
+  const sizes = [], count = impulse.length / 2, stride = Math.max(1, Math.floor(count / 20000));
+  for (let i = 0; i < count; i += stride) {
+    const size = Math.hypot(impulse[2 * i], impulse[2 * i + 1]);
+    if (size > 0) sizes.push(size);
+  }
+  sizes.sort((a, b) => a - b);
+  return sizes.length ? sizes[Math.floor(0.95 * (sizes.length - 1))] : 0;
+}
