@@ -6,11 +6,11 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import resources
 
 import pytest
 
 import carom
-from importlib import resources
 from carom import planar, scene
 from carom.command import main
 from conftest import PYTHON
