@@ -39,10 +39,12 @@ def main(page):
     folder = os.path.dirname(os.path.relpath(page))
     with open(page, encoding="utf-8") as file:
         pieces = CODE.split(file.read())
-    # Code is every second piece.
+    # Code is every second piece. Doxygen takes modules of Python for namespaces, and links to pages they have not.
     for i, piece in enumerate(pieces):
         if i % 2 == 0:
             pieces[i] = LINK.sub(lambda link: rewritten(link, folder), piece)
+        elif piece.startswith("```python"):
+            pieces[i] = "```{.unparsed}" + piece[len("```python") :]
     sys.stdout.write("".join(pieces))
 
 
