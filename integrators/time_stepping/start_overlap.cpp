@@ -57,6 +57,7 @@ double separate(AllBodies& all, State& state) {
     if (!of_component.empty()) joints.push_back(std::move(of_component));
   }
   std::vector<JointConstraints*> bound;
+  bound.reserve(joints.size());
   for (JointConstraints& of_component : joints) bound.push_back(&of_component);
   GapProjection projection;
   SolverChain chain;
