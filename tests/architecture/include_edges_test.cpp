@@ -209,7 +209,7 @@ TEST(IncludeEdges, NoFolderIsACatchAll) {
        ++entry) {
     if (!entry->is_directory()) continue;
     const std::string name = entry->path().filename().string();
-    if (name == ".git" || name.starts_with("build")) {
+    if (name == ".git" || name == "node_modules" || name.starts_with("build")) {
       entry.disable_recursion_pending();
       continue;
     }
