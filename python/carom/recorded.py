@@ -128,7 +128,7 @@ class Recording:
 
     def frame(self, table: str) -> Any:
         """A table, as columns(), as a pandas.DataFrame. Needs pandas."""
-        import pandas
+        import pandas  # type: ignore[import-untyped, unused-ignore]
 
         return pandas.DataFrame(self.columns(table))
 

@@ -26,7 +26,7 @@ from . import _core
 from .recorded import Recording, ledger_type, units_of
 
 try:
-    import h5py
+    import h5py  # type: ignore[import-untyped, unused-ignore]
 except ImportError as missing:
     raise ImportError("carom: recordings in files need h5py: pip install h5py") from missing
 

@@ -106,6 +106,7 @@ void bind_recording(nb::module_& core) {
           nb::arg("simulation"), "A sample now.")
       .def(
           "take", [](Attached& self) { return self.sampler->take(); },
+          nb::sig("def take(self) -> dict[str, typing.Any]"),
           "What was sampled since the last call: arrays by name.")
       .def(
           "detach", [](Attached& self, Runner& runner) { runner.get().remove_callback(self.callback); },
@@ -114,10 +115,11 @@ void bind_recording(nb::module_& core) {
           "last", [](Attached& self) { return self.sampler->last(); }, "Time of the last sample [s].")
       .def(
           "moved", [](Attached& self) { return Convert<std::vector<Index>>::cast(self.sampler->moved()); },
-          "Serial numbers of the moved shapes on ground.");
+          nb::sig("def moved(self) -> list[int]"), "Serial numbers of the moved shapes on ground.");
   core.def(
       "_row_types", [](int dimension) { return dimension == 3 ? row_types<3>() : row_types<2>(); },
-      nb::arg("dimension"), "Types of the rows of contacts and events, as numpy.dtype takes them.");
+      nb::arg("dimension"), nb::sig("def _row_types(dimension: int) -> dict[str, typing.Any]"),
+      "Types of the rows of contacts and events, as numpy.dtype takes them.");
 }
 
 }  // namespace carom_python
