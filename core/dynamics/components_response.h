@@ -10,17 +10,24 @@
 #include <carom/core/export.h>
 
 #include <span>
+#include <vector>
 
 namespace carom {
+
+/// Appends the constraints of the joints of a component. False if they have no rows.
+CAROM_API bool append_constraints(const Assembly& assembly, Index component,
+                                  std::vector<JointConstraints>& out);
+/// Their addresses, as ComponentsResponse takes them.
+[[nodiscard]] CAROM_API std::vector<JointConstraints*> addresses_of(std::span<JointConstraints> joints);
 
 /// K of each component with joints, M^-1 of all other bodies.
 class CAROM_API ComponentsResponse final : public BodyResponse {
 public:
   /// \param assembly must outlive it
   explicit ComponentsResponse(const Assembly& assembly) : masses_(assembly), assembly_(&assembly) {}
-  /// Takes the joints of the components that have some, ascending; factored wherever it is asked. They must
-  /// outlive it.
-  void bind(std::span<JointConstraints> joints) { joints_ = joints; }
+  /// Takes the joints of the components that have some, ascending; factored wherever it is asked. The list
+  /// and they must outlive it.
+  void bind(std::span<JointConstraints* const> joints) { joints_ = joints; }
 
   /// True if no component has joints.
   [[nodiscard]] bool no_joints() const { return joints_.empty(); }
@@ -34,7 +41,7 @@ public:
 private:
   MassResponse masses_;
   const Assembly* assembly_;
-  std::span<JointConstraints> joints_;
+  std::span<JointConstraints* const> joints_;
 };
 
 }  // namespace carom

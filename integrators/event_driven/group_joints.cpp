@@ -7,19 +7,17 @@
 namespace carom {
 
 GroupJoints::GroupJoints(const Assembly& assembly, std::span<const Index> components) : response_(assembly) {
-  joints_.reserve(components.size());  // parts point to them
+  joints_.reserve(components.size());
   for (const Index component : components) {
-    if (!assembly.has_joints(component)) continue;
-    JointConstraints of_component(assembly, component);
-    if (of_component.empty()) continue;
-    JointConstraints& joints = joints_.emplace_back(std::move(of_component));
-    joints.factors().reveal_rank(true);
-    parts_.push_back({component, rows_, &joints});
-    rows_ += joints.size();
+    if (!append_constraints(assembly, component, joints_)) continue;
+    joints_.back().factors().reveal_rank(true);
+    parts_.push_back({component, rows_, nullptr});
+    rows_ += joints_.back().size();
   }
   joints_.shrink_to_fit();
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].joints = &joints_[i];
-  response_.bind(joints_);
+  list_ = addresses_of(joints_);
+  response_.bind(list_);
 }
 
 bool GroupJoints::depends_on_time() const {

@@ -52,6 +52,7 @@ private:
   [[nodiscard]] const Part& part_of(std::size_t row) const;
 
   std::vector<JointConstraints> joints_;
+  std::vector<JointConstraints*> list_;  // of them
   std::vector<Part> parts_;
   std::size_t rows_ = 0;
   ComponentsResponse response_;

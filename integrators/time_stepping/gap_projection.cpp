@@ -1,5 +1,6 @@
 // Problem: move bodies out of shapes on ground, and apart from each other, by the smallest displacement.
 
+#include <carom/core/dynamics/components_response.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ double rounding_depth(const Assembly& assembly, Range components, const State& s
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
-/// What a contact is known by while it is opened: two bodies that are moved touch with other features then.
+/// Key of a contact while it is opened: two bodies that are moved touch with other features then.
 ConstraintKey pair_of(ConstraintKey key) {
   if (key.b.owner == FeatureKey::Owner::body || key.b.owner == FeatureKey::Owner::shape) {
     key.a.feature = key.b.feature = 0;
@@ -35,41 +36,6 @@ Index first_together(const Assembly& assembly, Index body) {
   while (!assembly.is_jointed(first)) ++first;
   return first;
 }
-
-/// Answers of bodies of which joints bind some.
-class BoundResponse final : public BodyResponse {
-public:
-  BoundResponse(const Assembly& assembly, std::span<JointConstraints* const> joints)
-      : assembly_(&assembly), masses_(assembly), joints_(joints) {}
-
-  [[nodiscard]] Range reach(Index body) const override {
-    const JointConstraints* const joints = of(body);
-    return joints == nullptr ? masses_.reach(body) : joints->velocities();
-  }
-  [[nodiscard]] BodyMasses alone(Index body) const override {
-    return of(body) == nullptr ? masses_.alone(body) : BodyMasses{};
-  }
-  void answer(Index body, double* x, std::size_t columns, char* held) override {
-    JointConstraints* const joints = of(body);
-    if (joints == nullptr) return masses_.answer(body, x, columns, held);
-    JointResponse(*joints).answer(body, x, columns, held);
-  }
-
-private:
-  [[nodiscard]] JointConstraints* of(Index body) const {
-    if (joints_.empty()) return nullptr;
-    const Index v = assembly_->layout()->bodies()[body].v;
-    const auto holds = [&](const JointConstraints* joints) {
-      return v >= joints->velocities().begin && v < joints->velocities().end;
-    };
-    const auto found = std::find_if(joints_.begin(), joints_.end(), holds);
-    return found == joints_.end() ? nullptr : *found;
-  }
-
-  const Assembly* assembly_;
-  MassResponse masses_;
-  std::span<JointConstraints* const> joints_;
-};
 
 }  // namespace
 
@@ -176,6 +142,9 @@ bool GapProjection::has_moved(const Bodies& bodies, std::span<const Constraint> 
   for (const Constraint& contact : contacts) {
     for (int b = 0; b < contact.bodies; ++b) add(contact.blocks[static_cast<std::size_t>(b)].body);
   }
+  std::sort(mechanisms_.begin(), mechanisms_.end(), [](const JointConstraints* a, const JointConstraints* b) {
+    return a->velocities().begin < b->velocities().begin;
+  });
   std::sort(of_island_.begin(), of_island_.end());
   of_island_.erase(std::unique(of_island_.begin(), of_island_.end()), of_island_.end());
   return std::any_of(of_island_.begin(), of_island_.end(), [&](Index body) {
@@ -222,7 +191,8 @@ bool GapProjection::move(const Bodies& bodies, std::span<const Constraint> conta
   // W = G B G^T of the normal rows, each with y >= 0.
   normals_.clear();
   for (const Constraint& contact : contacts) normals_.push_back({&contact, 0});
-  BoundResponse response(bodies.assembly, mechanisms_);
+  ComponentsResponse response(bodies.assembly);
+  response.bind(mechanisms_);
   delassus_.build(normals_, response);
   problem_.reset(static_cast<int>(contacts.size()));
   delassus_.write(problem_.matrix().data());

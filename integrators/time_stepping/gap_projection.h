@@ -83,7 +83,7 @@ private:
   std::vector<double> towards_;       // the next d, of the island at hand
   std::vector<double> multipliers_, moved_;
   std::vector<Index> of_island_;               // its bodies, ascending
-  std::vector<JointConstraints*> mechanisms_;  // its joints
+  std::vector<JointConstraints*> mechanisms_;  // its joints, ascending
 };
 
 }  // namespace carom

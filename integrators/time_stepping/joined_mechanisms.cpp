@@ -7,7 +7,7 @@
 namespace carom {
 
 JoinedMechanisms::JoinedMechanisms(const Assembly& assembly, JointStages& stages)
-    : assembly_(&assembly), stages_(&stages), masses_(assembly) {}
+    : assembly_(&assembly), stages_(&stages), response_(assembly) {}
 
 bool JoinedMechanisms::takes(const StepIsland& island) const {
   return island.components.size() > 1 &&
@@ -19,10 +19,15 @@ void JoinedMechanisms::start(const StepInput& in, const StepIsland& island, Isla
                              StepTrial& trial) {
   velocity_.resize(in.start.v.size());
   change_.resize(in.start.v.size());
+  joints_.clear();
   for (const Index component : island.components) {
-    if (JointStage* const joints = stages_->of(component)) joints->start_joined(in, trial);
+    JointStage* const joints = stages_->of(component);
+    if (joints == nullptr) continue;
+    joints->start_joined(in, trial);
+    joints_.push_back(&joints->rows().at_start());
   }
-  problem.respond(*this);
+  response_.bind(joints_);
+  problem.respond(response_);
 }
 
 bool JoinedMechanisms::sweep(const StepInput& in, const StepRule& rule, const StepIsland& island,
@@ -87,27 +92,6 @@ double JoinedMechanisms::violation(const StepInput& in, const StepIsland& island
     if (joints != nullptr) largest = std::max(largest, joints->violation(in, trial));
   }
   return largest;
-}
-
-/// Rows at the start of the step of the joints that answer with a body; null where it answers for itself.
-JointConstraints* JoinedMechanisms::joints_of(Index body) const {
-  JointStage* const joints = stages_->of(assembly_->component_of(body));
-  return joints == nullptr ? nullptr : &joints->rows().at_start();
-}
-
-Range JoinedMechanisms::reach(Index body) const {
-  const JointConstraints* const joints = joints_of(body);
-  return joints == nullptr ? masses_.reach(body) : joints->velocities();
-}
-
-BodyMasses JoinedMechanisms::alone(Index body) const {
-  return joints_of(body) == nullptr ? masses_.alone(body) : BodyMasses{};
-}
-
-void JoinedMechanisms::answer(Index body, double* x, std::size_t columns, char* held) {
-  JointConstraints* const joints = joints_of(body);
-  if (joints == nullptr) return masses_.answer(body, x, columns, held);
-  JointResponse(*joints).answer(body, x, columns, held);
 }
 
 }  // namespace carom

@@ -7,7 +7,7 @@
 
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/body_response.h>
+#include <carom/core/dynamics/components_response.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -20,7 +20,7 @@
 namespace carom {
 
 /// Sweeps over such islands. Keeps memory only.
-class CAROM_API JoinedMechanisms final : private BodyResponse {
+class CAROM_API JoinedMechanisms {
 public:
   /// Both must outlive it.
   JoinedMechanisms(const Assembly& assembly, JointStages& stages);
@@ -39,15 +39,12 @@ public:
   [[nodiscard]] double violation(const StepInput& in, const StepIsland& island, StepTrial& trial);
 
 private:
-  [[nodiscard]] JointConstraints* joints_of(Index body) const;
-  [[nodiscard]] Range reach(Index body) const override;
-  [[nodiscard]] BodyMasses alone(Index body) const override;
-  void answer(Index body, double* x, std::size_t columns, char* held) override;
   void free_component(const StepInput& in, const StepRule& rule, Index component, StepTrial& trial);
 
   const Assembly* assembly_;
   JointStages* stages_;
-  MassResponse masses_;
+  std::vector<JointConstraints*> joints_;  // of the island, at the start of the step
+  ComponentsResponse response_;            // of its bodies
   std::vector<double> velocity_, change_;  // over all velocities: without contact; by contact
 };
 

@@ -37,13 +37,10 @@ StepImpacts::StepImpacts(StepParts& parts)
   const Assembly& assembly = *parts.assembly;
   joints_.reserve(assembly.components().size());
   for (Index component = 0; component < assembly.components().size(); ++component) {
-    if (!assembly.has_joints(component)) continue;
-    JointConstraints of_component(assembly, component);
-    if (of_component.empty()) continue;
-    joints_.push_back(std::move(of_component));
-    joints_.back().factors().reveal_rank(true);
+    if (append_constraints(assembly, component, joints_)) joints_.back().factors().reveal_rank(true);
   }
-  response_.bind(joints_);
+  list_ = addresses_of(joints_);
+  response_.bind(list_);
 }
 
 bool StepImpacts::resolve(const StepInput& in) {

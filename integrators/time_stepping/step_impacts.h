@@ -64,6 +64,7 @@ private:
   ImpactSolver by_law_;
   SolverChain chain_;
   std::vector<JointConstraints> joints_;
+  std::vector<JointConstraints*> list_;  // of them
   ComponentsResponse response_;
   std::vector<Constraint> contacts_, touching_;
 };
