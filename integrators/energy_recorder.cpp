@@ -20,15 +20,11 @@ double deepest_penetration(const Simulation& simulation) {
   const Detector detector(assembly);
   Evaluation evaluation = make_evaluation(assembly);
   std::vector<Constraint> contacts;
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    evaluate_positions(assembly, component, state, evaluation);
-    detector.find(component, state, evaluation, 0.0, contacts);
-  }
-  if (detector.bodies_touch()) {
-    BodyContactSearch search;
-    const GroundPlaces none_moves;
-    detector.bodies().find({state, evaluation, none_moves}, search, contacts);
-  }
+  GroundPlaces places;
+  BodyContactSearch search;
+  detector.place(state.time, places);
+  evaluate_positions(assembly, state, evaluation);
+  detector.find_all({state, evaluation, places}, search, contacts);
   double deepest = 0.0;
   for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);
   return deepest;

@@ -58,6 +58,12 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   out.finish();
 }
 
+void Detector::find_all(const ContactQuery& query, BodyContactSearch& memory,
+                        std::vector<Constraint>& out) const {
+  find(Range{0, static_cast<Index>(assembly_->components().size())}, query, out);
+  if (bodies_touch()) bodies_.find(query, memory, out);
+}
+
 std::vector<ContactPair> Detector::pairs(Index component) const {
   std::vector<ContactPair> out;
   ground_.append_pairs(component, out);

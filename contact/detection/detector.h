@@ -58,6 +58,8 @@ public:
   }
   /// Likewise of a batch, or of one component.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Likewise of all components, and the contacts of bodies with each other.
+  void find_all(const ContactQuery& query, BodyContactSearch& memory, std::vector<Constraint>& out) const;
   /// True if bodies may touch each other.
   [[nodiscard]] bool bodies_touch() const { return !bodies_.empty(); }
   /// Contacts of bodies with each other.

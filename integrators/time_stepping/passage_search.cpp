@@ -155,9 +155,7 @@ void PassageSearch::look(const State& start, double share) {
   evaluate_positions(*assembly_, at_.view(), evaluation_);
   detector_->place(at_.time, places_);
   contacts_.clear();
-  const ContactQuery query{at_.view(), evaluation_, places_, &places_at_end_, margin_};
-  detector_->find({0, static_cast<Index>(assembly_->components().size())}, query, contacts_);
-  if (detector_->bodies_touch()) detector_->bodies().find(query, search_, contacts_);
+  detector_->find_all({at_.view(), evaluation_, places_, &places_at_end_, margin_}, search_, contacts_);
   std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
 }
 

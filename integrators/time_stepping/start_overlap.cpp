@@ -1,5 +1,6 @@
 // Problem: begin a run with bodies side by side, or say by name which are not.
 
+#include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/errors.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
@@ -36,12 +37,8 @@ struct AllBodies {
 
 void demand_depth(const AllBodies& all, const State& state, double largest) {
   std::vector<Constraint> contacts;
-  const ContactQuery query{state.view(), all.evaluation, all.places};
-  all.detector.find(all.components(), query, contacts);
-  if (all.detector.bodies_touch()) {
-    BodyContactSearch search;
-    all.detector.bodies().find(query, search, contacts);
-  }
+  BodyContactSearch search;
+  all.detector.find_all({state.view(), all.evaluation, all.places}, search, contacts);
   const auto deepest =
       std::min_element(contacts.begin(), contacts.end(),
                        [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
@@ -52,13 +49,9 @@ void demand_depth(const AllBodies& all, const State& state, double largest) {
 double separate(AllBodies& all, State& state) {
   std::vector<JointConstraints> joints;
   for (Index component = 0; component < all.assembly.components().size(); ++component) {
-    if (!all.assembly.has_joints(component)) continue;
-    JointConstraints of_component(all.assembly, component);
-    if (!of_component.empty()) joints.push_back(std::move(of_component));
+    append_constraints(all.assembly, component, joints);
   }
-  std::vector<JointConstraints*> bound;
-  bound.reserve(joints.size());
-  for (JointConstraints& of_component : joints) bound.push_back(&of_component);
+  const std::vector<JointConstraints*> bound = addresses_of(joints);
   GapProjection projection;
   SolverChain chain;
   const GapProjection::Result result = projection.project(
