@@ -3,12 +3,12 @@
 #include <carom/carom.h>
 
 #include "tests/page_blocks.h"
+#include "tests/round_hill.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -139,46 +139,11 @@ TEST(OwnObstacle, LiftsItsFollower) {
   EXPECT_LT(std::abs(simulation.energy().residual()), 1e-9 * gravity);
 }
 
-class DomeKind;
-/// A round hill, known by its distance only.
-struct Dome {
-  static constexpr Role role = Role::obstacle;
-  using Kind = DomeKind;
-  double radius = 1.0;
-};
-class DomeKind final : public GroundShapeKind {
-public:
-  static constexpr int part_dimension() { return 2; }
-  static constexpr std::string_view part_label() { return "dome"; }
-  void add(const Dome& part, const PartCheck& check) {
-    check.positive(part.radius, "radius", "m");
-    parts_.push_back(part);
-  }
-  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override {
-    return std::make_unique<DomeKind>(*this);
-  }
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
-  [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
-  [[nodiscard]] MaterialId material(Index) const override { return {}; }
-  [[nodiscard]] Gap gap(Index slot, const double* point) const override {
-    const double distance = std::hypot(point[0], point[1]);
-    return {distance - parts_[slot].radius, {point[0] / distance, point[1] / distance, 0.0}};
-  }
-  void fingerprint(Fingerprint& print) const override {
-    for (const Dome& part : parts_) print.add(part.radius);
-  }
-
-private:
-  std::vector<Dome> parts_;
-};
-
 TEST(OwnObstacle, IsLeftWhereTheBallLeavesADome) {
   constexpr double radius = 1.0, start = 0.1;
   System system;
   system.add(Gravity{{0.0, -gravity}});
-  system.add(Dome{.radius = radius}, Surface{.friction = 0.0, .normal_restitution = 0.0});
+  system.add(carom_test::RoundHill{.radius = radius}, Surface{.friction = 0.0, .normal_restitution = 0.0});
   const BodyId ball =
       system.add(Particle{.mass = 1.0, .position = {radius * std::sin(start), radius * std::cos(start)}});
   Simulation simulation(system, EventDriven{});

@@ -3,6 +3,7 @@
 #include <carom/contact/detection/ground_shapes.h>
 
 #include "tests/contact/detection/placed_model.h"
+#include "tests/round_hill.h"
 
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
@@ -11,8 +12,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -22,41 +21,6 @@ using namespace carom::planar;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Surface law{.friction = 0.0, .normal_restitution = 1.0};
-
-/// A user's own: a round peg.
-class PegKind;
-struct Peg {
-  static constexpr Role role = Role::obstacle;
-  using Kind = PegKind;
-  Vec<2> centre = Vec<2>::Zero();
-  double radius = 1.0;
-};
-class PegKind final : public GroundShapeKind {
-public:
-  static constexpr int part_dimension() { return 2; }
-  static constexpr std::string_view part_label() { return "peg"; }
-  void add(const Peg& part, const PartCheck& check) {
-    check.positive(part.radius, "radius", "m");
-    parts_.push_back(part);
-  }
-  [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override { return std::make_unique<PegKind>(*this); }
-  void remove(Index slot) override { parts_.erase(parts_.begin() + slot); }
-  [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
-  [[nodiscard]] MaterialId material(Index) const override { return {}; }
-  [[nodiscard]] Gap gap(Index slot, const double* point) const override {
-    const Vec<2> from = Vec<2>(point[0], point[1]) - parts_[slot].centre;
-    const Vec<2> n = from.normalized();
-    return {from.norm() - parts_[slot].radius, {n[0], n[1], 0.0}};
-  }
-  void fingerprint(Fingerprint& print) const override {
-    for (const Peg& part : parts_) print.add(part.radius);
-  }
-
-private:
-  std::vector<Peg> parts_;
-};
 
 PrescribedMotion shaking(double amplitude) {
   return {.displacement = [amplitude](double t) { return Vec<2>(0.0, amplitude * std::sin(t)); },
@@ -78,7 +42,7 @@ TEST(GroundShapes, KeepTheOrderInWhichTheyWereAdded) {
   EXPECT_TRUE(GroundShapes(system).empty());
   const ObstacleId a = system.add(HalfPlane{.normal = {0, 1}}, law),
                    b = system.add(HalfPlane{.normal = {1, 0}, .motion = shaking(0.1)}, law),
-                   c = system.add(Peg{.centre = {5, 5}}, law),
+                   c = system.add(carom_test::RoundHill{.centre = {5, 5}}, law),
                    d = system.add(HalfPlane{.normal = {-1, 0}}, law);
   system.remove(a);
   const GroundShapes shapes(system);
@@ -156,11 +120,11 @@ TEST(GroundShapes, JumpsAreNotContinuous) {
   EXPECT_THROW(shapes.demand_continuous(before, after), SolverError);
 }
 
-// A ball falls on the top of the peg and comes back, in both modes.
+// A ball falls on the top of the hill and comes back, in both modes.
 TEST(GroundShapes, AUsersOwnIsTouched) {
   System system;
   system.add(Gravity{{0.0, -10.0}});
-  system.add(Peg{.centre = {0.0, 0.0}, .radius = 1.0}, law, "peg");
+  system.add(carom_test::RoundHill{.centre = {0.0, 0.0}, .radius = 1.0}, law, "hill");
   const BodyId ball = system.add(Particle{.mass = 1.0, .position = {0.0, 1.0 + 5.0}}, "ball");
   for (const bool stepping : {true, false}) {
     const Mode mode = stepping ? Mode(TimeStepping{.step = 1e-4}) : Mode(EventDriven{});
@@ -173,7 +137,7 @@ TEST(GroundShapes, AUsersOwnIsTouched) {
 
 TEST(GroundShapes, AUsersOwnNeedsNoLookAtManyPoints) {
   System system;
-  system.add(Peg{.centre = {0.0, 0.0}, .radius = 1.0}, law);
+  system.add(carom_test::RoundHill{.centre = {0.0, 0.0}, .radius = 1.0}, law);
   const System copy = system;
   const GroundShapes shapes(copy);
   const std::vector<double> points{3.0, 0.0, 0.0, 2.5, -4.0, 0.0};
