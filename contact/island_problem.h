@@ -27,7 +27,7 @@ namespace carom {
 /// millisecond, and are asked where sweeps do not end (large_problem_solver.h).
 inline constexpr std::size_t factored_constraints = 12;
 
-/// What an island may do beside solving its law to rounding; nothing of it unless asked for.
+/// Ways of solving an island other than its law to rounding; none of them unless asked for.
 struct IslandOptions {
   /// Constraints from which on W stays in factors, and sweeps solve it (nonlinear_cg_solver.h), where these
   /// belong to several bodies of the plane that answer for themselves. Answers are only as exact then as the

@@ -38,8 +38,9 @@ void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& stat
 void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
                        const GroundMotion* after, Constraint& out);
 
-/// What the curvature of a boundary that gap() describes adds to the drift: the normal turns as the feature's
-/// centre moves along. By differences over 1e-5 m. \param motion of the shape; null: at rest
+/// Share of the drift [m/s^2] by the curvature of a boundary that gap() describes, normal and tangential: the
+/// normal turns as the feature's centre moves along. By differences over 1e-5 m. \param motion of the shape;
+/// null: at rest
 [[nodiscard]] std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,
                                                     const GroundShapes& shapes, Index shape,
                                                     const GroundMotion* motion);

@@ -52,7 +52,7 @@ public:
   /// The motion.
   [[nodiscard]] const SmoothMotion& motion() const { return parts_.motion; }
 
-  /// What it is made of, for those that join and part groups (joinable_group.h).
+  /// Its parts, for those that join and part groups (joinable_group.h).
   [[nodiscard]] GroupParts& parts() { return parts_; }
   [[nodiscard]] const GroupParts& parts() const { return parts_; }
 

@@ -67,8 +67,8 @@ private:
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(EventInstant& at);
-  // What a projection closes: contacts that part slower than the capture speed, and those that slide slowly
-  // are stopped with them; these without that; or those only that do not part.
+  // Contacts that a projection closes: those that part slower than the capture speed, where those that slide
+  // slowly are stopped too; the same without stopping; or those only that do not part.
   enum class Closing : std::uint8_t { with_sliding, all, pressed };
   [[nodiscard]] bool close_captured(Closing closing, double slow, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;

@@ -34,7 +34,7 @@ struct Candidate {
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
 };
 
-/// What a candidate is taken for.
+/// Mode that a candidate is taken to have.
 struct SlipDirection {
   double sign = 0.0;      ///< of the sliding velocity, 0: may stick
   bool open = false;      ///< taken as open

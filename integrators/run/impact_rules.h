@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// What is done about an impact that would add energy (possible where e_n and e_t differ).
+/// Treatment of an impact that would add energy (possible where e_n and e_t differ).
 enum class EnergyGain : std::uint8_t {
   report,  ///< nothing: records and statistics say how much
   limit,   ///< all e of the impact are scaled by the largest factor that does not (ImpactNote says it)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What time stepping does about bodies that stand in each other, or in shapes on ground.
+/// Options of time stepping for bodies that stand in each other, or in shapes on ground.
 
 #include <optional>
 

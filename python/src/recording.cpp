@@ -1,4 +1,4 @@
-// What carom.Recorder is made of: samples of a run, and the types of their rows.
+// Parts of carom.Recorder: samples of a run, and the types of their rows.
 
 #include "bind.h"
 #include "sampler.h"

@@ -53,7 +53,7 @@ struct EventRow {
   std::uint16_t unused = 0;
 };
 
-/// What is to be sampled.
+/// Choice of samples.
 struct SamplerOptions {
   double interval = 0.0;           ///< >= 0; 0: every step [s]
   bool contacts = true;            ///< contacts too
@@ -107,7 +107,7 @@ public:
   void observe(const carom::Simulation& simulation);
   /// A sample now, whatever the interval. Throws as observe().
   void sample(const carom::Simulation& simulation);
-  /// What was sampled since the last call: arrays by name, whose memory is handed over.
+  /// Samples since the last call: arrays by name, whose memory is handed over.
   [[nodiscard]] nb::dict take();
   /// Time of the last sample; NaN if there is none [s].
   [[nodiscard]] double last() const { return last_; }
