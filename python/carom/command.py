@@ -16,6 +16,7 @@ import argparse
 import contextlib
 import importlib
 import json
+import math
 import os
 import sys
 from pathlib import Path
@@ -28,11 +29,31 @@ from .scene.findings import examine
 from .scene.references import SECTIONS
 from .scene.urdf import PLANES
 
-WRONG, FAILED, INTERRUPTED = 1, 3, 130
+WRONG, MISUSED, FAILED, INTERRUPTED = 1, 2, 3, 130
 
 
 class Missing(Exception):
     """A part of the package that is not installed."""
+
+
+class WrongUse(Exception):
+    """Options that do not go together."""
+
+
+def _seconds(text: str) -> float:
+    """A time on the command line."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"is {text}; allowed: a finite number")
+    return value
+
+
+def _duration(text: str) -> float:
+    """A length of time on the command line."""
+    value = _seconds(text)
+    if value <= 0.0:
+        raise argparse.ArgumentTypeError(f"is {text}; allowed: more than 0")
+    return value
 
 
 def _part(name: str) -> Any:
@@ -80,6 +101,8 @@ def _summary(simulation: _core.Simulation) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """carom run: runs a scene, and prints its energies."""
+    if options.interval is not None and not (options.record or options.view):
+        raise WrongUse("--interval is of a recording; give --record or --view")
     scene = load_scene(options.scene)
     until = scene.until if options.until is None else options.until
     if until is None:
@@ -131,6 +154,8 @@ def check(options: argparse.Namespace) -> int:
 
 def view(options: argparse.Namespace) -> int:
     """carom view: a page for the browser from a recording."""
+    if not options.recording.is_file():
+        raise _core.FileError(f"'{options.recording}' cannot be read: there is no such file")
     recorded = _part("recording").load_recording(options.recording)
     page = options.output or options.recording.with_suffix(".html")
     _write_view(recorded, page)
@@ -163,11 +188,11 @@ def arguments() -> argparse.ArgumentParser:
 
     command = commands.add_parser("run", help="run a scene", description=run.__doc__)
     command.add_argument("scene", type=Path)
-    command.add_argument("--until", type=float, metavar="TIME", help="end [s]; else as the scene says")
+    command.add_argument("--until", type=_seconds, metavar="TIME", help="end [s]; else as the scene says")
     command.add_argument("--mode", choices=list(MODES), help="else as the scene says")
-    command.add_argument("--step", type=float, help="of time stepping [s]")
+    command.add_argument("--step", type=_duration, help="of time stepping [s]")
     command.add_argument("--record", type=Path, metavar="FILE", help="write the run to an HDF5 file")
-    command.add_argument("--interval", type=float, metavar="TIME", help="between recorded samples [s]")
+    command.add_argument("--interval", type=_duration, metavar="TIME", help="between recorded samples [s]")
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
     command.set_defaults(action=run)
 
@@ -208,6 +233,9 @@ def main(words: Optional[list[str]] = None) -> int:
     except (_core.SolverError, _core.Cancelled) as error:
         print(f"carom: the run failed: {error}", file=sys.stderr)
         return FAILED
+    except WrongUse as error:
+        print(f"carom: {error}", file=sys.stderr)
+        return MISUSED
     except (_core.Error, Missing, ImportError) as error:
         print(f"carom: {error}", file=sys.stderr)
         return WRONG

@@ -11,7 +11,12 @@ void refuse(std::string_view where, std::string_view expected, nb::handle value)
   if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
   const auto type = nb::cast<std::string>(nb::handle(value.type()).attr("__name__"));
   std::string text(where);
-  text.append(" must be ").append(expected).append(", not ").append(shown).append(" (" + type + ")");
+  std::string allowed(expected);
+  constexpr std::string_view internal = "_core.";  // users know its types as carom's
+  for (std::size_t at = allowed.find(internal); at != std::string::npos; at = allowed.find(internal)) {
+    allowed.erase(at, internal.size());
+  }
+  text.append(" must be ").append(allowed).append(", not ").append(shown).append(" (" + type + ")");
   throw nb::type_error(text.c_str());
 }
 

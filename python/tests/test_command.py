@@ -131,6 +131,29 @@ def process(*words):
     return child
 
 
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        (["--interval", "0.1"], "--record or --view"),
+        (["--until", "nan"], "finite"),
+        (["--step", "0", "--mode", "time-stepping"], "more than 0"),
+        (["--interval", "-1", "--record", "none.h5"], "more than 0"),
+    ],
+)
+def test_a_wrong_command_line_ends_with_2(words, said, capsys):
+    try:
+        code = main(["run", str(BALL), *words])
+    except SystemExit as ended:  # of argparse
+        code = ended.code
+    assert code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_recording_that_is_not_there_is_named(capsys):
+    assert main(["view", "none.h5"]) == 1
+    assert "none.h5" in capsys.readouterr().err
+
+
 def test_view_makes_a_page_of_a_recording(tmp_path, capsys):
     viewer = pytest.importorskip("carom.viewer")
     pytest.importorskip("h5py")

@@ -254,6 +254,16 @@ def test_files(tmp_path):
     assert carom.load_scene(tmp_path / "mark.json").system.bodies() == []
 
 
+def test_what_is_no_scene_or_path_is_named(tmp_path):
+    simulation = carom.Simulation(carom.System(), carom.TimeStepping())
+    with pytest.raises(TypeError, match="a System or a Scene, not a Simulation"):
+        carom.save_scene(simulation, tmp_path / "scene.json")
+    with pytest.raises(TypeError, match="from_dict"):
+        carom.load_scene({})
+    with pytest.raises(TypeError, match="must be carom.ImpactRules"):
+        carom.TimeStepping(impact_rules={"order": "sequential"})
+
+
 def test_errors_have_data():
     with pytest.raises(SceneError) as caught:
         scene.from_text(BALL.replace('"inertia": 0.5', '"inertia": "x"'), "scene.json")

@@ -57,6 +57,8 @@ def save_scene(
     """Writes a scene file. Raises SceneError, by name, for a part with a function of the user, before
     anything is written, and FileError for a path that cannot be written. mode, until [s]: how to run it.
     """
+    if not isinstance(scene, (_core.System, Scene)):
+        raise TypeError(f"save_scene(): scene must be a System or a Scene, not a {type(scene).__name__}")
     text = to_text(scene, mode, until)
     try:
         with open(path, "w", encoding="utf-8", newline="\n") as file:
@@ -69,6 +71,8 @@ def load_scene(path: Union[str, "os.PathLike[str]"]) -> Scene:
     """Reads a scene file. Raises SceneError with line and field ("scene.json:12: bodies[3].mass: ..."),
     FileError for a path that cannot be read.
     """
+    if isinstance(path, dict):
+        raise TypeError("load_scene(): path must be a text or a path, not a dict; carom.scene.from_dict takes one")
     name = os.fspath(path)
     try:
         with open(path, "rb") as file:
