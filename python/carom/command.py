@@ -154,8 +154,6 @@ def check(options: argparse.Namespace) -> int:
 
 def view(options: argparse.Namespace) -> int:
     """carom view: a page for the browser from a recording."""
-    if not options.recording.is_file():
-        raise _core.FileError(f"'{options.recording}' cannot be read: there is no such file")
     recorded = _part("recording").load_recording(options.recording)
     page = options.output or options.recording.with_suffix(".html")
     _write_view(recorded, page)

@@ -255,7 +255,9 @@ def test_files(tmp_path):
 
 
 def test_what_is_no_scene_or_path_is_named(tmp_path):
-    simulation = carom.Simulation(carom.System(), carom.TimeStepping())
+    system = carom.System()
+    system.add(planar.Particle(mass=1.0))
+    simulation = carom.Simulation(system, carom.TimeStepping())
     with pytest.raises(TypeError, match="a System or a Scene, not a Simulation"):
         carom.save_scene(simulation, tmp_path / "scene.json")
     with pytest.raises(TypeError, match="from_dict"):
