@@ -5,7 +5,7 @@
 #include <carom/integrators/event_driven/event_balance.h>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace carom {
 
@@ -79,18 +79,21 @@ void EventBalance::finish() {
   }
 }
 
+/// Records are large and many: their times are sorted apart, and each record is moved once.
 void EventBalance::order_events() {
   const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
   if (std::is_sorted(events.begin(), events.end(), earlier)) return;
-  order_.resize(events.size());
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-    const double first = events[a].time, second = events[b].time;
-    return first < second || (first == second && a < b);
-  });
-  ordered_.clear();
-  for (const std::size_t place : order_) ordered_.push_back(events[place]);
-  events.swap(ordered_);
+  order_.clear();
+  for (std::size_t i = 0; i < events.size(); ++i) order_.emplace_back(events[i].time, i);
+  std::sort(order_.begin(), order_.end());
+  for (std::size_t first = 0; first < order_.size(); ++first) {
+    const EventRecord held = events[first];
+    std::size_t to = first;
+    for (std::size_t from; (from = std::exchange(order_[to].second, to)) != first; to = from) {
+      events[to] = events[from];
+    }
+    if (to != first) events[to] = held;
+  }
 }
 
 EventRecord& EventBalance::record(EventKind kind, double time, const Constraint& contact,

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -92,11 +93,10 @@ struct CAROM_API EventBalance {
 private:
   void keep_latest();
 
-  std::size_t settled_ = 0;            // of the events
-  std::int64_t instant_ = 0;           // being recorded
-  std::vector<EventMotions> motions_;  // of note_before(), by constraint
-  std::vector<EventRecord> ordered_;
-  std::vector<std::size_t> order_;
+  std::size_t settled_ = 0;                            // of the events
+  std::int64_t instant_ = 0;                           // being recorded
+  std::vector<EventMotions> motions_;                  // of note_before(), by constraint
+  std::vector<std::pair<double, std::size_t>> order_;  // time and place of each event
 };
 
 }  // namespace carom

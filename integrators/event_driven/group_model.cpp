@@ -53,6 +53,7 @@ void add_load_traits(const Assembly& assembly, Index component, LoadTraits& trai
     traits.books_dissipative = traits.books_dissipative || elements.books_dissipative();
     traits.books_external = traits.books_external || elements.books_external();
     traits.depends_on_time = traits.depends_on_time || elements.depends_on_time();
+    traits.needs_rotations = traits.needs_rotations || elements.needs_rotations();
     traits.only_fields = traits.only_fields && elements.is_field() && !elements.books_dissipative() &&
                          !elements.depends_on_time();
   }
@@ -137,6 +138,8 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
   for (Index i = 0; i < bounds.size(); ++i) bound_of[bounds[i].pair] = i;
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
   loads.depends_on_time = joints.depends_on_time() || ground_moves;
+  // Outlines are looked at in frames that turn with their bodies.
+  loads.needs_rotations = !joints.empty() || !bounds.empty() || detector->needs_rotations();
   for (const Index component : group.components) add_load_traits(*assembly, component, loads);
   discontinuities = discontinuities_of(
       *assembly, group.components, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});

@@ -29,6 +29,7 @@ struct LoadTraits {
   bool books_external = false;     ///< some elements book external work
   bool depends_on_time = false;    ///< loads, joints or shapes on ground do
   bool only_fields = true;         ///< nothing but uniform fields acts
+  bool needs_rotations = false;    ///< loads, joints or places of contact depend on rotations of bodies
 };
 
 /// Components that share one time.

@@ -38,6 +38,14 @@ void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, dou
   contact(pair, at, out);
 }
 
+/// Rotations cost a sine and a cosine each: discs over flat ground go without.
+void SmoothMotion::place_bodies(MotionSample& at) const {
+  if (!model_.loads.needs_rotations) return;
+  for (const auto& part : model_.parts()) {
+    evaluate_positions(*model_.assembly, part.component, at.view(), at.evaluation);
+  }
+}
+
 void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSample& out) {
   const Assembly& assembly = *model_.assembly;
   memory_->limit.take();
@@ -45,9 +53,7 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   out.state.time = time;
   model_.detector->place(time, out.places);
   const StateView state = out.view();
-  for (const auto& part : model_.parts()) {
-    evaluate_positions(assembly, part.component, state, out.evaluation);
-  }
+  place_bodies(out);
   double* const force = out.evaluation.force.data();
   const LoadTraits traits = model_.loads;
   Loads loads{force, force, force};
@@ -145,9 +151,7 @@ void SmoothMotion::read_guards(double time, const double* y, const double* accel
                                std::vector<GuardMotion>& out) {
   model_.unknowns.scatter({y, size()}, memory.state);
   memory.state.time = time;
-  for (const auto& part : model_.parts()) {
-    evaluate_positions(*model_.assembly, part.component, memory.view(), memory.evaluation);
-  }
+  place_bodies(memory);
   model_.unknowns.for_velocities([&](Range v, std::size_t place) {
     std::copy_n(acceleration + place, v.size(), memory.acceleration.begin() + v.begin);
   });

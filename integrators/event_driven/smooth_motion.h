@@ -88,6 +88,7 @@ public:
   [[nodiscard]] const MotionMemory& memory() const { return *memory_; }
 
 private:
+  void place_bodies(MotionSample& at) const;
   void write_works(const MotionSample& at, double lost_inside, double* rates);
 
   MotionMemory* memory_;
