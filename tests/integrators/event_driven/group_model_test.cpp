@@ -32,7 +32,7 @@ struct OnFloor {
 OnFloor over_floor() {
   OnFloor made;
   made.system.add(Gravity{{0.0, -9.81}});
-  made.system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{});
+  made.system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.5});
   made.body = made.system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 1.0}});
   return made;
 }
@@ -66,7 +66,7 @@ TEST(GroupModel, AJointNeedsRotations) {
 TEST(GroupModel, ShapesOnGroundNeedRotations) {
   OnFloor model = over_floor();
   model.system.add(Disc{.body = model.body, .radius = 0.1});
-  model.system.add(Peg{.radius = 0.2}, Surface{});
+  model.system.add(Peg{.radius = 0.2}, Surface{.friction = 0.3, .normal_restitution = 0.5});
   EXPECT_TRUE(needs_rotations(std::move(model.system)));
 }
 
