@@ -54,13 +54,14 @@ bool ActiveSet::find_islands() {
       if (block.body != none) bodies = std::max(bodies, block.body + 1);
     }
   }
-  islands_.start(bodies);
+  memory_->islands.start(bodies);
   for (const ActiveContact& contact : contacts_) {
-    if (is_of_two(contact)) islands_.join(mechanism(contact.at.body()), mechanism(contact.at.blocks[1].body));
+    if (is_of_two(contact))
+      memory_->islands.join(mechanism(contact.at.body()), mechanism(contact.at.blocks[1].body));
   }
-  last_.resize(bodies);
+  memory_->last.resize(bodies);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    last_[islands_.find(mechanism(contacts_[i].at.body()))] = i;
+    memory_->last[memory_->islands.find(mechanism(contacts_[i].at.body()))] = i;
   }
   return true;
 }
@@ -75,7 +76,7 @@ void ActiveSet::for_groups(F&& f) {
     std::size_t last = first + 1;
     if (islands) {
       for (std::size_t i = first; i < last; ++i) {
-        last = std::max(last, last_[islands_.find(mechanism(contacts_[i].at.body()))] + 1);
+        last = std::max(last, memory_->last[memory_->islands.find(mechanism(contacts_[i].at.body()))] + 1);
       }
     } else {
       const Index of_first = mechanism(contacts_[first].at.body());
@@ -102,30 +103,34 @@ int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent
 /// Rows of one group, and the products of these with what forces along their columns do.
 /// \param slips whether forces of contacts that slip are turned into the cone of friction
 void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips) {
-  rows_.clear();
+  std::vector<Row>& rows = memory_->rows;
+  std::vector<ImpulseDirection>& directions = memory_->directions;
+  rows.clear();
+  rows.reserve(2 * (last - first));
   for (std::size_t i = first; i < last; ++i) {
-    if (!contacts_[i].at.has_dry_friction()) rows_.push_back({i, false});
-    if (contacts_[i].sticks()) rows_.push_back({i, true});
+    if (!contacts_[i].at.has_dry_friction()) rows.push_back({i, false});
+    if (contacts_[i].sticks()) rows.push_back({i, true});
   }
-  directions_.clear();
-  for (const Row& row : rows_) {
+  directions.clear();
+  directions.reserve(rows.size());
+  for (const Row& row : rows) {
     const ActiveContact& contact = contacts_[row.contact];
     const double ratio = row.tangent || !slips ? 0.0 : -contact.slip_sign() * contact.friction;
-    directions_.push_back({&contact.at, row_of(row, contact.at), ratio});
+    directions.push_back({&contact.at, row_of(row, contact.at), ratio});
   }
   if (answers_with_joints(first, last)) {
-    delassus_.build(directions_, *response_);
+    memory_->delassus.build(directions, *response_);
   } else {
     MassResponse response(assembly);
-    delassus_.build(directions_, response);
+    memory_->delassus.build(directions, response);
   }
 }
 
-/// Solves the equations of the group for `unknown_`.
+/// Solves the equations of the group for the unknowns.
 bool ActiveSet::solve() {
-  factors_.reset(rows_.size());
-  delassus_.write(factors_.matrix());
-  return factors_.solve(dependent, unknown_);
+  memory_->factors.reset(memory_->rows.size());
+  memory_->delassus.write(memory_->factors.matrix());
+  return memory_->factors.solve(dependent, memory_->unknown);
 }
 
 /// Friction in joints is known where it slips: a load. \param acceleration to add to
@@ -138,47 +143,52 @@ void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* ac
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
     JointConstraints& joints = *response_->joints_of(contact.at.body());
     const Range v = joints.velocities();
-    load_.resize(v.end);
-    std::fill(load_.begin() + v.begin, load_.begin() + v.end, 0.0);
-    contact.at.add_force(0.0, contact.tangential, load_.data());
-    joints.apply_inverse_mass(load_.data());
-    joints.project(JointLevel::change, load_.data());
-    for (Index k = v.begin; k < v.end; ++k) acceleration[k] += load_[k];
+    std::vector<double>& load = memory_->load;
+    load.resize(v.end);
+    std::fill(load.begin() + v.begin, load.begin() + v.end, 0.0);
+    contact.at.add_force(0.0, contact.tangential, load.data());
+    joints.apply_inverse_mass(load.data());
+    joints.project(JointLevel::change, load.data());
+    for (Index k = v.begin; k < v.end; ++k) acceleration[k] += load[k];
   }
 }
 
 /// Forces of one group.
 bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration) {
-  const std::size_t n = rows_.size();
-  unknown_.resize(n);
+  const std::vector<Row>& rows = memory_->rows;
+  const FullPivoting& factors = memory_->factors;
+  std::vector<double>& unknown = memory_->unknown;
+  const std::size_t n = rows.size();
+  unknown.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Constraint& at = contacts_[rows_[i].contact].at;
-    unknown_[i] = -at.acceleration(row_of(rows_[i], at), acceleration);
+    const Constraint& at = contacts_[rows[i].contact].at;
+    unknown[i] = -at.acceleration(row_of(rows[i], at), acceleration);
   }
   const bool solved = solve();
   const std::span<const ActiveContact> group(contacts_.data() + first, last - first);
-  if (least_ && factors_.rank() < n) least_forces_.find(contacts_, group, rows_, factors_, unknown_);
-  for (std::size_t k = 0; k < factors_.rank(); ++k) {
-    pivots_.push_back({rows_[factors_.row(k)], rows_[factors_.column(k)]});
+  if (least_ && factors.rank() < n) memory_->least_forces.find(contacts_, group, rows, factors, unknown);
+  for (std::size_t k = 0; k < factors.rank(); ++k) {
+    memory_->pivots.push_back({rows[factors.row(k)], rows[factors.column(k)]});
   }
   for (std::size_t i = 0; i < n; ++i) {
-    ActiveContact& contact = contacts_[rows_[i].contact];
-    if (rows_[i].tangent) {
-      contact.tangential = unknown_[i];
+    ActiveContact& contact = contacts_[rows[i].contact];
+    if (rows[i].tangent) {
+      contact.tangential = unknown[i];
     } else {
-      contact.normal = unknown_[i];
+      contact.normal = unknown[i];
       if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
     }
   }
-  delassus_.add_response(unknown_, acceleration);
-  if (factors_.rank() < n) margins_.add(contacts_, first, last, rows_, factors_);
+  memory_->delassus.add_response(unknown, acceleration);
+  if (factors.rank() < n) memory_->margins.add(contacts_, first, last, rows, factors);
   return solved;
 }
 
 bool ActiveSet::add_reactions(const Assembly& assembly, double* acceleration) {
   bool solved = true;
-  margins_.clear();
-  pivots_.clear();
+  memory_->margins.clear();
+  memory_->pivots.clear();
+  memory_->pivots.reserve(2 * contacts_.size());
   for_groups([&](std::size_t first, std::size_t last) {
     state_equations(assembly, first, last, true);
     if (response_ != nullptr) add_dry_friction(first, last, acceleration);
@@ -191,29 +201,31 @@ void ActiveSet::margins(std::vector<ForceMargin>& out) {
   out.clear();
   if (contacts_.empty()) return;  // no reactions were asked for; null vectors are those of other contacts
   for (ActiveContact& contact : contacts_) contact.sets_margin = true;
-  margins_.distribute(contacts_, least_);
+  memory_->margins.distribute(contacts_, least_);
   for_groups([&](std::size_t first, std::size_t last) {
-    out.push_back({first, last, margins_.least({contacts_.data() + first, last - first})});
+    out.push_back({first, last, memory_->margins.least({contacts_.data() + first, last - first})});
   });
 }
 
 bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, double* of_position,
                             double* of_velocity) {
+  const std::vector<Row>& rows = memory_->rows;
+  std::vector<double>& unknown = memory_->unknown;
   bool any = false;
   for_groups([&](std::size_t first, std::size_t last) {
     state_equations(assembly, first, last, false);
     for (const bool position : {true, false}) {
       double* const out = position ? of_position : of_velocity;
-      unknown_.resize(rows_.size());
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Constraint& at = contacts_[rows_[i].contact].at;
-        const int row = row_of(rows_[i], at);
+      unknown.resize(rows.size());
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Constraint& at = contacts_[rows[i].contact].at;
+        const int row = row_of(rows[i], at);
         // Sticking contacts have no place of their own: the tangent is kept on velocity level.
-        unknown_[i] = position ? (rows_[i].tangent ? 0.0 : -at.gap) : -at.velocity(row, velocity);
-        if (!(position && rows_[i].tangent)) unknown_[i] -= at.times(row, out);
-        any = any || unknown_[i] != 0.0;
+        unknown[i] = position ? (rows[i].tangent ? 0.0 : -at.gap) : -at.velocity(row, velocity);
+        if (!(position && rows[i].tangent)) unknown[i] -= at.times(row, out);
+        any = any || unknown[i] != 0.0;
       }
-      if (solve()) delassus_.add_response(unknown_, out);
+      if (solve()) memory_->delassus.add_response(unknown, out);
     }
   });
   return any;

@@ -23,13 +23,34 @@
 #include <carom/core/numerics/full_pivoting.h>
 #include <carom/core/numerics/union_find.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
 
-/// The closed contacts of one clock group, those of an island together. Keeps memory only, but the contacts.
+/// Memory that active sets share: one at a time uses it.
+struct CAROM_API ActiveSetMemory {
+  UnionFind islands;              ///< of mechanisms, named by their first bodies
+  std::vector<std::size_t> last;  ///< by island: the last of its contacts
+  // Of the group at hand:
+  std::vector<ContactPivot::Row> rows;
+  std::vector<ImpulseDirection> directions;  ///< of the same
+  Delassus delassus;
+  FullPivoting factors;         ///< of G B D
+  std::vector<double> unknown;  ///< right side, then lambda
+  std::vector<double> load;     ///< over all velocities, of bodies that joints bind
+  // Of the set whose forces were found last:
+  std::vector<ContactPivot> pivots;
+  LeastForces least_forces;
+  ForceMargins margins;
+};
+
+/// The closed contacts of one clock group, those of an island together. What it tells of the last
+/// add_reactions() holds until another set finds its forces.
 class CAROM_API ActiveSet {
 public:
+  /// \param memory must outlive it
+  explicit ActiveSet(ActiveSetMemory& memory) : memory_(&memory) {}
   /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
   void bind(const Assembly& assembly, ComponentsResponse& response);
   /// Of forces that are not unique the least in the sense of least squares that the law of contact allows, in
@@ -48,7 +69,10 @@ public:
   bool add_reactions(const Assembly& assembly, double* acceleration);
   /// How it found them. Constraints that follow from others are not among them, nor are forces that were
   /// left zero.
-  [[nodiscard]] const std::vector<ContactPivot>& pivots() const { return pivots_; }
+  [[nodiscard]] std::span<const ContactPivot> pivots() const {
+    if (contacts_.empty()) return {};  // no forces were asked for
+    return memory_->pivots;
+  }
   /// Margins of the forces of the last add_reactions(), a number for every island of bodies that touch. Where
   /// forces are not unique, they are distributed so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);
@@ -72,23 +96,11 @@ private:
   void add_dry_friction(std::size_t first, std::size_t last, double* acceleration);
   bool react(std::size_t first, std::size_t last, double* acceleration);
 
+  ActiveSetMemory* memory_;
   std::vector<ActiveContact> contacts_;
   const Assembly* assembly_ = nullptr;
   ComponentsResponse* response_ = nullptr;  // null where there are no joints
-  UnionFind islands_;                       // of mechanisms, named by their first bodies
-  std::vector<std::size_t> last_;           // by island: the last of its contacts
   bool least_ = false;
-  // Of the group at hand:
-  std::vector<Row> rows_;
-  std::vector<ImpulseDirection> directions_;  // of the same
-  Delassus delassus_;
-  FullPivoting factors_;         // of G B D
-  std::vector<double> unknown_;  // right side, then lambda
-  std::vector<double> load_;     // over all velocities, of bodies that joints bind
-  // Of all:
-  std::vector<ContactPivot> pivots_;
-  LeastForces least_forces_;
-  ForceMargins margins_;
 };
 
 }  // namespace carom

@@ -153,12 +153,14 @@ void IslandProblem::build_any(const double* velocity_before) {
   directions_.clear();
   first_row_.clear();
   modes_.clear();
+  first_row_.reserve(constraints.size());
   int rows = 0;
   for (const Constraint& constraint : constraints) {
     first_row_.push_back(rows);
     rows += constraint.rows;
   }
   const auto count = static_cast<std::size_t>(rows);
+  directions_.reserve(count);
   // A large W is not to be made before it is known whether anybody needs it.
   const bool many = !constraints.empty() && constraints.size() >= options_.factored_from;
   const bool factored = many && fit_factors(constraints);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace carom {
 
@@ -30,20 +29,18 @@ void RankRevealingQr::factor(std::span<const double> a, std::size_t rows, std::s
   columns_ = columns;
   a_.assign(a.begin(), a.end());
   r_.resize(rows * columns);
-  tau_.assign(columns, 0.0);
-  scale_.assign(columns, 1.0);
   work_.resize(rows);
   correction_.resize(columns);
-  column_.resize(columns);
-  std::iota(column_.begin(), column_.end(), std::size_t{0});
+  column_.assign(columns, {});
+  for (std::size_t j = 0; j < columns; ++j) column_[j].place = j;
 
   // r_ is column-major: every step below runs down columns.
   for (std::size_t j = 0; j < columns; ++j) {
     double largest = 0.0;
     for (std::size_t i = 0; i < rows; ++i) largest = std::max(largest, std::abs(a[i * columns + j]));
     // Powers of two: scaling rounds nothing.
-    if (largest > 0.0 && std::isfinite(largest)) scale_[j] = std::exp2(-std::ilogb(largest));
-    for (std::size_t i = 0; i < rows; ++i) r_[j * rows + i] = a[i * columns + j] * scale_[j];
+    if (largest > 0.0 && std::isfinite(largest)) column_[j].scale = std::exp2(-std::ilogb(largest));
+    for (std::size_t i = 0; i < rows; ++i) r_[j * rows + i] = a[i * columns + j] * column_[j].scale;
   }
 
   rank_ = 0;
@@ -57,7 +54,7 @@ void RankRevealingQr::factor(std::span<const double> a, std::size_t rows, std::s
       std::swap_ranges(r_.begin() + static_cast<std::ptrdiff_t>(k * rows),
                        r_.begin() + static_cast<std::ptrdiff_t>((k + 1) * rows),
                        r_.begin() + static_cast<std::ptrdiff_t>(best * rows));
-      std::swap(column_[k], column_[best]);
+      std::swap(column_[k].place, column_[best].place);
     }
     reflect(k, length);
     ++rank_;
@@ -83,14 +80,14 @@ void RankRevealingQr::reflect(std::size_t k, double length) {
   double* pivot = r_.data() + k * rows_;
   const double alpha = pivot[k] > 0.0 ? -length : length;
   const double head = pivot[k] - alpha;
-  tau_[k] = -head / alpha;
+  column_[k].tau = -head / alpha;
   for (std::size_t i = k + 1; i < rows_; ++i) pivot[i] /= head;
   pivot[k] = alpha;
   for (std::size_t j = k + 1; j < columns_; ++j) {
     double* other = r_.data() + j * rows_;
     double dot = other[k];
     for (std::size_t i = k + 1; i < rows_; ++i) dot += pivot[i] * other[i];
-    dot *= tau_[k];
+    dot *= column_[k].tau;
     other[k] -= dot;
     for (std::size_t i = k + 1; i < rows_; ++i) other[i] -= dot * pivot[i];
   }
@@ -104,11 +101,11 @@ double RankRevealingQr::reciprocal_condition() const {
 void RankRevealingQr::back_substitute(std::span<double> x) {
   for (std::size_t k = rank_; k-- > 0;) {
     double sum = work_[k];
-    for (std::size_t j = k + 1; j < rank_; ++j) sum -= r_[j * rows_ + k] * x[column_[j]];
-    x[column_[k]] = sum / r_[k * rows_ + k];
+    for (std::size_t j = k + 1; j < rank_; ++j) sum -= r_[j * rows_ + k] * x[column_[j].place];
+    x[column_[k].place] = sum / r_[k * rows_ + k];
   }
   // Unknowns are scaled back in place; nobody reads them unscaled any more.
-  for (std::size_t j = 0; j < columns_; ++j) x[j] *= scale_[j];
+  for (std::size_t j = 0; j < columns_; ++j) x[j] *= column_[j].scale;
 }
 
 // Right-hand side in work_.
@@ -117,7 +114,7 @@ void RankRevealingQr::solve_once(std::span<double> x) {
     const double* v = r_.data() + k * rows_;
     double dot = work_[k];
     for (std::size_t i = k + 1; i < rows_; ++i) dot += v[i] * work_[i];
-    dot *= tau_[k];
+    dot *= column_[k].tau;
     work_[k] -= dot;
     for (std::size_t i = k + 1; i < rows_; ++i) work_[i] -= dot * v[i];
   }
@@ -148,7 +145,7 @@ void RankRevealingQr::null_vector(std::size_t index, std::span<double> x) {
   const std::size_t free = rank_ + index;
   for (std::size_t k = 0; k < rank_; ++k) work_[k] = -r_[free * rows_ + k];
   std::fill(x.begin(), x.end(), 0.0);
-  x[column_[free]] = 1.0;
+  x[column_[free].place] = 1.0;
   back_substitute(x);
 }
 

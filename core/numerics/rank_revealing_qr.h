@@ -43,9 +43,14 @@ private:
   void solve_once(std::span<double> x);
   void back_substitute(std::span<double> x);
 
+  struct Column {
+    double tau = 0.0;       // of the reflector at its place
+    double scale = 1.0;     // of the column of A, wherever it went
+    std::size_t place = 0;  // column of A that stands here
+  };
   std::size_t rows_ = 0, columns_ = 0, rank_ = 0;
-  std::vector<double> a_, r_, tau_, scale_, work_, correction_;
-  std::vector<std::size_t> column_;
+  std::vector<double> a_, r_, work_, correction_;
+  std::vector<Column> column_;
 };
 
 }  // namespace carom

@@ -27,6 +27,12 @@ bool took_no_impulse(const EventRecord& event) {
 
 }  // namespace
 
+/// Records are large: the first few come without moving those before.
+EventBalance::EventBalance(const EventKeeping& kept) : keeping(kept) {
+  constexpr std::size_t of_an_instant = 8;
+  events.reserve(of_an_instant);
+}
+
 void EventBalance::clear() {
   flows = {};
   events.clear();

@@ -55,7 +55,7 @@ struct EventTally {
 /// Energy that left clock groups, and what happened to them, since it was last cleared.
 struct CAROM_API EventBalance {
   EventBalance() = default;
-  explicit EventBalance(const EventKeeping& kept) : keeping(kept) {}
+  explicit EventBalance(const EventKeeping& kept);
 
   EventKeeping keeping;
   EnergyFlows flows;

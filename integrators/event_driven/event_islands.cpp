@@ -10,6 +10,7 @@ void EventIslands::find(const GroupModel& model, FunctionRef<bool(std::size_t)> 
   const Assembly& assembly = *model.assembly;
   pairs_.clear();
   islands_.clear();
+  pairs_.reserve(model.pairs.size());
   sets_.start(static_cast<Index>(assembly.layout()->bodies().size()));
   for (Index i = 0; i < model.pairs.size(); ++i) {
     if (model.pairs[i].has_outline()) {

@@ -52,6 +52,8 @@ void ModeDecision::take_accelerations(const SmoothMotion& motion, const MotionSa
 void ModeDecision::list_contacts(std::span<Candidate> candidates) {
   contacts_.clear();
   taking_part_.clear();
+  contacts_.reserve(candidates.size());
+  taking_part_.reserve(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
     if (slips_[i].open) continue;

@@ -175,6 +175,7 @@ std::vector<std::string> ModeSelection::names_of_candidates() const {
 }
 
 void ModeSelection::close_candidates(ActiveSet& active) const {
+  if (active.list().empty()) active.list().reserve(memory_->candidates.size());
   for (const Candidate& candidate : memory_->candidates) {
     if (candidate.mode == ContactMode::open) continue;
     ActiveContact& closed = active.list().emplace_back();

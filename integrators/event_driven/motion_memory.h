@@ -4,6 +4,7 @@
 /// Memory that the motions of components share: nothing in it lasts from one call to the next but where a
 /// function says so.
 
+#include <carom/contact/active_set.h>
 #include <carom/contact/friction_bound_solver.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -32,6 +33,7 @@ struct CAROM_API MotionMemory {
   std::vector<double> impulse;                   ///< of a change of velocities
   std::vector<double> free;                      ///< accelerations without contacts
   std::vector<double> multipliers;               ///< of joints
+  ActiveSetMemory active;                        ///< of closed contacts
   FrictionBoundSolver friction_bound;            ///< of impacts with friction in joints
   EvaluationLimit limit;                         ///< of evaluations
 };

@@ -11,6 +11,7 @@ SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, c
     : memory_(&memory),
       joints_(assembly, group.components, memory),
       model_(assembly, detector, group, options, joints_.rows()),
+      active_(memory.active),
       guards_(assembly, group.components),
       jacobian_(model_, joints_, active_, memory) {
   active_.bind(assembly, joints_.rows().response());

@@ -65,7 +65,8 @@ struct Closed {
   State state;
   Evaluation evaluation;
   GroundPlaces places;
-  ActiveSet contacts;
+  ActiveSetMemory memory;
+  ActiveSet contacts{memory};
   bool solved = false;
 };
 

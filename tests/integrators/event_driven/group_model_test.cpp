@@ -57,6 +57,13 @@ TEST(GroupModel, ASpringOffTheCentreNeedsRotations) {
   EXPECT_TRUE(needs_rotations(std::move(model.system)));
 }
 
+TEST(GroupModel, ParticlesHaveNone) {
+  System system;
+  const BodyId mass = system.add(Particle{.mass = 1.0, .position = {0.0, 1.0}});
+  system.add(SpringDamper{.from = {ground, {0.0, 3.0}}, .to = mass, .stiffness = 10.0});
+  EXPECT_FALSE(needs_rotations(std::move(system)));
+}
+
 TEST(GroupModel, AJointNeedsRotations) {
   OnFloor model = over_floor();
   model.system.add(Revolute{.from = {ground, {0.0, 2.0}}, .to = {model.body, {0.0, 1.0}}});
