@@ -113,13 +113,15 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   const LoadTraits traits = model_.loads;
   const StateView state = at.view();
   double dashpot = lost_inside, external = 0.0, sliding = 0.0, in_joints = 0.0;
-  for (const auto& part : unknowns.parts()) {
-    const Range v = part.ranges.v;
-    for (Index i = v.begin; i < v.end; ++i) {
-      if (traits.books_dissipative) dashpot -= at.dissipative[i] * state.v[i];
-      if (traits.books_external) external += at.external[i] * state.v[i];
+  const auto work_of = [&](const std::vector<double>& loads) {
+    double work = 0.0;
+    for (const auto& part : unknowns.parts()) {
+      for (Index i = part.ranges.v.begin; i < part.ranges.v.end; ++i) work += loads[i] * state.v[i];
     }
-  }
+    return work;
+  };
+  if (traits.books_dissipative) dashpot -= work_of(at.dissipative);
+  if (traits.books_external) external += work_of(at.external);
   for (const ActiveContact& contact : active_.list()) {
     double& lost = contact.at.has_dry_friction() ? in_joints : sliding;
     lost -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
