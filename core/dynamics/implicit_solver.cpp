@@ -2,10 +2,10 @@
 
 #include <carom/core/difference_derivatives.h>
 #include <carom/core/dynamics/implicit_solver.h>
+#include <carom/core/numerics/pivoting_lu.h>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ struct ImplicitSolver::Factors {
   // With joints.
   Index rows = 0;
   Matrix bordered_matrix;
-  Eigen::SparseLU<Matrix> bordered;
+  PivotingLu bordered;
 
   void append_masses();
   void make_definite(std::ptrdiff_t first_mass);

@@ -1,9 +1,9 @@
 // Problem: solve with the rows of joints at two configurations, sparse as their graph.
 
 #include <carom/core/dynamics/mixed_constraints.h>
+#include <carom/core/numerics/pivoting_lu.h>
 
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 
 #include <vector>
 
@@ -34,7 +34,7 @@ Matrix matrix_of(const JointConstraints& joints) {
 }  // namespace
 
 struct MixedConstraints::Factors {
-  Eigen::SparseLU<Matrix> lu;
+  PivotingLu lu;
 };
 
 MixedConstraints::MixedConstraints() : factors_(std::make_unique<Factors>()) {}

@@ -98,8 +98,11 @@ void StepJointRows::judge_pivots() {
     if (pivot >= dependent_pivot) nearest_kept = std::min(nearest_kept, pivot);
   }
   roundoff_growth_ = 1.0 / std::sqrt(nearest_kept);
-  near_singular_ = roundoff_growth_ > 1.0 / near_angle;
-  regular_ = nearest > near_angle * near_angle;
+  // Rods in line have a pivot as small as this, and are far from singular: the last moves all others along.
+  const double of_rods_in_line = 1.0 / static_cast<double>(end_.size());
+  const double near = std::min(near_angle * near_angle, 0.5 * of_rods_in_line);
+  near_singular_ = nearest_kept < near;
+  regular_ = nearest > near;
 }
 
 /// Where rows depend on each other, those halfway may point across those at the end: with an angle a from
