@@ -1,69 +1,51 @@
-// Replaces the global operator new and delete of a program. The size of each block stands just before it.
+// Replaces the global operator new and delete of a program. What is in use is asked of the C library.
 
 #include "benchmarks/allocation_meter.h"
 
-#include <algorithm>
+#include <malloc.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
-#include <cstring>
 #include <new>
 
 namespace {
 
 std::atomic<std::int64_t> count{0};
-std::atomic<std::int64_t> live{0};
 
-// Room before a block, which keeps its alignment.
-std::size_t room(std::size_t alignment) { return std::max(alignment, alignof(std::max_align_t)); }
-
-void* take(std::size_t size, std::size_t alignment) {
-  const std::size_t before = room(alignment);
-  const std::size_t whole = (before + size + before - 1) / before * before;
-  void* const memory = std::aligned_alloc(before, whole);
+void* take(std::size_t size) {
+  void* const memory = std::malloc(size == 0 ? 1 : size);
   if (memory == nullptr) throw std::bad_alloc();
-  std::byte* const block = static_cast<std::byte*>(memory) + before;
-  std::memcpy(block - sizeof(size), &size, sizeof(size));
   count.fetch_add(1, std::memory_order_relaxed);
-  live.fetch_add(static_cast<std::int64_t>(size), std::memory_order_relaxed);
-  return block;
+  return memory;
 }
 
-void give_back(void* memory, std::size_t alignment) noexcept {
-  if (memory == nullptr) return;
-  std::byte* const block = static_cast<std::byte*>(memory);
-  std::size_t size = 0;
-  std::memcpy(&size, block - sizeof(size), sizeof(size));
-  live.fetch_sub(static_cast<std::int64_t>(size), std::memory_order_relaxed);
-  std::free(block - room(alignment));
+void* take(std::size_t size, std::align_val_t alignment) {
+  const auto unit = static_cast<std::size_t>(alignment);
+  void* const memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+  if (memory == nullptr) throw std::bad_alloc();
+  count.fetch_add(1, std::memory_order_relaxed);
+  return memory;
 }
-
-constexpr std::size_t plain = alignof(std::max_align_t);
-constexpr std::size_t number(std::align_val_t alignment) { return static_cast<std::size_t>(alignment); }
 
 }  // namespace
 
 std::int64_t benchmarks::allocations() { return count.load(std::memory_order_relaxed); }
-std::int64_t benchmarks::live_bytes() { return live.load(std::memory_order_relaxed); }
+std::int64_t benchmarks::live_bytes() {
+  const struct mallinfo2 now = mallinfo2();
+  return static_cast<std::int64_t>(now.uordblks + now.hblkhd);
+}
 
 // The forms that throw nothing call these by default.
-void* operator new(std::size_t size) { return take(size, plain); }
-void* operator new[](std::size_t size) { return take(size, plain); }
-void* operator new(std::size_t size, std::align_val_t alignment) { return take(size, number(alignment)); }
-void* operator new[](std::size_t size, std::align_val_t alignment) { return take(size, number(alignment)); }
-void operator delete(void* memory) noexcept { give_back(memory, plain); }
-void operator delete[](void* memory) noexcept { give_back(memory, plain); }
-void operator delete(void* memory, std::size_t) noexcept { give_back(memory, plain); }
-void operator delete[](void* memory, std::size_t) noexcept { give_back(memory, plain); }
-void operator delete(void* memory, std::align_val_t alignment) noexcept {
-  give_back(memory, number(alignment));
-}
-void operator delete[](void* memory, std::align_val_t alignment) noexcept {
-  give_back(memory, number(alignment));
-}
-void operator delete(void* memory, std::size_t, std::align_val_t alignment) noexcept {
-  give_back(memory, number(alignment));
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t alignment) noexcept {
-  give_back(memory, number(alignment));
-}
+void* operator new(std::size_t size) { return take(size); }
+void* operator new[](std::size_t size) { return take(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return take(size, alignment); }
+void* operator new[](std::size_t size, std::align_val_t alignment) { return take(size, alignment); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }

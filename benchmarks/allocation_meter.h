@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Memory that a benchmark and the libraries it uses take from operator new.
+/// Memory that a benchmark and the libraries it uses take.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace benchmarks {
 /// Calls of operator new so far.
 std::int64_t allocations();
 
-/// Bytes asked for and not given back yet.
+/// Bytes in use, as the allocator counts them: whoever took them, Eigen's factors and SUNDIALS too.
 std::int64_t live_bytes();
 
 }  // namespace benchmarks

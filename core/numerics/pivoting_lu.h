@@ -9,8 +9,8 @@
 
 namespace carom {
 
-/// Eigen makes room for twenty times the numbers of the matrix before it factorises. Graphs of mechanisms fill
-/// in little, and where they do not, Eigen makes more room.
+/// Eigen makes room for twenty times the numbers of the matrix before it factorises. Graphs of mechanisms
+/// fill in little, and where they do not, Eigen makes more room.
 class PivotingLu : public Eigen::SparseLU<Eigen::SparseMatrix<double>> {
 public:
   PivotingLu() { m_perfv.fillfactor = 3; }

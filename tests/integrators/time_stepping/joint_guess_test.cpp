@@ -59,6 +59,18 @@ TEST(JointGuess, StepsNeedOneSweepOrTwo) {
   }
 }
 
+// Rods in line have small pivots, the more of them the smaller, and are not near a singular position.
+TEST(JointGuess, ManyRodsInLineNeedTheSweepsOfAFew) {
+  const auto sweeps = [](int rods) {
+    Simulation simulation(chain(rods), options);
+    for (int i = 0; i < 50; ++i) simulation.step();
+    return simulation.statistics().most_sweeps;
+  };
+  const int of_few = sweeps(10);
+  EXPECT_LE(of_few, 3);
+  for (const int rods : {30, 100, 300}) EXPECT_LE(sweeps(rods), of_few) << rods;
+}
+
 TEST(JointGuess, ContinuesFromACheckpointBitForBit) {
   const carom_test::TemporaryFolder folder;
   for (const int steps : {1, 3, 10, 700}) {  // with a history that is not full, and one that is
@@ -153,11 +165,13 @@ TEST(JointGuess, AFailedStepLeavesItAsItWas) {
 }
 
 TEST(JointGuess, StepsAllocateNothing) {
-  Simulation simulation(chain(10), options);
-  for (int i = 0; i < 20; ++i) simulation.step();
-  const std::int64_t before = carom_test::allocations();
-  for (int i = 0; i < 2000; ++i) simulation.step();
-  EXPECT_EQ(carom_test::allocations() - before, 0);
+  for (const int rods : {10, 100}) {
+    Simulation simulation(chain(rods), options);
+    for (int i = 0; i < 20; ++i) simulation.step();
+    const std::int64_t before = carom_test::allocations();
+    for (int i = 0; i < 20'000 / rods; ++i) simulation.step();
+    EXPECT_EQ(carom_test::allocations() - before, 0) << rods;
+  }
 }
 
 // Steps of another length, and a state that is set, have nothing to go by.
