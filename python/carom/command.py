@@ -22,11 +22,11 @@ from pathlib import Path
 from typing import Any, Optional
 
 from . import _core
-from .scene import Scene, load_scene, load_urdf, save_scene, schema
+from .scene import Scene, load_robot, load_scene, save_scene, schema
 from .scene.build import MODES
 from .scene.findings import examine
 from .scene.references import SECTIONS
-from .scene.urdf import PLANES
+from .scene.robot_xml import PLANES
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 EXIT_CODES = """exit codes:
@@ -184,8 +184,8 @@ def view(options: argparse.Namespace) -> int:
 
 
 def convert(options: argparse.Namespace) -> int:
-    """carom import: a scene file from a robot description (URDF) that moves in a plane."""
-    save_scene(load_urdf(options.robot, options.plane), options.scene)
+    """carom import: a scene file from a robot description (URDF, MJCF) that moves in a plane."""
+    save_scene(load_robot(options.robot, options.plane), options.scene)
     print(f"scene: {options.scene}")
     return 0
 
@@ -214,18 +214,24 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
     command.set_defaults(action=run)
 
-    command = commands.add_parser("check", help="look for mistakes in a scene", description=check.__doc__, **texts)
+    command = commands.add_parser(
+        "check", help="look for mistakes in a scene", description=check.__doc__, **texts
+    )
     command.add_argument("scene", type=Path)
     command.set_defaults(action=check)
 
-    command = commands.add_parser("view", help="make a page of a recording", description=view.__doc__, **texts)
+    command = commands.add_parser(
+        "view", help="make a page of a recording", description=view.__doc__, **texts
+    )
     command.add_argument("recording", type=Path)
     command.add_argument("--output", type=Path, metavar="PAGE", help="else the recording's name with .html")
     command.add_argument("--open", action="store_true", help="open it in the browser")
     command.set_defaults(action=view)
 
-    command = commands.add_parser("import", help="make a scene of a robot", description=convert.__doc__, **texts)
-    command.add_argument("robot", type=Path, metavar="robot.urdf")
+    command = commands.add_parser(
+        "import", help="make a scene of a robot", description=convert.__doc__, **texts
+    )
+    command.add_argument("robot", type=Path, help="a file in URDF or MJCF")
     command.add_argument("scene", type=Path, metavar="scene.json")
     command.add_argument("--plane", choices=list(PLANES), default="xz", help="right and up; xz if not given")
     command.set_defaults(action=convert)

@@ -136,7 +136,7 @@ def test_what_is_not_planar_is_refused_by_name(robot, old, new, message):
     file = robot(ARM.replace(old, new))
     with pytest.raises(SceneError, match=message) as caught:
         load_urdf(file)
-    assert caught.value.file == str(file)
+    assert caught.value.file == str(file) and 1 <= caught.value.line <= 21
 
 
 def test_command_makes_a_scene(robot, tmp_path, capsys):
