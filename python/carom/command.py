@@ -119,8 +119,11 @@ def _summary(simulation: _core.Simulation) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """carom run: runs a scene, and prints its energies."""
-    if options.interval is not None and not (options.record or options.view):
-        raise WrongUse("--interval is of a recording; give --record or --view")
+    recorded = options.record or options.view or options.vtk
+    if options.interval is not None and not recorded:
+        raise WrongUse("--interval is of a recording; give --record, --view or --vtk")
+    if options.vtk and options.vtk.suffix != ".pvd":
+        raise WrongUse(f"--vtk is {options.vtk}; allowed: a name that ends in .pvd")
     scene = load_scene(options.scene)
     until = scene.until if options.until is None else options.until
     if options.until is not None and options.until < 0.0:
@@ -134,7 +137,7 @@ def run(options: argparse.Namespace) -> int:
     recorder: Any = None
     interrupted = False
     with contextlib.ExitStack() as stack:
-        if options.record or options.view:
+        if recorded:
             interval = {} if options.interval is None else {"interval": options.interval}
             recorder = _part("recording").Recorder(simulation, options.record, **interval)
             stack.enter_context(recorder)
@@ -146,6 +149,9 @@ def run(options: argparse.Namespace) -> int:
         print(f"record: {options.record}")
     if options.view:
         _write_view(recorder.recording(), options.view)
+    if options.vtk:
+        recorder.recording().to_vtk(options.vtk)
+        print(f"vtk: {options.vtk}")
     _summary(simulation)
     if interrupted:
         print(f"carom: ended by Ctrl-C at {simulation.time():g} s", file=sys.stderr)
@@ -212,6 +218,7 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--record", type=Path, metavar="FILE", help="write the run to an HDF5 file")
     command.add_argument("--interval", type=_duration, metavar="TIME", help="between recorded samples [s]")
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
+    command.add_argument("--vtk", type=Path, metavar="SERIES", help="write a series for ParaView (.pvd)")
     command.set_defaults(action=run)
 
     command = commands.add_parser(

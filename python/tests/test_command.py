@@ -135,7 +135,8 @@ def process(*words):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (["--interval", "0.1"], "--record or --view"),
+        (["--interval", "0.1"], "give --record, --view or --vtk"),
+        (["--vtk", "run.vtu"], "--vtk is run.vtu; allowed: a name that ends in .pvd"),
         (["--until", "nan"], "finite"),
         (["--step", "0", "--mode", "time-stepping"], "more than 0"),
         (["--interval", "-1", "--record", "none.h5"], "more than 0"),
