@@ -294,3 +294,11 @@ def test_gravity_is_that_of_mjcf_unless_given(model):
     with pytest.raises(SceneError, match="gravity is \\[0.0, 0.0, -9.81\\], which leaves the plane xy"):
         load_mjcf(model("<mujoco/>"), plane="xy")
     assert load_mjcf(model("<mujoco><option gravity='0 0 0'/></mujoco>"), plane="xy").system.parts() == []
+
+
+def test_a_long_chain_is_read(model):
+    link = "<body pos='1 0 0'><joint axis='0 1 0'/><geom size='0.1'/>"
+    file = model(f"<mujoco><worldbody>{600 * link}{600 * '</body>'}</worldbody></mujoco>")
+    bodies = [part.part for part in load_mjcf(file).system.parts() if part.role == "body"]
+    # Each is the mean of one solid: m x/m, to rounding.
+    assert [body.position[0] for body in bodies] == pytest.approx(range(1, 601), rel=1e-15)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Optional, Union
+from typing import Any, NamedTuple, Union
 
 import numpy
 
@@ -18,7 +18,7 @@ from .. import _core
 from .build import Scene
 from .errors import SceneError
 from .mjcf_contacts import Relations, Touch
-from .mjcf_solids import Solid, read_solid, turn_of
+from .mjcf_solids import Solid, given_mass, read_solid, turn_of
 from .mjcf_words import IN_BODIES_LEFT_OUT, SECTIONS_LEFT_OUT, Defaults, check, label, refuse
 from .robot_xml import PARALLEL, PLANES, Array, Body, Element, Frame, Plane, given, placed, read_xml, world
 
@@ -28,6 +28,15 @@ def _is_on(element: Any, key: str, default: str) -> bool:
     if word not in ("true", "false"):
         raise SceneError(f"{label(element)}: {key} is {word!r}; allowed: true, false")
     return bool(word == "true")
+
+
+class _Place(NamedTuple):
+    """A body of the file, its frame, its part, and the class of defaults in it."""
+
+    element: Any
+    frame: Frame
+    body: Body
+    child_class: str
 
 
 class _Reader:
@@ -99,27 +108,34 @@ class _Reader:
         check(element)
         for child in (*element.findall("joint"), *element.findall("inertial")):
             raise refuse(child, "is of the world; allowed: of a body")
-        geoms = self._geoms(element, "main")
-        self._touch = Touch(self.system, geoms, self._restitution)
-        self._inside(element, *self._bodies["world"], "main")
+        self._touch = Touch(self.system, self._geoms(element), self._restitution)
+        waiting = self._inside(_Place(element, *self._bodies["world"], "main"))
+        while waiting:
+            place = self._body(*waiting.pop())
+            waiting += self._inside(place)
 
-    def _geoms(self, element: Any, child_class: str) -> list[Element]:
-        """All geoms in a body and the bodies in it, with their defaults."""
-        found = [self._defaults.full(geom, child_class) for geom in element.findall("geom")]
-        for body in element.findall("body"):
-            found += self._geoms(body, body.get("childclass", child_class))
+    def _geoms(self, element: Any) -> list[Element]:
+        """All geoms in the world, with their defaults."""
+        found: list[Element] = []
+        waiting = [(element, "main")]
+        while waiting:
+            inside, child_class = waiting.pop()
+            found += [self._defaults.full(geom, child_class) for geom in inside.findall("geom")]
+            waiting += [(body, body.get("childclass", child_class)) for body in inside.findall("body")]
         return found
 
-    def _inside(self, element: Any, frame: Frame, body: Body, child_class: str) -> None:
-        """Shapes of a body, and the bodies in it."""
-        for child in element:
+    def _inside(self, place: _Place) -> list[tuple[Any, _Place]]:
+        """Adds shapes of a body; returns the bodies in it, the last first, and where they are."""
+        bodies = []
+        for child in place.element:
             if child.tag == "geom":
                 with placed(child):
-                    self._shape(self._solid(child, frame, child_class), body)
+                    self._shape(self._solid(child, place.frame, place.child_class), place.body)
             elif child.tag == "body":
-                self._body(child, frame, body, child_class)
+                bodies.insert(0, (child, place))
             elif child.tag not in (*IN_BODIES_LEFT_OUT, "inertial", "joint"):
                 raise refuse(child, "has no counterpart in a planar scene")
+        return bodies
 
     def _solid(self, geom: Element, frame: Frame, child_class: str) -> Solid:
         return read_solid(self._defaults.full(geom, child_class), frame, self._angles)
@@ -129,16 +145,16 @@ class _Reader:
             contact = self._touch.fields(solid.element)
             self.system.add(solid.shape(self._plane, body, contact), name=solid.element.get("name", ""))
 
-    def _body(self, element: Any, frame: Frame, parent: Body, child_class: str) -> None:
-        """A body in the frame of another."""
+    def _body(self, element: Any, outer: _Place) -> _Place:
+        """A body in another."""
         check(element)
-        child_class = element.get("childclass", child_class)
+        parent, child_class = outer.body, element.get("childclass", outer.child_class)
         name = element.get("name", "")
         with placed(element):
             if name in self._bodies:
                 raise SceneError(f"{label(element)}: there is a body of this name already")
             at = given(element, "pos", 3, "0 0 0", label(element))
-            inner = frame.inner(turn_of(element, self._angles), at)
+            inner = outer.frame.inner(turn_of(element, self._angles), at)
             joints = [self._defaults.full(joint, child_class) for joint in element.findall("joint")]
             if parent.identity == _core.ground and not joints and element.find("freejoint") is None:
                 body = Body(_core.ground, numpy.zeros(2))
@@ -147,7 +163,7 @@ class _Reader:
                 self._join(joints, inner, parent, body)
         if name:
             self._bodies[name] = (inner, body)
-        self._inside(element, inner, body, child_class)
+        return _Place(element, inner, body, child_class)
 
     def _rigid_body(self, element: Any, frame: Frame, child_class: str) -> Body:
         mass, centre, inertia = self._mass(element, frame, child_class)
@@ -161,7 +177,7 @@ class _Reader:
         """Mass, centre and inertia of a body, as given or of its geoms [kg, m, kg m^2]."""
         inertial, what = element.find("inertial"), label(element)
         if inertial is not None and self._inertia != "true":
-            return self._given_mass(inertial, frame)
+            return given_mass(inertial, frame, self._plane, self._angles)
         if self._inertia == "false":
             raise SceneError(f"{what} has no <inertial>, and inertiafromgeom is false")
         parts = []
@@ -179,20 +195,6 @@ class _Reader:
             centre,
             sum(own + part * float((place - centre) @ (place - centre)) for part, own, place in parts),
         )
-
-    def _given_mass(self, inertial: Any, frame: Frame) -> tuple[float, Array, float]:
-        check(inertial)
-        with placed(inertial):
-            what = label(inertial)
-            inner = frame.inner(turn_of(inertial, self._angles), given(inertial, "pos", 3, None, what))
-            mass = float(given(inertial, "mass", 1, None, what)[0])
-            if "fullinertia" in inertial.attrib:
-                xx, yy, zz, xy, xz, yz = given(inertial, "fullinertia", 6, None, what)
-                matrix = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-            else:
-                matrix = numpy.diag(given(inertial, "diaginertia", 3, None, what))
-            normal = inner.turn.T @ self._plane.normal
-            return mass, self._plane.flat(inner.origin), float(normal @ matrix @ normal)
 
     def _join(self, joints: list[Element], frame: Frame, parent: Body, body: Body) -> None:
         """Joints of a body: none is a weld; two slides and a hinge leave it free in the plane."""

@@ -10,8 +10,8 @@ import numpy
 
 from .. import _core
 from .errors import SceneError
-from .mjcf_words import TURNS, label
-from .robot_xml import PARALLEL, Array, Body, Frame, Plane, given, numbers, rotations
+from .mjcf_words import TURNS, check, label
+from .robot_xml import PARALLEL, Array, Body, Frame, Plane, given, numbers, placed, rotations
 
 DENSITY = "1000"  # unless given [kg/m^3]
 SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "plane": 0}  # numbers that each kind has
@@ -197,3 +197,23 @@ def read_solid(element: Any, frame: Frame, unit_of_angles: float) -> Solid:
     if kind != "plane" and not (size > 0.0).all():
         raise SceneError(f"{what}: size is {size.tolist()}; allowed: more than 0")
     return Solid(element, kind, inner, size)
+
+
+def given_mass(
+    inertial: Any, frame: Frame, plane: Plane, unit_of_angles: float
+) -> tuple[float, Array, float]:
+    """Mass, centre and inertia that an element <inertial> gives a body in that frame [kg, m, kg m^2].
+    Raises SceneError.
+    """
+    check(inertial)
+    with placed(inertial):
+        what = label(inertial)
+        inner = frame.inner(turn_of(inertial, unit_of_angles), given(inertial, "pos", 3, None, what))
+        mass = float(given(inertial, "mass", 1, None, what)[0])
+        if "fullinertia" in inertial.attrib:
+            xx, yy, zz, xy, xz, yz = given(inertial, "fullinertia", 6, None, what)
+            matrix = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        else:
+            matrix = numpy.diag(given(inertial, "diaginertia", 3, None, what))
+        normal = inner.turn.T @ plane.normal
+        return mass, plane.flat(inner.origin), float(normal @ matrix @ normal)
