@@ -126,7 +126,7 @@ class _Reader:
 
     def _inside(self, place: _Place) -> list[tuple[Any, _Place]]:
         """Adds shapes of a body; returns the bodies in it, the last first, and where they are."""
-        bodies = []
+        bodies: list[tuple[Any, _Place]] = []
         for child in place.element:
             if child.tag == "geom":
                 with placed(child):
