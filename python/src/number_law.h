@@ -66,8 +66,8 @@ struct Convert<Harmonic<R>> : BoundRecord<Harmonic<R>> {};
 template <class R>
 struct Convert<Law<R>> : BoundRecord<Law<R>> {};
 
-/// Reads a law: an instance of Law, a dictionary of its fields, or a constant. Raises TypeError. \param
-/// arguments of the function
+/// Reads a law: an instance of Law, a dictionary of its fields, or a constant. Raises TypeError.
+/// \param arguments of the function
 template <class R>
 Law<R> read_law(nb::handle from, std::size_t arguments, std::string_view where) {
   Law<R> law;
