@@ -5,7 +5,8 @@
 
 Links of pages are relative to the page. Here they are made relative to the project, where Doxygen looks first. Links
 to what is not in the site, which has the pages and the public headers, become plain text. Pictures stay apart by
-their folders, where Doxygen would tell them by their names alone.
+their folders, where Doxygen would tell them by their names alone. What pages fold is shown, as Doxygen ends such
+elements at the first code in them.
 """
 
 import os
@@ -14,6 +15,7 @@ import sys
 
 LIBRARY = ("core", "bodies", "joints", "contact", "integrators", "analysis", "testing")
 LINK = re.compile(r"(?P<picture>!?)\[(?P<text>[^][]*)\]\((?P<target>[^()\s]+)\)")
+FOLDED = re.compile(r"<details><summary>(.*?)</summary>|</details>")
 CODE = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
 
 
@@ -42,6 +44,7 @@ def main(page):
     # Code is every second piece. Doxygen takes modules of Python for namespaces, and links to pages they have not.
     for i, piece in enumerate(pieces):
         if i % 2 == 0:
+            piece = FOLDED.sub(lambda fold: f"{fold[1]}:" if fold[1] else "", piece)
             pieces[i] = LINK.sub(lambda link: rewritten(link, folder), piece)
         elif piece.startswith("```python"):
             pieces[i] = "```{.unparsed}" + piece[len("```python") :]

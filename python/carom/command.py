@@ -6,8 +6,7 @@
     carom import robot.urdf scene.json
     carom schema
 
-Exit codes: 0 done; 1 a file is wrong, or `check` found something; 2 wrong command line; 3 the run failed; 130
-ended by Ctrl-C, with what was recorded until then.
+The exit codes are in EXIT_CODES, which `--help` shows.
 """
 
 from __future__ import annotations
@@ -23,13 +22,19 @@ from pathlib import Path
 from typing import Any, Optional
 
 from . import _core
-from .scene import Scene, load_scene, load_urdf, save_scene, schema
+from .scene import Scene, load_robot, load_scene, save_scene, schema
 from .scene.build import MODES
 from .scene.findings import examine
 from .scene.references import SECTIONS
-from .scene.urdf import PLANES
+from .scene.robot_xml import PLANES
 
-WRONG, MISUSED, FAILED, INTERRUPTED = 1, 2, 3, 130
+FAILED, MISUSED, INTERRUPTED = 1, 2, 130
+EXIT_CODES = """exit codes:
+  0    done
+  1    failed: a file is wrong or missing, the run did not succeed, or `check` found something
+  2    wrong command line: an unknown option, a value that is not allowed, an option that is missing
+  130  ended by Ctrl-C, with what was recorded until then
+"""
 
 
 class Missing(Exception):
@@ -37,12 +42,15 @@ class Missing(Exception):
 
 
 class WrongUse(Exception):
-    """Options that do not go together."""
+    """Options that are missing, do not go together, or have a value that is not allowed."""
 
 
 def _seconds(text: str) -> float:
     """A time on the command line."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"is {text}; allowed: a finite number")
     return value
@@ -70,18 +78,28 @@ def _write_view(recorded: Any, path: Path) -> None:
 
 
 def _mode(scene: Scene, word: Optional[str], step: Optional[float]) -> Any:
-    """Mode of a run: the scene's options where it has that mode, else the defaults."""
+    """Mode of a run: the scene's options where it has that mode, else the defaults. Raises WrongUse."""
     wanted = getattr(_core, MODES[word]) if word else type(scene.mode) if scene.mode else None
     if wanted is None:
-        raise _core.ModelError("the scene has no section 'simulation'; give --mode")
+        raise WrongUse("the scene has no section 'simulation'; give --mode")
     mode = scene.mode if isinstance(scene.mode, wanted) else wanted()
     if step is not None:
         if not isinstance(mode, _core.TimeStepping):
-            raise _core.ModelError(
-                "--step is of --mode time-stepping; the event-driven mode chooses its steps"
-            )
+            raise WrongUse("--step is of --mode time-stepping; the event-driven mode chooses its steps")
         mode.step = step
     return mode
+
+
+def _simulation(scene: Scene, options: argparse.Namespace) -> _core.Simulation:
+    """A scene, ready to run. Raises WrongUse where it would be without --step; ModelError."""
+    mode = _mode(scene, options.mode, options.step)
+    try:
+        return _core.Simulation(scene.system, mode)
+    except _core.ModelError as error:
+        if options.step is None:
+            raise
+        _core.Simulation(scene.system, type(mode)())  # raises where the model is wrong
+        raise WrongUse(f"--step {options.step:g}: {error}") from error
 
 
 def _count(number: int, one: str, several: str) -> str:
@@ -101,21 +119,25 @@ def _summary(simulation: _core.Simulation) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """carom run: runs a scene, and prints its energies."""
-    if options.interval is not None and not (options.record or options.view):
-        raise WrongUse("--interval is of a recording; give --record or --view")
+    recorded = options.record or options.view or options.vtk
+    if options.interval is not None and not recorded:
+        raise WrongUse("--interval is of a recording; give --record, --view or --vtk")
+    if options.vtk and options.vtk.suffix != ".pvd":
+        raise WrongUse(f"--vtk is {options.vtk}; allowed: a name that ends in .pvd")
     scene = load_scene(options.scene)
     until = scene.until if options.until is None else options.until
+    if options.until is not None and options.until < 0.0:
+        raise WrongUse(f"--until is {options.until:g}; allowed: a time from 0 on, when the run begins")
     if until is None:
-        raise _core.ModelError(f"{options.scene}: it does not say until when to run; give --until")
-    mode = _mode(scene, options.mode, options.step)
-    simulation = _core.Simulation(scene.system, mode)
+        raise WrongUse(f"{options.scene} does not say until when to run; give --until")
+    simulation = _simulation(scene, options)
     simulation.show_progress(True)  # on a terminal only
-    if isinstance(mode, _core.EventDriven):
+    if isinstance(simulation.mode(), _core.EventDriven):
         simulation.stop_when(lambda: False)  # Ctrl-C is seen where this is asked
     recorder: Any = None
     interrupted = False
     with contextlib.ExitStack() as stack:
-        if options.record or options.view:
+        if recorded:
             interval = {} if options.interval is None else {"interval": options.interval}
             recorder = _part("recording").Recorder(simulation, options.record, **interval)
             stack.enter_context(recorder)
@@ -127,6 +149,9 @@ def run(options: argparse.Namespace) -> int:
         print(f"record: {options.record}")
     if options.view:
         _write_view(recorder.recording(), options.view)
+    if options.vtk:
+        recorder.recording().to_vtk(options.vtk)
+        print(f"vtk: {options.vtk}")
     _summary(simulation)
     if interrupted:
         print(f"carom: ended by Ctrl-C at {simulation.time():g} s", file=sys.stderr)
@@ -149,7 +174,7 @@ def check(options: argparse.Namespace) -> int:
         print(f"- {finding}")
     if not examined.findings:
         print("nothing found")
-    return WRONG if examined.findings else 0
+    return FAILED if examined.findings else 0
 
 
 def view(options: argparse.Namespace) -> int:
@@ -165,8 +190,8 @@ def view(options: argparse.Namespace) -> int:
 
 
 def convert(options: argparse.Namespace) -> int:
-    """carom import: a scene file from a robot description (URDF) that moves in a plane."""
-    save_scene(load_urdf(options.robot, options.plane), options.scene)
+    """carom import: a scene file from a robot description (URDF, MJCF) that moves in a plane."""
+    save_scene(load_robot(options.robot, options.plane), options.scene)
     print(f"scene: {options.scene}")
     return 0
 
@@ -179,12 +204,13 @@ def print_schema(options: argparse.Namespace) -> int:
 
 def arguments() -> argparse.ArgumentParser:
     """The command line."""
+    texts: Any = {"epilog": EXIT_CODES, "formatter_class": argparse.RawDescriptionHelpFormatter}
     parser = argparse.ArgumentParser(
-        "carom", description="Runs, checks and shows scenes of rigid bodies in contact."
+        "carom", description="Runs, checks and shows scenes of rigid bodies in contact.", **texts
     )
     commands = parser.add_subparsers(required=True, metavar="command")
 
-    command = commands.add_parser("run", help="run a scene", description=run.__doc__)
+    command = commands.add_parser("run", help="run a scene", description=run.__doc__, **texts)
     command.add_argument("scene", type=Path)
     command.add_argument("--until", type=_seconds, metavar="TIME", help="end [s]; else as the scene says")
     command.add_argument("--mode", choices=list(MODES), help="else as the scene says")
@@ -192,26 +218,33 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--record", type=Path, metavar="FILE", help="write the run to an HDF5 file")
     command.add_argument("--interval", type=_duration, metavar="TIME", help="between recorded samples [s]")
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
+    command.add_argument("--vtk", type=Path, metavar="SERIES", help="write a series for ParaView (.pvd)")
     command.set_defaults(action=run)
 
-    command = commands.add_parser("check", help="look for mistakes in a scene", description=check.__doc__)
+    command = commands.add_parser(
+        "check", help="look for mistakes in a scene", description=check.__doc__, **texts
+    )
     command.add_argument("scene", type=Path)
     command.set_defaults(action=check)
 
-    command = commands.add_parser("view", help="make a page of a recording", description=view.__doc__)
+    command = commands.add_parser(
+        "view", help="make a page of a recording", description=view.__doc__, **texts
+    )
     command.add_argument("recording", type=Path)
     command.add_argument("--output", type=Path, metavar="PAGE", help="else the recording's name with .html")
     command.add_argument("--open", action="store_true", help="open it in the browser")
     command.set_defaults(action=view)
 
-    command = commands.add_parser("import", help="make a scene of a robot", description=convert.__doc__)
-    command.add_argument("robot", type=Path, metavar="robot.urdf")
+    command = commands.add_parser(
+        "import", help="make a scene of a robot", description=convert.__doc__, **texts
+    )
+    command.add_argument("robot", type=Path, help="a file in URDF or MJCF")
     command.add_argument("scene", type=Path, metavar="scene.json")
     command.add_argument("--plane", choices=list(PLANES), default="xz", help="right and up; xz if not given")
     command.set_defaults(action=convert)
 
     command = commands.add_parser(
-        "schema", help="print the JSON schema of scenes", description=print_schema.__doc__
+        "schema", help="print the JSON schema of scenes", description=print_schema.__doc__, **texts
     )
     command.set_defaults(action=print_schema)
     return parser
@@ -236,7 +269,7 @@ def main(words: Optional[list[str]] = None) -> int:
         return MISUSED
     except (_core.Error, Missing, ImportError) as error:
         print(f"carom: {error}", file=sys.stderr)
-        return WRONG
+        return FAILED
     except KeyboardInterrupt:
         print("carom: ended by Ctrl-C", file=sys.stderr)
         return INTERRUPTED

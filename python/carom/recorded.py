@@ -143,6 +143,12 @@ class Recording:
                 writer.writerow(columns)
                 writer.writerows(zip(*(column.tolist() for column in columns.values())))
 
+    def to_vtk(self, path: StrPath, every: int = 1) -> None:
+        """Writes the run for ParaView: path is a file .pvd, beside which a folder is made. See carom.vtk."""
+        from .vtk import write_vtk
+
+        write_vtk(self, path, every)
+
     def view(self, every: int = 1) -> Any:
         """The run as a page to look at; shown inline in notebooks. See carom.viewer.View."""
         from .viewer import View

@@ -63,7 +63,7 @@ struct Convert<std::function<R(A...)>, std::enable_if_t<(std::is_same_v<A, doubl
         "collections.abc.Callable[[" + numbers + "], " + Convert<R>::names().accepts + "] | None";
     const TypeNames law = Convert<Law<R>>::names();
     return {law.accepts + " | " + Convert<R>::names().accepts + " | " + type, law.gives + " | " + type,
-            "law " + law.accepts};
+            "law " + law.gives};
   }
   static void load(nb::handle from, std::function<R(A...)>& to, std::string_view where) {
     if (from.is_none()) {

@@ -66,11 +66,12 @@ struct Convert<Harmonic<R>> : BoundRecord<Harmonic<R>> {};
 template <class R>
 struct Convert<Law<R>> : BoundRecord<Law<R>> {};
 
-/// Reads a law: an instance of Law, or a constant. Raises TypeError. \param arguments of the function
+/// Reads a law: an instance of Law, a dictionary of its fields, or a constant. Raises TypeError.
+/// \param arguments of the function
 template <class R>
 Law<R> read_law(nb::handle from, std::size_t arguments, std::string_view where) {
   Law<R> law;
-  if (nb::isinstance<Law<R>>(from)) {
+  if (nb::isinstance<Law<R>>(from) || PyDict_Check(from.ptr()) != 0) {
     Convert<Law<R>>::load(from, law, where);
     if (law.slopes.size() + 1 <= arguments) return law;
     refuse(where, "a law with at most " + std::to_string(arguments - 1) + " slopes", from);

@@ -117,6 +117,26 @@ void Record::set(void* record, const nb::args& given, const nb::kwargs& named) c
   }
 }
 
+void Record::set_from(void* record, const nb::dict& named, std::string_view where) const {
+  const std::string place(where);
+  for (const auto& [key, value] : named) {
+    const Field* const field = nb::isinstance<nb::str>(key) ? find(nb::cast<std::string_view>(key)) : nullptr;
+    if (field == nullptr || field->type->load == nullptr) {
+      std::string text =
+          place + ": " + name + " has no field " + nb::cast<std::string>(nb::repr(key)) + "; fields:";
+      for (const Field& each : fields) text += (&each == &fields.front() ? " " : ", ") + each.python();
+      throw nb::type_error(text.c_str());
+    }
+    field->type->load(value, field->of(record), place + "['" + field->name + "']");
+  }
+  for (const Field& field : fields) {
+    if (!field.required || named.contains(field.name.c_str()) || named.contains(field.python().c_str()))
+      continue;
+    throw nb::type_error(
+        (place + ": field '" + field.name + "' of " + name + " is missing: " + field.doc).c_str());
+  }
+}
+
 std::string Record::text(const void* record) const {
   std::string shown = name + "(";
   for (const Field& field : fields) {

@@ -71,6 +71,8 @@ struct Record {
 
   /// Sets fields from arguments. Raises TypeError naming the field.
   void set(void* record, const nb::args& given, const nb::kwargs& named) const;
+  /// Sets fields from a dictionary of them by name. Raises TypeError naming the field.
+  void set_from(void* record, const nb::dict& named, std::string_view where) const;
   /// Field of that name, in C++ or in Python; null if none.
   [[nodiscard]] const Field* find(std::string_view field) const;
   /// "RigidBody(mass=..., angle=0.5)": fields that are not as by default.
@@ -146,19 +148,33 @@ nb::class_<P> bind_record(nb::module_& module, const char* name, const std::vect
   return type;
 }
 
-/// Bound structs as fields of others.
+/// Bound structs as fields of others. One that has a constructor may be given as a dictionary of its fields.
 template <class P>
 struct BoundRecord {
   static TypeNames names() {
     const nb::handle type = nb::type<P>();
     const std::string name =
         nb::cast<std::string>(type.attr("__module__")) + "." + nb::cast<std::string>(type.attr("__name__"));
-    return {name, name, "record " + name};
+    return {made_of_dictionaries() != nullptr ? name + " | dict[str, typing.Any]" : name, name,
+            "record " + name};
   }
   static void load(nb::handle from, P& to, std::string_view where) {
-    to = *static_cast<P*>(load_instance(from, typeid(P), where, names().accepts));
+    const Record* const record = made_of_dictionaries();
+    if (record == nullptr || PyDict_Check(from.ptr()) == 0) {
+      to = *static_cast<P*>(load_instance(from, typeid(P), where, names().gives));
+      return;
+    }
+    P made{};
+    record->set_from(&made, nb::borrow<nb::dict>(from), where);
+    to = std::move(made);
   }
   static nb::object cast(const P& value) { return nb::cast(value, nb::rv_policy::copy); }
+
+private:
+  static const Record* made_of_dictionaries() {
+    const Record* const record = record_of(nb::type<P>());
+    return record != nullptr && record->writable ? record : nullptr;
+  }
 };
 
 }  // namespace carom_python

@@ -115,6 +115,9 @@ nb::list events_from(Runner& self, std::size_t first) {
 }
 
 using Class = nb::class_<Runner>;
+constexpr const char* no_mode =
+    "Simulation: argument 'mode' is missing; allowed: TimeStepping(step=...) takes steps of that length [s], "
+    "EventDriven() integrates from event to event; for example Simulation(system, TimeStepping(step=1e-3))";
 constexpr const char* array = "numpy.typing.NDArray[numpy.float64]";
 
 void bind_runs(Class& type) {
@@ -122,9 +125,10 @@ void bind_runs(Class& type) {
           "__init__",
           [](Runner* self, Model& system, nb::handle mode) {
             system.get();
+            if (mode.is_none()) throw nb::type_error(no_mode);
             new (self) Runner(system, mode_of(mode));
           },
-          nb::arg("system"), nb::arg("mode"),
+          nb::arg("system"), nb::arg("mode") = nb::none(),  // without: to say which there are
           nb::sig("def __init__(self, system: System, mode: TimeStepping | EventDriven) -> None"),
           doc("Simulation.Simulation"))
       .def(

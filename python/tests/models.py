@@ -2,7 +2,7 @@
 
 import math
 
-from carom import ContactFilter, Surface, System, ground
+from carom import BodyId, ContactFilter, Surface, System, ground
 from carom.planar import (
     Block,
     BoxInside,
@@ -27,13 +27,23 @@ from carom.planar import (
 )
 
 
-def falling_ball() -> System:
-    """A particle above a floor."""
+def floor() -> System:
+    """Gravity and a floor."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
     system.add(HalfPlane(normal=(0.0, 1.0)), Surface(friction=0.5, normal_restitution=0.6), "floor")
-    system.add(Particle(mass=1.0, position=(0.0, 1.0)), name="ball")
     return system
+
+
+def ball() -> tuple[System, BodyId]:
+    """A particle above the floor."""
+    system = floor()
+    return system, system.add(Particle(mass=1.0, position=(0.0, 1.0)), name="ball")
+
+
+def falling_ball() -> System:
+    """The model of ball()."""
+    return ball()[0]
 
 
 def pile(columns: int, rows: int) -> System:

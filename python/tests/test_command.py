@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from importlib import resources
 import pytest
 
 import carom
-from carom import planar, scene
+from carom import command, planar, scene
 from carom.command import main
 from conftest import PYTHON
 
@@ -31,7 +32,7 @@ def test_run_gives_what_the_program_gives(capsys, programs):
 def test_options_of_run(capsys):
     assert main(["run", str(BALL), "--mode", "time-stepping", "--step", "0.01", "--until", "0.25"]) == 0
     assert capsys.readouterr().out.startswith("0.25 s, 25 steps, 0 impacts")
-    assert main(["run", str(BALL), "--step", "0.01"]) == 1
+    assert main(["run", str(BALL), "--step", "0.01"]) == 2
     assert "--step is of --mode time-stepping" in capsys.readouterr().err
     with pytest.raises(SystemExit) as wrong:
         main(["run", str(BALL), "--mode", "fast"])
@@ -41,9 +42,9 @@ def test_options_of_run(capsys):
 def test_what_a_scene_does_not_say_is_asked_for(tmp_path, capsys):
     file = tmp_path / "scene.json"
     file.write_text('{"carom": 1, "bodies": [{"type": "Particle", "mass": 1}]}')
-    assert main(["run", str(file)]) == 1
+    assert main(["run", str(file)]) == 2
     assert "until when to run; give --until" in capsys.readouterr().err
-    assert main(["run", str(file), "--until", "1"]) == 1
+    assert main(["run", str(file), "--until", "1"]) == 2
     assert "give --mode" in capsys.readouterr().err
     assert main(["run", str(file), "--until", "1", "--mode", "time-stepping"]) == 0
 
@@ -63,7 +64,7 @@ def test_a_run_that_fails(tmp_path, capsys):
     system.add(planar.SpringDamper(from_=carom.ground, to=body, stiffness=1e8, free_length=1.0), "strut")
     mode = carom.TimeStepping(step=1e-2, iteration="fixed_point")
     carom.save_scene(system, tmp_path / "scene.json", mode, 1.0)
-    assert main(["run", str(tmp_path / "scene.json")]) == 3
+    assert main(["run", str(tmp_path / "scene.json")]) == 1
     assert "the run failed" in capsys.readouterr().err
 
 
@@ -134,10 +135,16 @@ def process(*words):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (["--interval", "0.1"], "--record or --view"),
+        (["--interval", "0.1"], "give --record, --view or --vtk"),
+        (["--vtk", "run.vtu"], "--vtk is run.vtu; allowed: a name that ends in .pvd"),
         (["--until", "nan"], "finite"),
         (["--step", "0", "--mode", "time-stepping"], "more than 0"),
         (["--interval", "-1", "--record", "none.h5"], "more than 0"),
+        (["--interval", "often", "--record", "none.h5"], "argument --interval: is often; allowed: a finite number"),
+        (["--until", "-1"], "--until is -1; allowed: a time from 0 on"),
+        (["--step", "1"], "--step is of --mode time-stepping"),
+        (["--mode", "fast"], "invalid choice: 'fast'"),
+        (["--fast"], "unrecognized arguments: --fast"),
     ],
 )
 def test_a_wrong_command_line_ends_with_2(words, said, capsys):
@@ -147,6 +154,29 @@ def test_a_wrong_command_line_ends_with_2(words, said, capsys):
         code = ended.code
     assert code == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_step_that_does_not_go_with_the_options_of_the_scene_ends_with_2(tmp_path, capsys):
+    file, system = tmp_path / "scene.json", carom.System()
+    system.add(planar.Particle(mass=1.0))
+    control = carom.StepControl(tolerance=1e-6, smallest=1e-4, largest=1e-2)
+    carom.save_scene(system, file, carom.TimeStepping(step=1e-3, control=control), 0.1)
+    assert main(["run", str(file)]) == 0
+    assert main(["run", str(file), "--step", "1e-6"]) == 2
+    assert "--step 1e-06: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [[], ["run"], ["check"], ["view"], ["import"], ["schema"]])
+def test_help_and_the_page_say_what_exit_codes_mean(words, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([*words, "--help"])
+    assert ended.value.code == 0
+    said = capsys.readouterr().out
+    codes = re.findall(r"^  (\d+) +(.*)$", said.split("exit codes:")[1], re.MULTILINE)
+    assert [int(code) for code, _ in codes] == [0, command.FAILED, command.MISUSED, command.INTERRUPTED]
+    page = (PYTHON.parent / "docs" / "scenes.md").read_text().replace(" (a `SolverError`)", "").replace("`", "")
+    for code, meaning in codes:
+        assert f"| {code} | {meaning.replace('`', '')} |" in page
 
 
 def test_a_recording_that_is_not_there_is_named(capsys):

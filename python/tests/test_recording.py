@@ -1,20 +1,13 @@
-"""Recordings: arrays of a run, files, killed programs, resumed files."""
+"""Recordings: arrays of a run, and tables of them."""
 
 import csv
 import importlib.util
-import os
-import signal
-import subprocess
-import sys
-import textwrap
-import time
-from pathlib import Path
 
 import numpy
 import pytest
 
 import carom
-from carom import EventDriven, FileError, ModelError, Recorder, Simulation, TimeStepping, load_recording
+from carom import EventDriven, ModelError, Recorder, Simulation, TimeStepping, load_recording
 
 from models import everything, falling_ball, pile
 
@@ -165,129 +158,6 @@ def test_contacts_may_be_left_out():
     recording = recorder.recording()
     assert len(recording.contacts) == 0 and len(recording.contacts_at(-1)) == 0
     assert len(recording.events) > 0
-
-
-CHILD = """
-    import sys
-    sys.path.insert(0, sys.argv[2])
-    from carom import Recorder, Simulation, TimeStepping
-    from models import pile
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(simulation, sys.argv[1], interval=0.002, flush_every=0.02):
-        print("runs", flush=True)
-        simulation.run_until(1e4)
-"""
-
-
-def kill_a_recording(path: Path, after: float) -> None:
-    """Runs a program that records, and kills it some seconds after its recorder has begun."""
-    here = str(Path(__file__).parent)
-    child = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(CHILD), str(path), here], stdout=subprocess.PIPE
-    )
-    try:
-        assert child.stdout is not None and child.stdout.readline() == b"runs\n"
-        time.sleep(after)
-    finally:
-        os.kill(child.pid, signal.SIGKILL)
-        child.wait()
-
-
-@pytest.mark.parametrize("after", [0.31, 0.53, 0.77])
-def test_a_killed_program_leaves_a_recording(tmp_path, after):
-    path = tmp_path / "killed.h5"
-    kill_a_recording(path, after)
-    killed = load_recording(path)
-    assert len(killed) > 2
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(simulation, interval=0.002) as recorder:
-        simulation.run_until(killed.times[-1])
-    whole = recorder.recording()
-    assert len(whole) == len(killed)
-    numpy.testing.assert_array_equal(whole.positions, killed.positions)
-    numpy.testing.assert_array_equal(whole.contacts["impulse"], killed.contacts["impulse"])
-    numpy.testing.assert_array_equal(whole.events["time"], killed.events["time"])
-
-
-@pytest.mark.parametrize("is_killed", [False, True], ids=["closed", "killed"])
-def test_a_resumed_file_is_that_of_one_run(tmp_path, is_killed):
-    path, checkpoint = tmp_path / "run.h5", tmp_path / "half"
-    if is_killed:
-        kill_a_recording(path, 0.5)
-        until = float(load_recording(path).times[-1])
-    else:
-        until = 0.4
-        simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-        with Recorder(simulation, path, interval=0.002):
-            simulation.run_until(until)
-    half = round(0.5 * until, 3) + 1e-3  # not a multiple of the interval
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    simulation.run_until(half)
-    simulation.save(checkpoint)
-
-    resumed = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    resumed.load(checkpoint)
-    with Recorder(resumed, path, interval=0.002, resume=True) as recorder:
-        resumed.run_until(until + 0.1)
-    whole = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(whole, interval=0.002) as reference:
-        whole.run_until(until + 0.1)
-    one, other = recorder.recording(), reference.recording()
-    numpy.testing.assert_array_equal(one.times, other.times)
-    numpy.testing.assert_array_equal(one.positions, other.positions)
-    numpy.testing.assert_array_equal(one.contact_ends, other.contact_ends)
-    for table in ("events", "contacts"):
-        rows, expected = getattr(one, table), getattr(other, table)
-        for field in rows.dtype.names:
-            if field != "name":
-                numpy.testing.assert_array_equal(rows[field], expected[field], field)
-        assert [one.names[i] for i in rows["name"]] == [other.names[i] for i in expected["name"]]
-
-
-def test_a_file_of_another_model_is_not_resumed(tmp_path):
-    path = tmp_path / "run.h5"
-    with Recorder(Simulation(falling_ball(), TimeStepping()), path):
-        pass
-    with pytest.raises(ModelError, match="run.h5' is of another model"):
-        Recorder(Simulation(pile(2, 2), TimeStepping()), path, resume=True)
-    with pytest.raises(ModelError, match="resume is True without a path"):
-        Recorder(Simulation(falling_ball(), TimeStepping()), resume=True)
-    with pytest.raises(FileError, match="nothing.h5' does not exist"):
-        Recorder(Simulation(falling_ball(), TimeStepping()), tmp_path / "nothing.h5", resume=True)
-
-
-@pytest.mark.parametrize("kept", [0, 100, 0.3, 0.9])
-def test_a_truncated_file_is_refused_by_its_path(tmp_path, kept):
-    path = tmp_path / "cut.h5"
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(simulation, path):
-        simulation.run_until(0.5)
-    size = path.stat().st_size
-    os.truncate(path, int(kept * size) if kept < 1 else kept)
-    with pytest.raises(FileError, match=r"cut\.h5'"):
-        load_recording(path)
-
-
-def test_a_truncated_file_of_a_killed_program_is_refused_by_its_path(tmp_path):
-    path = tmp_path / "cut.h5"
-    kill_a_recording(path, 0.3)
-    os.truncate(path, path.stat().st_size // 3)
-    with pytest.raises(FileError, match=r"cut\.h5'"):
-        load_recording(path)
-
-
-def test_what_is_no_recording_is_refused_by_its_path(tmp_path):
-    import h5py
-
-    text, other = tmp_path / "a.txt", tmp_path / "b.h5"
-    text.write_text("hello")
-    h5py.File(other, "w").close()
-    with pytest.raises(FileError, match="a.txt' is not a recording"):
-        load_recording(text)
-    with pytest.raises(FileError, match="b.h5' is not a recording"):
-        load_recording(other)
-    with pytest.raises(FileError, match="none/run.h5' cannot be written"):
-        Recorder(Simulation(falling_ball(), TimeStepping()), tmp_path / "none" / "run.h5")
 
 
 @pytest.mark.parametrize("interval", [-1.0, float("nan"), float("inf")])

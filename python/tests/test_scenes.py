@@ -262,8 +262,6 @@ def test_what_is_no_scene_or_path_is_named(tmp_path):
         carom.save_scene(simulation, tmp_path / "scene.json")
     with pytest.raises(TypeError, match="from_dict"):
         carom.load_scene({})
-    with pytest.raises(TypeError, match="must be carom.ImpactRules"):
-        carom.TimeStepping(impact_rules={"order": "sequential"})
 
 
 def test_errors_have_data():

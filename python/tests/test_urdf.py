@@ -131,12 +131,20 @@ def test_slides_and_welds(robot):
         ("robot", "model", "is no robot description: its first element is <model>"),
     ],
 )
-def test_what_is_not_planar_is_refused_by_name(robot, old, new, message):
+def test_what_is_not_planar_is_refused_by_name_and_line(robot, old, new, message):
     assert old in ARM
+    around = max(0, *(ARM.rfind(tag, 0, ARM.index(old) + 1) for tag in ("<link", "<joint")))
+    line = ARM.count("\n", 0, around) + 1
+    if "circle" in message:  # where it is seen
+        line = ARM.count("\n", 0, ARM.index('<link name="upper"')) + 1
+    elif "tree" in message:
+        line = 1
+    elif old == "</robot>":
+        line = ARM.count("\n") + 1
     file = robot(ARM.replace(old, new))
     with pytest.raises(SceneError, match=message) as caught:
         load_urdf(file)
-    assert caught.value.file == str(file)
+    assert caught.value.file == str(file) and caught.value.line == line
 
 
 def test_command_makes_a_scene(robot, tmp_path, capsys):

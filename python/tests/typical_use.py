@@ -90,5 +90,6 @@ if TYPE_CHECKING:
         planar.Disc(body=joint, radius=0.1)  # type: ignore[arg-type]
         planar.Particle(masse=1.0)  # type: ignore[call-arg]
         Simulation(system, "event_driven")  # type: ignore[arg-type]
+        TimeStepping(impact_rules={"order": "sequential"})
         TimeStepping(impact_order="sequential")  # type: ignore[call-arg]
         carom.save_scene(system, 3)  # type: ignore[arg-type]

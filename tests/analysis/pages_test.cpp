@@ -44,6 +44,8 @@ TEST(ConceptPages, LinksLeadToFilesOfTheProject) {
     const std::string text = std::regex_replace(text_of(page), code, "");
     const std::filesystem::path folder = std::filesystem::path(carom_test::source_file(page)).parent_path();
     for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++count) {
+      // Views of the gallery are made by scripts/gallery.sh; python/tests/test_gallery.py checks their names.
+      if (at->str(1).starts_with("../build/gallery/") && page == "docs/gallery.md") continue;
       EXPECT_TRUE(std::filesystem::exists(folder / at->str(1))) << page << ": " << at->str(1);
     }
   }

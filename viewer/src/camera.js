@@ -14,16 +14,22 @@ export class PlanarCamera {
     this.scale = 1; // [pixels/m]
     this.follows = () => null; // place of what is followed
     this.last = null;
+    this.resize();
     this.fit();
     this.listen();
+  }
+
+  /** Takes the size of the canvas; to ask for it in every picture would have the browser lay out the page each time. */
+  resize() {
+    this.width = this.canvas.clientWidth;
+    this.height = this.canvas.clientHeight;
   }
 
   fit() {
     const [left, low, right, high] = this.bounds;
     this.x = 0.5 * (left + right);
     this.y = 0.5 * (low + high);
-    const { clientWidth, clientHeight } = this.canvas;
-    this.scale = 0.92 * Math.min(clientWidth / (right - left), clientHeight / (high - low));
+    this.scale = 0.92 * Math.min(this.width / (right - left), this.height / (high - low));
     this.last = null;
     this.changed();
   }
@@ -62,19 +68,16 @@ export class PlanarCamera {
 
   /** Point of the scene [m] at a pixel of the canvas. */
   sceneAt(px, py) {
-    const { clientWidth, clientHeight } = this.canvas;
-    return [this.x + (px - 0.5 * clientWidth) / this.scale, this.y - (py - 0.5 * clientHeight) / this.scale];
+    return [this.x + (px - 0.5 * this.width) / this.scale, this.y - (py - 0.5 * this.height) / this.scale];
   }
 
   /** Pixel of the canvas at a point of the scene. */
   pixelAt(x, y) {
-    const { clientWidth, clientHeight } = this.canvas;
-    return [0.5 * clientWidth + (x - this.x) * this.scale, 0.5 * clientHeight - (y - this.y) * this.scale];
+    return [0.5 * this.width + (x - this.x) * this.scale, 0.5 * this.height - (y - this.y) * this.scale];
   }
 
   update() {
-    const { clientWidth, clientHeight } = this.canvas;
-    const wide = 0.5 * clientWidth / this.scale, high = 0.5 * clientHeight / this.scale;
+    const wide = 0.5 * this.width / this.scale, high = 0.5 * this.height / this.scale;
     const three = this.three;
     Object.assign(three, { left: -wide, right: wide, top: high, bottom: -high, near: -1, far: 1 });
     three.position.set(this.x, this.y, 0);

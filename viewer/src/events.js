@@ -17,6 +17,8 @@ export class EventList {
     this.seek = seek;
     this.count = recording.event_time.length;
     this.current = -1;
+    this.top = 0; // scrolled so far, and the height that is seen [pixels]: to ask for them costs a layout of the page
+    this.height = 0;
     this.space = document.createElement("div");
     this.space.className = "space";
     this.space.style.height = `${ROW * this.count}px`;
@@ -25,7 +27,10 @@ export class EventList {
       element.innerHTML = "<p class=\"none\">No events were recorded.</p>";
       return;
     }
-    element.addEventListener("scroll", () => this.fill());
+    element.addEventListener("scroll", () => {
+      this.top = element.scrollTop;
+      this.fill();
+    });
     element.addEventListener("click", (event) => {
       const row = event.target.closest("[data-event]");
       if (row) this.go(Number(row.dataset.event));
@@ -37,7 +42,6 @@ export class EventList {
       event.stopPropagation();
       this.go(Math.min(Math.max(this.current + step, 0), this.count - 1));
     });
-    this.fill();
   }
 
   go(number) {
@@ -63,17 +67,22 @@ export class EventList {
   }
 
   show(number) {
-    const { element } = this;
     const top = ROW * Math.max(number, 0);
-    if (top < element.scrollTop || top + ROW > element.scrollTop + element.clientHeight) {
-      element.scrollTop = top - 0.5 * element.clientHeight;
+    if (top < this.top || top + ROW > this.top + this.height) {
+      this.top = Math.max(0, Math.min(top - 0.5 * this.height, ROW * this.count - this.height));
+      this.element.scrollTop = this.top;
     }
   }
 
+  resize() {
+    this.height = this.element.clientHeight;
+    this.top = this.element.scrollTop;
+    if (this.count) this.fill();
+  }
+
   fill() {
-    const { element } = this;
-    const first = Math.max(0, Math.floor(element.scrollTop / ROW) - 4);
-    const end = Math.min(this.count, Math.ceil((element.scrollTop + element.clientHeight) / ROW) + 4);
+    const first = Math.max(0, Math.floor(this.top / ROW) - 4);
+    const end = Math.min(this.count, Math.ceil((this.top + this.height) / ROW) + 4);
     this.space.replaceChildren(...Array.from({ length: end - first }, (_, i) => this.row(first + i)));
   }
 

@@ -1,4 +1,4 @@
-// What is drawn, as few meshes: outlines of bodies, lines, ground, marks, arrows. Sizes of lines and
+// What is drawn, as few meshes: outlines of bodies, lines, ground, marks. Sizes of lines and
 // marks are in pixels; `pixel` is the length of one in the scene [m].
 
 import {
@@ -71,7 +71,7 @@ function repeated(form, count, attributes) {
   return made.geometry;
 }
 
-function layer(geometry, uniforms, vertex, fragment, order) {
+export function layer(geometry, uniforms, vertex, fragment, order) {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3, uniforms, vertexShader: HEAD + POSE_SHADER + vertex, fragmentShader: PAINT + fragment,
     transparent: true, depthTest: false, depthWrite: false, side: DoubleSide, // triangles turn either way
@@ -239,52 +239,6 @@ void main() {
     this.look[2 * i + 1] = form;
     this.colour.set(colour, 4 * i);
     this.colour[4 * i + 3] = opacity;
-  }
-
-  update() {
-    this.all.update(this.count);
-    this.mesh.visible = this.count > 0;
-  }
-}
-
-/** Arrows from a point of the scene: a vector [m], a colour. */
-export class Arrows {
-  constructor(most, uniforms, order) {
-    this.place = new Float32Array(4 * most);
-    this.colour = new Float32Array(3 * most);
-    this.count = 0;
-    // Along the arrow (0: foot, 1: head), along the head (0: its base, 1: its tip), across [pixels].
-    const shaft = [0, 0, -0.9, 1, 0, -0.9, 1, 0, 0.9, 0, 0, 0.9];
-    const head = [1, 0, -4, 1, 1, 0, 1, 0, 4];
-    const form = { corners: [...shaft, ...head], size: 3, triangles: [0, 1, 2, 0, 2, 3, 4, 5, 6] };
-    this.all = new Repeated(form, most, { place: [this.place, 4], colour: [this.colour, 3] });
-    this.mesh = layer(this.all.geometry, uniforms, `
-in vec3 corner; in vec4 place; in vec3 colour;
-uniform float arrowScale;
-out vec3 inside;
-void main() {
-  vec2 arrow = place.zw * arrowScale;
-  float span = length(arrow) / pixel;
-  vec2 u = span > 0.0 ? arrow / (span * pixel) : vec2(0.0, 1.0);
-  float head = min(9.0, 0.6 * span);
-  float along = corner.x * (span - head) + corner.y * head;
-  float across = corner.z * (corner.x > 0.5 && abs(corner.z) > 1.0 ? head / 9.0 : 1.0);
-  inside = colour;
-  gl_Position = projectionMatrix * viewMatrix * vec4(place.xy + pixel * (along * u + across * vec2(-u.y, u.x)), 0.0, 1.0);
-}`, `
-in vec3 inside;
-void main() { paint = vec4(inside, 1.0); }`, order);
-  }
-
-  clear() { this.count = 0; }
-
-  add(x, y, dx, dy, colour) {
-    const i = this.count++;
-    this.place[4 * i] = x;
-    this.place[4 * i + 1] = y;
-    this.place[4 * i + 2] = dx;
-    this.place[4 * i + 3] = dy;
-    this.colour.set(colour, 3 * i);
   }
 
   update() {

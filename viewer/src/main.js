@@ -46,8 +46,9 @@ class Page {
 
   resize() {
     this.scene.resize();
+    this.camera.resize();
     this.plot.resize();
-    this.events.count && this.events.fill();
+    this.events.resize();
     this.dirty = true;
   }
 

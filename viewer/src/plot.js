@@ -85,6 +85,7 @@ export class LedgerPlot {
 
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
+    [this.width, this.height] = [clientWidth, clientHeight]; // asked for here alone: it costs a layout of the page
     this.ratio = Math.min(window.devicePixelRatio, 2);
     this.canvas.width = clientWidth * this.ratio;
     this.canvas.height = clientHeight * this.ratio;
@@ -104,12 +105,12 @@ export class LedgerPlot {
 
   x(time) {
     const [first, last] = [this.times[0], this.times[this.times.length - 1]];
-    const width = this.canvas.clientWidth - MARGIN.left - MARGIN.right;
+    const width = this.width - MARGIN.left - MARGIN.right;
     return MARGIN.left + (last > first ? ((time - first) / (last - first)) * width : 0);
   }
 
   y(value) {
-    const height = this.canvas.clientHeight - MARGIN.top - MARGIN.bottom;
+    const height = this.height - MARGIN.top - MARGIN.bottom;
     return MARGIN.top + ((this.range[1] - value) / (this.range[1] - this.range[0])) * height;
   }
 

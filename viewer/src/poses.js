@@ -16,8 +16,9 @@ export class Poses {
       this.numbers, 2 * PER_ROW, Math.ceil(this.count / PER_ROW), RGBAFormat, FloatType);
     this.texture.minFilter = this.texture.magFilter = NearestFilter;
     this.flat = new Float64Array(3 * this.count); // x, y, angle
-    this.movedPoses = recording.moved.map(
-      (serial) => recording.obstacles.find((obstacle) => obstacle.serial === serial).pose);
+    this.bodyPoses = Int32Array.from({ length: this.bodies }, (_, i) => i + 1);
+    this.movedPoses = Int32Array.from(
+      recording.moved, (serial) => recording.obstacles.find((obstacle) => obstacle.serial === serial).pose);
     for (let i = 0; i < this.count; ++i) this.set(i, 0, 0, 0);
     recording.obstacles.forEach(({ pose }, i) => this.set(pose, ...recording.places.slice(3 * i, 3 * i + 3)));
   }
@@ -36,19 +37,18 @@ export class Poses {
 
   /** Poses between two samples: at `fraction` of the way from one to the next. */
   fill(sample, fraction) {
-    const { positions, ground, moved, times } = this.recording;
+    const { positions, ground, times } = this.recording;
     const next = Math.min(sample + 1, times.length - 1);
-    this.mix(positions, this.bodies, sample, next, fraction, (i) => i + 1);
-    this.mix(ground, moved.length, sample, next, fraction, (i) => this.movedPoses[i]);
+    this.mix(positions, this.bodyPoses, sample, next, fraction);
+    this.mix(ground, this.movedPoses, sample, next, fraction);
     this.texture.needsUpdate = true;
   }
 
-  mix(array, count, sample, next, fraction, poseOf) {
-    const a = 3 * count * sample, b = 3 * count * next;
-    for (let i = 0; i < count; ++i) {
-      const p = a + 3 * i, q = b + 3 * i;
+  mix(array, poses, sample, next, fraction) {
+    const count = poses.length;
+    for (let i = 0, p = 3 * count * sample, q = 3 * count * next; i < count; ++i, p += 3, q += 3) {
       this.set(
-        poseOf(i),
+        poses[i],
         array[p] + fraction * (array[q] - array[p]),
         array[p + 1] + fraction * (array[q + 1] - array[p + 1]),
         array[p + 2] + fraction * (array[q + 2] - array[p + 2]));

@@ -1,9 +1,10 @@
 // The scene: what the recording has, as layers, and what changes with time in them.
 
-import { Color, Scene, Vector3, WebGLRenderer } from "three";
+import { Color, OrthographicCamera, Scene, Vector3, WebGLRenderer } from "three";
 import * as colours from "./colours.js";
+import { Contacts } from "./contacts.js";
 import { lastNotAfter } from "./data.js";
-import { Arrows, capsules, fills, lines, Marks } from "./layers.js";
+import { capsules, fills, lines, Marks } from "./layers.js";
 import { along, fan, link, widened } from "./outlines.js";
 import { Poses } from "./poses.js";
 
@@ -28,13 +29,12 @@ export class RunScene {
       pickedColour: { value: new Vector3(...colours.rgb(colours.PICKED)) },
     };
     this.showsContacts = true;
-    this.modeColours = recording.modes.map((mode) => colours.rgb(colours.MODES[mode]));
-    this.impactColour = colours.rgb(colours.IMPACT);
     this.kindColours = recording.kinds.map((kind) => colours.rgb(colours.KINDS[kind]));
     this.addGround();
     this.addBodies();
     this.addLinks();
     this.addContacts();
+    this.renderer.compile(this.three, new OrthographicCamera()); // or the first impact would wait for it
     this.largeImpulse = largeImpulse(recording.contact_impulse);
     this.bodySize = bodySize(recording);
   }
@@ -96,38 +96,15 @@ export class RunScene {
   }
 
   addContacts() {
-    const ends = this.recording.contact_ends;
-    let most = 0;
-    for (let i = 0; i < ends.length; ++i) most = Math.max(most, ends[i] - (i ? ends[i - 1] : 0));
-    this.dots = new Marks(most, this.uniforms, 8);
-    this.arrows = new Arrows(most, this.uniforms, 9);
+    const modes = this.recording.modes.map((mode) => colours.rgb(colours.MODES[mode]));
+    this.contacts = new Contacts(this.recording, [...modes, colours.rgb(colours.IMPACT)], this.uniforms, 8);
     this.flashes = new Marks(MOST_FLASHES, this.uniforms, 10);
-    this.three.add(this.dots.mesh, this.arrows.mesh, this.flashes.mesh);
+    this.three.add(this.contacts.dots, this.contacts.arrows, this.flashes.mesh);
   }
 
   contactRange(sample) {
     const ends = this.recording.contact_ends;
     return [sample > 0 ? ends[sample - 1] : 0, ends[sample]];
-  }
-
-  colourOfContact(i) {
-    return this.recording.contact_impact[i] ? this.impactColour : this.modeColours[this.recording.contact_mode[i]];
-  }
-
-  fillContacts(sample) {
-    const { contact_point: point, contact_normal: normal, contact_impulse: impulse } = this.recording;
-    const [first, end] = this.showsContacts ? this.contactRange(sample) : [0, 0];
-    this.dots.clear();
-    this.arrows.clear();
-    for (let i = first; i < end; ++i) {
-      const [x, y, nx, ny] = [point[2 * i], point[2 * i + 1], normal[2 * i], normal[2 * i + 1]];
-      const [pn, pt] = [impulse[2 * i], impulse[2 * i + 1]];
-      const colour = this.colourOfContact(i);
-      this.dots.add(0, x, y, this.dotSize, 0, colour);
-      if (pn !== 0 || pt !== 0) this.arrows.add(x, y, pn * nx + pt * ny, pn * ny - pt * nx, colour);
-    }
-    this.dots.update();
-    this.arrows.update();
   }
 
   fillFlashes(time, speed) {
@@ -151,12 +128,11 @@ export class RunScene {
 
   draw(camera, { sample, fraction, time, speed }) {
     if (sample !== this.sample || fraction !== this.fraction) this.poses.fill(sample, fraction);
-    const dotSize = within(DOT, 0.25 * this.bodySize * camera.scale);
-    const isOther = this.contactsShown !== this.showsContacts || Math.abs(dotSize - this.dotSize) > 0.1;
-    if (sample !== this.sample || isOther) {
-      this.dotSize = dotSize;
-      this.fillContacts(sample);
+    if (sample !== this.sample || this.contactsShown !== this.showsContacts) {
+      const [first, end] = this.showsContacts ? this.contactRange(sample) : [0, 0];
+      this.contacts.show(first, end);
     }
+    this.contacts.dotSize.value = within(DOT, 0.25 * this.bodySize * camera.scale);
     [this.sample, this.fraction, this.contactsShown] = [sample, fraction, this.showsContacts];
     this.fillFlashes(time, speed);
     camera.follow();

@@ -1,6 +1,8 @@
 """Pages of recordings in Chromium, as its driver sees them."""
 
 import io
+import re
+from pathlib import Path
 
 import numpy
 from PIL import Image
@@ -10,6 +12,13 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.chrome.service import Service
 
 SIZE = (1280, 800)
+SOURCES = Path(__file__).parents[1] / "src"
+COLOURS = (SOURCES / "colours.js").read_text()
+
+
+def named(name: str) -> str:
+    """A colour of colours.js."""
+    return re.search(rf"\b{name}(?: =|:) \"(#\w{{6}})\"", COLOURS).group(1)
 
 
 def open_browser() -> webdriver.Chrome:

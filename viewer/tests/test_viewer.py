@@ -1,7 +1,6 @@
 """The page in a browser: what it draws, and what its controls do."""
 
 import re
-from pathlib import Path
 
 import numpy
 import pytest
@@ -9,15 +8,10 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-SOURCES = Path(__file__).parents[1] / "src"
-COLOURS = (SOURCES / "colours.js").read_text()
+from browser import COLOURS, SOURCES, named
+
 BODIES = re.findall(r"#\w{6}", re.search(r"BODIES = \[(.*?)\]", COLOURS).group(1))
 AIR = "#fbfbf9"
-
-
-def named(name: str) -> str:
-    """A colour of colours.js."""
-    return re.search(rf"\b{name}(?: =|:) \"(#\w{{6}})\"", COLOURS).group(1)
 
 
 def place(recording, name: str, sample: int) -> numpy.ndarray:
@@ -213,47 +207,6 @@ def test_the_pointer_shows_names(show):
     assert label.text == "block"
     page.point_at(0.0, 0.9)
     assert not label.is_displayed()
-
-
-def test_contacts_are_drawn_by_their_modes(show):
-    page = show("pile")
-    recording = page.recording
-    sample = len(recording) - 1
-    page.seek(recording.times[sample])
-    contacts = recording.contacts_at(sample)
-    assert len(contacts) > 20
-    picture = page.picture()
-    modes = page.script("return caromPage.recording.modes")
-    seen = 0
-    for contact in contacts:
-        colour = named("IMPACT") if contact["impact"] else named(modes[contact["mode"]])
-        seen += colour in page.near(*contact["point"], 3, picture)
-    assert seen >= 0.9 * len(contacts)  # arrows of others lie over some
-    strongest = contacts[numpy.argmax(contacts["impulse"][:, 0])]
-    page.point_at(*strongest["point"])
-    assert recording.names[strongest["name"]] in page.element("label").text
-    page.element("contacts").click()
-    picture = page.picture()
-    assert not any(named("stick") in page.near(*contact["point"], 3, picture) for contact in contacts)
-
-
-def test_arrows_are_as_long_as_impulses(show):
-    page = show("pile")
-    recording = page.recording
-    sample = len(recording) - 1
-    page.seek(recording.times[sample])
-    page.picture()
-    of_arrow = page.script("return caromPage.scene.impulseOfArrow()")
-    sizes = numpy.hypot(*recording.contacts["impulse"].T)
-    assert numpy.count_nonzero(sizes > of_arrow) <= 0.06 * numpy.count_nonzero(sizes)
-    drawn = numpy.array(page.script("return Array.from(caromPage.scene.arrows.place)")).reshape(-1, 4)
-    contacts = recording.contacts_at(sample)
-    contacts = contacts[numpy.hypot(*contacts["impulse"].T) > 0.0]
-    normal, impulse = contacts["normal"], contacts["impulse"]
-    tangent = numpy.stack([normal[:, 1], -normal[:, 0]], axis=1)
-    force = impulse[:, :1] * normal + impulse[:, 1:2] * tangent
-    # Rounded to 24 bits.
-    numpy.testing.assert_allclose(drawn[: len(force), 2:], force, rtol=1e-6, atol=1e-6 * abs(force).max())
 
 
 def test_the_ledger_moves_with_time(show):

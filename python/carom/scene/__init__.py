@@ -1,5 +1,6 @@
 """Scene files: models in JSON. docs/scenes.md shows them."""
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 from .build import Scene, from_dict, to_dict
@@ -8,6 +9,8 @@ from .files import from_text, load_scene, save_scene, to_text
 from .schema import schema
 
 if TYPE_CHECKING:
+    from .mjcf import load_mjcf
+    from .robots import load_robot
     from .urdf import load_urdf
 
 __all__ = [
@@ -15,6 +18,8 @@ __all__ = [
     "SceneError",
     "from_dict",
     "from_text",
+    "load_mjcf",
+    "load_robot",
     "load_scene",
     "load_urdf",
     "save_scene",
@@ -26,8 +31,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Robot descriptions need a reader of XML, which every import of carom would pay for."""
-    if name == "load_urdf":
-        from .urdf import load_urdf
-
-        return load_urdf
+    modules = {"load_mjcf": "mjcf", "load_robot": "robots", "load_urdf": "urdf"}
+    if name in modules:
+        return getattr(importlib.import_module(f".{modules[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

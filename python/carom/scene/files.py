@@ -72,7 +72,9 @@ def load_scene(path: Union[str, "os.PathLike[str]"]) -> Scene:
     FileError for a path that cannot be read.
     """
     if isinstance(path, dict):
-        raise TypeError("load_scene(): path must be a text or a path, not a dict; carom.scene.from_dict takes one")
+        raise TypeError(
+            "load_scene(): path must be a text or a path, not a dict; carom.scene.from_dict takes one"
+        )
     name = os.fspath(path)
     try:
         with open(path, "rb") as file:

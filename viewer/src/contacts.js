@@ -1,0 +1,134 @@
+// Contacts of a sample: a mark at each, and an arrow that is its impulse. Their numbers are copied as they stand in the
+// recording into textures, from which the shaders take those of an item: a frame costs no loop over contacts.
+
+import {
+  BufferAttribute, BufferGeometry, DataTexture, FloatType, NearestFilter, RedFormat, RGFormat, UnsignedByteType,
+} from "three";
+import { layer } from "./layers.js";
+
+const PER_ROW = 256;
+
+/** Numbers of the contacts that are shown, `width` of each. */
+class Column {
+  constructor(all, width, most) {
+    const height = Math.max(1, Math.ceil(most / PER_ROW));
+    this.all = all;
+    this.width = width;
+    this.shown = new all.constructor(PER_ROW * height * width);
+    this.texture = new DataTexture(this.shown, PER_ROW, height, width === 2 ? RGFormat : RedFormat,
+      all instanceof Uint8Array ? UnsignedByteType : FloatType);
+    this.texture.minFilter = this.texture.magFilter = NearestFilter;
+    this.texture.needsUpdate = true;
+  }
+
+  show(first, end) {
+    this.shown.set(this.all.subarray(this.width * first, this.width * end));
+    this.texture.needsUpdate = true;
+  }
+}
+
+/** Triangles of a form of `corners` corners for each of so many items: vertex i is corner i % corners of an item. */
+function repeated(corners, triangles, most) {
+  const index = new Uint32Array(most * triangles.length);
+  for (let item = 0, at = 0; item < most; ++item) {
+    for (const corner of triangles) index[at++] = item * corners + corner;
+  }
+  const geometry = new BufferGeometry();
+  geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}
+
+const COLUMNS = (corners, colours) => `
+precision highp sampler2D;
+uniform sampler2D contactPoints, contactNormals, contactImpulses, contactModes, contactImpacts;
+uniform vec3 contactColours[${colours}]; // of the modes, and of an impact
+out vec3 inside;
+ivec2 contact() { int item = gl_VertexID / ${corners}; return ivec2(item % ${PER_ROW}, item / ${PER_ROW}); }
+vec3 colourOf(ivec2 at) {
+  bool isImpact = texelFetch(contactImpacts, at, 0).r > 0.0;
+  return contactColours[isImpact ? ${colours - 1} : int(255.0 * texelFetch(contactModes, at, 0).r + 0.5)];
+}
+`;
+
+export class Contacts {
+  /** colours: of the modes in their order, and of an impact. */
+  constructor(recording, colours, uniforms, order) {
+    const ends = recording.contact_ends;
+    let most = 0;
+    for (let i = 0; i < ends.length; ++i) most = Math.max(most, ends[i] - (i ? ends[i - 1] : 0));
+    const column = (name, width) => new Column(recording[name], width, most);
+    this.columns = {
+      contactPoints: column("contact_point", 2), contactNormals: column("contact_normal", 2),
+      contactImpulses: column("contact_impulse", 2), contactModes: column("contact_mode", 1),
+      contactImpacts: column("contact_impact", 1),
+    };
+    this.dotSize = { value: 1 };
+    const own = { ...uniforms, dotSize: this.dotSize, contactColours: { value: Float32Array.from(colours.flat()) } };
+    for (const [name, { texture }] of Object.entries(this.columns)) own[name] = { value: texture };
+    this.dots = dots(most, colours.length, own, order);
+    this.arrows = arrows(most, colours.length, own, order + 1);
+    this.show(0, 0);
+  }
+
+  /** Shows the contacts [first, end) of the recording. */
+  show(first, end) {
+    if (end > first) for (const column of Object.values(this.columns)) column.show(first, end);
+    for (const mesh of [this.dots, this.arrows]) {
+      mesh.geometry.setDrawRange(0, (end - first) * mesh.userData.perItem);
+      mesh.visible = end > first;
+    }
+  }
+}
+
+/** Discs whose radius is `dotSize` pixels. */
+function dots(most, colours, uniforms, order) {
+  const triangles = [0, 1, 2, 0, 2, 3];
+  const mesh = layer(repeated(4, triangles, most), uniforms, `
+uniform float dotSize;
+${COLUMNS(4, colours)}
+out vec2 place; out float size;
+const vec2 corners[4] = vec2[4](vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, 1));
+void main() {
+  ivec2 at = contact();
+  inside = colourOf(at);
+  size = dotSize;
+  place = corners[gl_VertexID % 4] * (size + 1.0);
+  gl_Position = projectionMatrix * viewMatrix * vec4(texelFetch(contactPoints, at, 0).xy + place * pixel, 0.0, 1.0);
+}`, `
+in vec3 inside; in vec2 place; in float size;
+void main() {
+  float d = length(place) - size;
+  paint = vec4(mix(inside, inside * 0.55, clamp(2.0 + d, 0.0, 1.0)), clamp(0.5 - d, 0.0, 1.0));
+}`, order);
+  mesh.userData.perItem = triangles.length;
+  return mesh;
+}
+
+/** Impulses on the body that the name of the contact has first, in the scene; none where it is zero. */
+function arrows(most, colours, uniforms, order) {
+  // A corner: along the arrow (0: foot, 1: head), along the head (0: its base, 1: its tip), across [pixels].
+  const triangles = [0, 1, 2, 0, 2, 3, 4, 5, 6];
+  const mesh = layer(repeated(7, triangles, most), uniforms, `
+uniform float arrowScale;
+${COLUMNS(7, colours)}
+const vec3 corners[7] = vec3[7](vec3(0, 0, -0.9), vec3(1, 0, -0.9), vec3(1, 0, 0.9), vec3(0, 0, 0.9),
+                                vec3(1, 0, -4), vec3(1, 1, 0), vec3(1, 0, 4));
+void main() {
+  ivec2 at = contact();
+  vec3 corner = corners[gl_VertexID % 7];
+  vec2 n = texelFetch(contactNormals, at, 0).xy, impulse = texelFetch(contactImpulses, at, 0).xy;
+  vec2 arrow = (impulse.x * n + impulse.y * vec2(n.y, -n.x)) * arrowScale;
+  float span = length(arrow) / pixel;
+  vec2 u = span > 0.0 ? arrow / (span * pixel) : vec2(0.0);
+  float head = min(9.0, 0.6 * span);
+  float along = corner.x * (span - head) + corner.y * head;
+  float across = corner.z * (corner.x > 0.5 && abs(corner.z) > 1.0 ? head / 9.0 : 1.0);
+  inside = colourOf(at);
+  vec2 place = texelFetch(contactPoints, at, 0).xy + pixel * (along * u + across * vec2(-u.y, u.x));
+  gl_Position = projectionMatrix * viewMatrix * vec4(place, 0.0, 1.0);
+}`, `
+in vec3 inside;
+void main() { paint = vec4(inside, 1.0); }`, order);
+  mesh.userData.perItem = triangles.length;
+  return mesh;
+}
