@@ -28,7 +28,9 @@ using Eigen::VectorXd;
 constexpr double symmetric = 1e-8;
 constexpr double nothing = 1e-12;
 
-double largest(const MatrixXd& numbers) { return numbers.size() > 0 ? numbers.cwiseAbs().maxCoeff() : 0.0; }
+double largest_entry(const MatrixXd& numbers) {
+  return numbers.size() > 0 ? numbers.cwiseAbs().maxCoeff() : 0.0;
+}
 
 void check(const ModesOptions& options) {
   const auto refuse = [](const char* option, double value, const char* allowed) {
@@ -116,9 +118,9 @@ Linearisation linearise(const Assembly& assembly, const State& state, const Mode
   model.balance();
   MatrixXd by_position, by_velocity;
   model.differentiate(by_position, by_velocity);
-  const double force =
-      std::max(largest(model.loads()), largest(model.constraints().rows().transpose() * model.multipliers()));
-  check_rest(model, std::max(force, largest(by_position) * model.size()), options.tolerance);
+  const double force = std::max(largest_entry(model.loads()),
+                                largest_entry(model.constraints().rows().transpose() * model.multipliers()));
+  check_rest(model, std::max(force, largest_entry(by_position) * model.size()), options.tolerance);
   model.check_supports(options.tolerance * force);
 
   // x = L^-T z with M = L L^T: directions that the rows leave, orthonormal in z.
@@ -142,8 +144,8 @@ Linearisation linearise(const Assembly& assembly, const State& state, const Mode
   result.stiffness = -directions.transpose() * by_position * directions;
   result.damping = -directions.transpose() * by_velocity * directions;
   const MatrixXd skew = result.stiffness - result.stiffness.transpose();
-  result.conservative =
-      !(largest(result.damping) > 0.0) && largest(skew) <= symmetric * largest(result.stiffness);
+  result.conservative = !(largest_entry(result.damping) > 0.0) &&
+                        largest_entry(skew) <= symmetric * largest_entry(result.stiffness);
   return result;
 }
 

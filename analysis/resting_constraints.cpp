@@ -10,8 +10,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-Eigen::Index at(Index i) { return static_cast<Eigen::Index>(i); }
-
 }  // namespace
 
 RestingConstraints::RestingConstraints(const Assembly& assembly, const State& state,
@@ -23,9 +21,9 @@ RestingConstraints::RestingConstraints(const Assembly& assembly, const State& st
   list_bodies();
   const Index row = supports_.empty() ? static_cast<Index>(joint_rows_.size())
                                       : supports_.back().row + static_cast<Index>(supports_.back().rows);
-  rows_.resize(at(row), at(static_cast<Index>(state.v.size())));
-  gaps_.resize(at(row));
-  norms_.resize(at(row));
+  rows_.resize(eigen_index(row), eigen_index(static_cast<Index>(state.v.size())));
+  gaps_.resize(eigen_index(row));
+  norms_.resize(eigen_index(row));
 }
 
 void RestingConstraints::list_joints() {
@@ -92,10 +90,10 @@ void RestingConstraints::list_bodies() {
 std::string RestingConstraints::row_name(Eigen::Index row) const {
   std::string name;
   for (const Joint& joint : joints_) {
-    if (at(joint.row) <= row) name = assembly_->system().name(joint.id);
+    if (eigen_index(joint.row) <= row) name = assembly_->system().name(joint.id);
   }
   for (const Support& support : supports_) {
-    if (at(support.row) <= row) name = this->name(support);
+    if (eigen_index(support.row) <= row) name = this->name(support);
   }
   return name;
 }
@@ -118,7 +116,7 @@ void RestingConstraints::update(const StateView& state, const Evaluation& evalua
     for (Index i = 0; i < kind.rows(); ++i) {
       row.setZero();
       joint_rows_[joint.row + i].add_transposed(1.0, row.data());
-      take(at(joint.row + i), joint_rows_[joint.row + i].gap);
+      take(eigen_index(joint.row + i), joint_rows_[joint.row + i].gap);
     }
   }
   for (Support& support : supports_) {
@@ -126,7 +124,8 @@ void RestingConstraints::update(const StateView& state, const Evaluation& evalua
     for (int i = 0; i < support.rows; ++i) {
       row.setZero();
       support.at.add_transposed(i, 1.0, row.data());
-      take(at(support.row) + i, i == 0 ? support.at.gap : support.slid[static_cast<std::size_t>(i - 1)]);
+      take(eigen_index(support.row) + i,
+           i == 0 ? support.at.gap : support.slid[static_cast<std::size_t>(i - 1)]);
     }
   }
 }
@@ -167,7 +166,7 @@ void RestingConstraints::add_forces(Index body, const JointView& view, const Eva
     std::copy_n(joint_rows_.begin() + joint.row, kind.rows(), rows.begin());
     kind.evaluate(view, joint.slot, rows.data());
     for (Index row = 0; row < kind.rows(); ++row) {
-      rows[row].add_transposed(multipliers[at(joint.row + row)], forces);
+      rows[row].add_transposed(multipliers[eigen_index(joint.row + row)], forces);
     }
   }
   Constraint contact;
@@ -175,7 +174,7 @@ void RestingConstraints::add_forces(Index body, const JointView& view, const Eva
     const Support& support = supports_[j];
     detector_.contact(support.pair, view.state, evaluation, places_, contact);
     for (int row = 0; row < support.rows; ++row) {
-      contact.add_transposed(row, multipliers[at(support.row) + row], forces);
+      contact.add_transposed(row, multipliers[eigen_index(support.row) + row], forces);
     }
   }
 }

@@ -18,6 +18,9 @@
 
 namespace carom {
 
+/// A place in an array, as Eigen counts.
+[[nodiscard]] inline Eigen::Index eigen_index(Index i) { return static_cast<Eigen::Index>(i); }
+
 /// Rows are joints first, then supports, each divided by its norm. Displacements are in lengths: coordinate i
 /// of the velocities is multiplied by lengths[i].
 class RestingConstraints {

@@ -16,8 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Eigen::Index at(Index i) { return static_cast<Eigen::Index>(i); }
-
 SolverError failure(const State& state, const std::string& message, double residual,
                     std::vector<std::string> parts) {
   SolverFailure what;
@@ -55,7 +53,7 @@ Evaluation evaluation_at(const Assembly& assembly, const State& state) {
 
 VectorXd length_scales(const Assembly& assembly) {
   const std::vector<double> lengths = assembly.length_scales();
-  return Eigen::Map<const VectorXd>(lengths.data(), at(static_cast<Index>(lengths.size())));
+  return Eigen::Map<const VectorXd>(lengths.data(), eigen_index(static_cast<Index>(lengths.size())));
 }
 
 }  // namespace
@@ -76,7 +74,7 @@ std::string RestingModel::body_name(Eigen::Index velocity) const {
   const Layout& layout = *assembly_->layout();
   Index body = 0;
   for (Index i = 0; i < layout.bodies().size(); ++i) {
-    if (at(layout.bodies()[i].v) <= velocity) body = i;
+    if (eigen_index(layout.bodies()[i].v) <= velocity) body = i;
   }
   return assembly_->system().name(layout.id(body));
 }
@@ -158,7 +156,7 @@ void RestingModel::check_supports(double allowed) {
       worst = &support;
   }
   if (worst == nullptr) return;
-  const Eigen::Index row = at(worst->row);
+  const Eigen::Index row = eigen_index(worst->row);
   const double normal = multiplier(row);
   double along = 0.0;
   for (int i = 1; i < worst->rows; ++i) along = std::hypot(along, multiplier(row + i));
@@ -183,7 +181,7 @@ void RestingModel::check_open_contacts(double tolerance) const {
 JointReaction RestingModel::reaction(const RestingConstraints::Joint& joint) const {
   const JointKind& kind = *assembly_->joint_kinds()[joint.kind];
   std::vector<double> multipliers(kind.rows());
-  for (Index i = 0; i < kind.rows(); ++i) multipliers[i] = multiplier(at(joint.row + i));
+  for (Index i = 0; i < kind.rows(); ++i) multipliers[i] = multiplier(eigen_index(joint.row + i));
   return kind.reaction({state_.view(), evaluation_.rotation.data()}, joint.slot, multipliers.data());
 }
 

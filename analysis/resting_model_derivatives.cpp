@@ -17,8 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Eigen::Index at(Index i) { return static_cast<Eigen::Index>(i); }
-
 /// df/dh at 0 of a vector: central differences with halved steps, extrapolated (Ridders' table). The entry
 /// that differs least from its neighbours is taken: near 1e-13 of the size of f wherever f is smooth over
 /// some step of the table.
@@ -82,8 +80,8 @@ void RestingModel::add_load_derivatives(MatrixXd& by_position, MatrixXd& by_velo
     }
   }
   for (const LoadDerivative& entry : entries) {
-    by_position(at(entry.row), at(entry.column)) += entry.by_position;
-    by_velocity(at(entry.row), at(entry.column)) += entry.by_velocity;
+    by_position(eigen_index(entry.row), eigen_index(entry.column)) += entry.by_position;
+    by_velocity(eigen_index(entry.row), eigen_index(entry.column)) += entry.by_velocity;
   }
 }
 
@@ -118,7 +116,7 @@ void RestingModel::add_constraint_derivatives(MatrixXd& by_position) const {
           },
           column);
       delta[i] = 0.0;
-      by_position.col(at(slot.v + i)) += column;
+      by_position.col(eigen_index(slot.v + i)) += column;
     }
     stand();
   }
@@ -135,7 +133,7 @@ MatrixXd RestingModel::mass() const {
       kind.apply_mass({slot.slot, slot.slot + 1}, unit.data(), image.data());
       unit[column] = 0.0;
       for (Index row = 0; row < slot.v_size; ++row) {
-        const Eigen::Index r = at(slot.v + row), c = at(slot.v + column);
+        const Eigen::Index r = eigen_index(slot.v + row), c = eigen_index(slot.v + column);
         mass(r, c) = image[row] / (lengths_[r] * lengths_[c]);
       }
     }

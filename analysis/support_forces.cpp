@@ -13,14 +13,12 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Eigen::Index at(Index i) { return static_cast<Eigen::Index>(i); }
-
 }  // namespace
 
 double outside_cone(const RestingConstraints& constraints, const RestingConstraints::Support& support,
                     const VectorXd& l) {
   const VectorXd& norms = constraints.norms();
-  const Eigen::Index row = at(support.row);
+  const Eigen::Index row = eigen_index(support.row);
   const double normal = l[row] / norms[row];
   double along = 0.0;
   for (int i = 1; i < support.rows; ++i) along = std::hypot(along, l[row + i] / norms[row + i]);
@@ -42,7 +40,7 @@ VectorXd shared_within_cones(const RestingConstraints& constraints, const Vector
   double scale = l.lpNorm<Eigen::Infinity>();
   for (int turn = 0; turn < most_turns; ++turn) {
     for (const RestingConstraints::Support& support : constraints.supports()) {
-      const Eigen::Index row = at(support.row);
+      const Eigen::Index row = eigen_index(support.row);
       const double mu = support.friction();
       auto along = l.segment(row + 1, support.rows - 1);
       const double normal = l[row], tangential = along.norm();

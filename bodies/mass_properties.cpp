@@ -51,7 +51,7 @@ MassProperties<2> around_origin(std::string_view function, double mass, double g
 }
 
 /// a x b to within two roundings: the fused operations keep what the difference of products would cancel.
-double cross(const Vec<2>& a, const Vec<2>& b) {
+double exact_cross(const Vec<2>& a, const Vec<2>& b) {
   const double product = a[1] * b[0];
   const double error = std::fma(-a[1], b[0], product);
   return std::fma(a[0], b[1], -product) + error;
@@ -60,8 +60,8 @@ double cross(const Vec<2>& a, const Vec<2>& b) {
 /// True if the segments ab and cd cross in their interiors.
 bool segments_cross(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
   const auto apart = [](const Vec<2>& p, const Vec<2>& q, const Vec<2>& r, const Vec<2>& s) {
-    const double left = cross(q - p, r - p);
-    const double right = cross(q - p, s - p);
+    const double left = exact_cross(q - p, r - p);
+    const double right = exact_cross(q - p, s - p);
     return (left > 0.0 && right < 0.0) || (left < 0.0 && right > 0.0);
   };
   return apart(a, b, c, d) && apart(c, d, a, b);
@@ -132,7 +132,7 @@ MassProperties<2> polygon(double mass, const std::vector<Vec<2>>& vertices) {
   double doubled_area = 0.0;
   Vec<2> centre = Vec<2>::Zero();
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    const double doubled = cross(points[i], points[i + 1]);
+    const double doubled = exact_cross(points[i], points[i + 1]);
     doubled_area += doubled;
     centre += doubled * (points[i] + points[i + 1]) / 3.0;
   }
@@ -151,7 +151,7 @@ MassProperties<2> polygon(double mass, const std::vector<Vec<2>>& vertices) {
     const Vec<2>& b = points[i + 1];
     const double own = (a.squaredNorm() + b.squaredNorm() + (b - a).squaredNorm()) / 36.0;
     const double away = ((a + b) / 3.0 - centre).squaredNorm();
-    gyration_squared += cross(a, b) / doubled_area * (own + away);
+    gyration_squared += exact_cross(a, b) / doubled_area * (own + away);
   }
   MassProperties<2> properties = around_origin("polygon", mass, gyration_squared);
   properties.centre = vertices[0] + centre;

@@ -7,6 +7,8 @@
 /// Coordinates of a body begin with the position of its centre of mass (D numbers), its velocities with the
 /// velocity of the centre of mass; a body with an orientation appends orientation and spin.
 
+#include <carom/core/export.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -49,7 +51,9 @@ struct Space<2> {
     return {-spin[0] * r[1], spin[0] * r[0]};
   }
   /// Acceleration omega x (omega x r) of the end of the lever r.
-  static Vec<2> centripetal(const double* spin, const Vec<2>& r) { return -spin[0] * spin[0] * r; }
+  static Vec<2> centripetal(const double* spin, const Vec<2>& r) {
+    return {-spin[0] * spin[0] * r[0], -spin[0] * spin[0] * r[1]};
+  }
   /// Adds the torque r x f.
   static void add_torque(const Vec<2>& r, const Vec<2>& f, double* torque) {
     torque[0] += r[0] * f[1] - r[1] * f[0];
@@ -75,14 +79,7 @@ struct Space<3> {
 
   /// Two tangents of a contact that form a right-handed frame (t1, t2, n); the first lies along the axis
   /// least aligned with the normal.
-  static std::array<Vec<3>, 2> tangent_frame(const Vec<3>& n) {
-    int axis = 0;
-    n.cwiseAbs().minCoeff(&axis);
-    Vec<3> first = Vec<3>::Unit(axis) - n[axis] * n;
-    first.normalize();
-    return {first, Vec<3>(n[1] * first[2] - n[2] * first[1], n[2] * first[0] - n[0] * first[2],
-                          n[0] * first[1] - n[1] * first[0])};
-  }
+  CAROM_API static std::array<Vec<3>, 2> tangent_frame(const Vec<3>& n);
 };
 
 }  // namespace carom

@@ -118,6 +118,15 @@ bool System::has_orientation(BodyId id) const {
   return id != ground && bodies_.kind_of(id.serial).has_orientation();
 }
 
+bool System::contains(BodyId id) const { return id.token == token_ && bodies_.contains(id.serial); }
+bool System::contains(ElementId id) const { return id.token == token_ && forces_.contains(id.serial); }
+bool System::contains(JointId id) const { return id.token == token_ && joints_.contains(id.serial); }
+bool System::contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
+bool System::contains(ObstacleId id) const {
+  return id.token == token_ && ground_shapes_.contains(id.serial);
+}
+bool System::contains(MaterialId id) const { return id.token == token_ && id.serial < surfaces_.size(); }
+
 BodyId System::body_of(ShapeId shape) const {
   if (shape.token == token_) {
     if (const auto place = shapes_.place(shape.serial); place.slot != none)

@@ -123,18 +123,12 @@ public:
   [[nodiscard]] std::string given_name(BodyId id) const;
 
   /// True if the part is of this system and was not removed.
-  [[nodiscard]] bool contains(BodyId id) const { return id.token == token_ && bodies_.contains(id.serial); }
-  [[nodiscard]] bool contains(ElementId id) const {
-    return id.token == token_ && forces_.contains(id.serial);
-  }
-  [[nodiscard]] bool contains(JointId id) const { return id.token == token_ && joints_.contains(id.serial); }
-  [[nodiscard]] bool contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
-  [[nodiscard]] bool contains(ObstacleId id) const {
-    return id.token == token_ && ground_shapes_.contains(id.serial);
-  }
-  [[nodiscard]] bool contains(MaterialId id) const {
-    return id.token == token_ && id.serial < surfaces_.size();
-  }
+  [[nodiscard]] bool contains(BodyId id) const;
+  [[nodiscard]] bool contains(ElementId id) const;
+  [[nodiscard]] bool contains(JointId id) const;
+  [[nodiscard]] bool contains(ShapeId id) const;
+  [[nodiscard]] bool contains(ObstacleId id) const;
+  [[nodiscard]] bool contains(MaterialId id) const;
   /// The body that a shape is fixed to, or was until it was removed. Throws ModelError for a shape that was
   /// never in this system.
   [[nodiscard]] BodyId body_of(ShapeId shape) const;

@@ -26,7 +26,7 @@ root = Path(__file__).resolve().parent.parent
 def compile_command(build):
     """The command, with what finds headers."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        if Path(entry["file"]).parent == root / "core":
+        if f"{os.sep}carom.dir{os.sep}" in entry["command"]:
             words = shlex.split(entry["command"])
             kept = [word for i, word in enumerate(words)
                     if word.startswith(("-I", "-std=")) or "-isystem" in (word, words[i - 1])]

@@ -10,6 +10,7 @@ something is found in it, it is halved, down to single files. Only what is found
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -39,6 +40,13 @@ def flags_of(command):
         elif word not in ("-MD", "-Werror", "-Winvalid-pch"):
             result.append(word)
     return result
+
+
+def sources_of(file):
+    """What is compiled in it: itself, or the sources that a batch of the library includes."""
+    if file.parent.name != "Unity":
+        return [file]
+    return [Path(name).resolve() for name in re.findall(r'^#include "(.+)"$', file.read_text(), re.MULTILINE)]
 
 
 def tidy_together(files, flags, build):
@@ -76,12 +84,12 @@ def main():
 
     groups = {}  # by folder and flags
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        file = Path(entry["file"]).resolve()
-        folder = file.parent.relative_to(root) if file.is_relative_to(root) else Path()
-        if folder.parts[:1] not in [(name,) for name in FOLDERS] or (wanted and file not in wanted):
-            continue
-        flags = flags_of(entry["command"])
-        groups.setdefault((folder, *flags), (flags, []))[1].append(file)
+        for file in sources_of(Path(entry["file"]).resolve()):
+            folder = file.parent.relative_to(root) if file.is_relative_to(root) else Path()
+            if folder.parts[:1] not in [(name,) for name in FOLDERS] or (wanted and file not in wanted):
+                continue
+            flags = flags_of(entry["command"])
+            groups.setdefault((folder, *flags), (flags, []))[1].append(file)
     if wanted - {file for _, files in groups.values() for file in files}:
         sys.exit("tidy: not among the sources of the library in " + str(build))
 

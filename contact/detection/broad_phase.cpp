@@ -17,8 +17,6 @@ constexpr double fewest_calls = 3.0;
 // Boxes that left theirs are looked up one by one up to this part of all.
 constexpr Index part_late = 8;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Bounds of a coordinate with half of the margin on its side. Two that lie within the margin, by rounded
 // differences, have bounds that meet: each is out by more than the rounding of its part.
 double reach(double coordinate, double half) {
@@ -83,6 +81,7 @@ template <int D>
 void BroadPhase<D>::reset(std::span<const Index> owners) {
   wide_.clear(), since_.assign(owners.size(), 0), call_ = 0;
   // No box is inside these.
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Box<D> empty{Vec<D>::Constant(infinity), Vec<D>::Constant(-infinity)};
   for (Index i = 0; i < owners.size(); ++i) wide_.push_back({empty, i, owners[i]});
   late_.clear(), state_.assign(owners.size(), Place::left);

@@ -1,13 +1,12 @@
 #include <carom/contact/detection/contact_rows.h>
 
+#include <carom/contact/detection/pair_rows.h>
 #include <array>
 #include <cmath>
 
 namespace carom {
 
 namespace {
-
-Vec<2> planar_part(const std::array<double, 3>& numbers) { return {numbers[0], numbers[1]}; }
 
 /// Velocity of the feature's centre relative to the reference point of a shape on ground.
 Vec<2> relative_velocity(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion) {

@@ -25,7 +25,7 @@ namespace carom {
 namespace {
 
 /// The edge of an outline along which another one is separated most.
-struct Face {
+struct SeparatingEdge {
   OutlineEdge edge;
   double separation = -std::numeric_limits<double>::infinity();
 
@@ -67,8 +67,8 @@ private:
 };
 
 /// Looks at the edges of an outline, until one separates by more than is `enough`.
-Face widest_face(const ConvexOutline& of, const ConvexOutline& other, double enough) {
-  Face best;
+SeparatingEdge widest_face(const ConvexOutline& of, const ConvexOutline& other, double enough) {
+  SeparatingEdge best;
   if (of.size() < 2) return best;
   OutlineHeight height(other);
   for (Index i = 0; i < of.size(); ++i) {
@@ -84,9 +84,9 @@ Face widest_face(const ConvexOutline& of, const ConvexOutline& other, double eno
 
 /// Which of two faces along which outlines are separated equally comes first: that which looks up, or to the
 /// right, or lies there.
-bool comes_first(const Face& face, const Face& other) {
+bool comes_first(const SeparatingEdge& face, const SeparatingEdge& other) {
   if (face.separation != other.separation) return face.separation > other.separation;
-  const auto order = [](const Face& of) {
+  const auto order = [](const SeparatingEdge& of) {
     const Vec<2> normal = of.edge.normal();
     return std::array<double, 4>{normal[1], normal[0], of.edge.origin[1], of.edge.origin[0]};
   };
@@ -106,9 +106,9 @@ bool coincide(const Vec<2>& one, const Vec<2>& other, double size) {
 int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double margin,
                        std::array<GapPoint, 2>& out) {
   const double enough = margin + (a.radius + b.radius);
-  const Face face_a = widest_face(a, b, enough);
+  const SeparatingEdge face_a = widest_face(a, b, enough);
   if (face_a.separation > enough) return 0;
-  const Face face_b = widest_face(b, a, enough);
+  const SeparatingEdge face_b = widest_face(b, a, enough);
   if (face_b.separation > enough) return 0;
   if (!face_a.exists() && !face_b.exists()) {  // all edges without length
     out[0] = gap_of_vertices(a, 0, b, 0);

@@ -45,11 +45,10 @@ void check_faces(const std::vector<Vec<2>>& vertices, bool is_closed, const Part
   }
 }
 
-double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
-
 /// True if two segments have a point in common.
 bool meet(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
-  const auto parts = [](const Vec<2>& from, const Vec<2>& to, const Vec<2>& one, const Vec<2>& other) {
+  const auto cross = [](const Vec<2>& u, const Vec<2>& v) { return u[0] * v[1] - u[1] * v[0]; };
+  const auto parts = [&cross](const Vec<2>& from, const Vec<2>& to, const Vec<2>& one, const Vec<2>& other) {
     const double first = cross(to - from, one - from), second = cross(to - from, other - from);
     return (first > 0.0 && second > 0.0) || (first < 0.0 && second < 0.0);
   };

@@ -57,8 +57,6 @@ double* write_columns(const PairSide& side, double sign, const Vec<2>& direction
   return row + side.columns;
 }
 
-Vec<2> planar_part(const std::array<double, 3>& numbers) { return {numbers[0], numbers[1]}; }
-
 }  // namespace
 
 PairSide PairSide::of_body(const BodySlot& slot, Index place, double radius, const StateView& state) {

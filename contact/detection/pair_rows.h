@@ -17,6 +17,8 @@
 #include <carom/core/space.h>
 #include <carom/core/state.h>
 
+#include <array>
+
 namespace carom {
 
 /// One side of a contact: how it moves, and which velocities move it.
@@ -57,5 +59,10 @@ CAROM_API void add_motion_after(const GapPoint& at, const GroundMotion& now, con
 
 /// Point at which both sides touch: midway between their surfaces [m].
 [[nodiscard]] inline Vec<2> meeting_point(const GapPoint& at) { return 0.5 * (at.point_a + at.point_b); }
+
+/// The first two of three numbers.
+[[nodiscard]] inline Vec<2> planar_part(const std::array<double, 3>& numbers) {
+  return {numbers[0], numbers[1]};
+}
 
 }  // namespace carom

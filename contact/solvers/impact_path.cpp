@@ -10,13 +10,13 @@ namespace carom {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// A stretch of constant ratio k = dP_t/dp.
 struct Stretch {
   double ratio = 0.0;
   double normal_rate = 0.0, tangential_rate = 0.0;  // of gamma over p
-  double length = infinity;                         // to gamma_t = 0
+  double length = endless;                          // to gamma_t = 0
   bool sticks = false;
 };
 
@@ -37,15 +37,15 @@ Stretch stretch_from(const ImpactPathInput& at, double tangential) {
 }
 
 /// Impulse after which gamma_n = 0 at a rate; infinite if never.
-double length_to_rest(double normal, double rate) { return rate > 0.0 ? -normal / rate : infinity; }
+double length_to_rest(double normal, double rate) { return rate > 0.0 ? -normal / rate : endless; }
 
 /// Impulse after which the work of expansion from gamma_n is `left` more. The root of
 /// rate p^2/2 + normal p = left that is not negative.
 double length_of_work(double normal, double rate, double left) {
   const double root = normal * normal + 2.0 * rate * left;
-  if (root < 0.0) return infinity;
+  if (root < 0.0) return endless;
   const double sum = normal + std::sqrt(root);
-  return sum > 0.0 ? 2.0 * left / sum : (left > 0.0 ? infinity : 0.0);
+  return sum > 0.0 ? 2.0 * left / sum : (left > 0.0 ? endless : 0.0);
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ std::optional<ImpactPathEnd> follow_impact(const ImpactPathInput& contact) {
                                      : length_of_work(at.normal, along.normal_rate, left);
     const bool ends = to_end <= along.length;
     const double length = ends ? to_end : along.length;
-    if (!(length < infinity)) return std::nullopt;
+    if (!(length < endless)) return std::nullopt;
     const double normal = ends && compresses ? 0.0 : at.normal + along.normal_rate * length;
     (compresses ? compression : expansion) += 0.5 * length * (at.normal + normal);
     at.normal_impulse += length;

@@ -13,7 +13,7 @@ namespace carom {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 // Impulses and velocities below this part of the largest are rounding.
 constexpr double rounding = 1e-13;
 // Steps to the scale of expansion; regula falsi with halved weights gains a digit or more with each.
@@ -129,7 +129,7 @@ void ImpactSolver::set_expansion(const ContactProblem& problem, std::span<const 
     if (set.kind == SetKind::half_line && least > 0.0) {
       set.kind = SetKind::interval;
       set.lower = least;
-      set.upper = infinity;
+      set.upper = unbounded;
     } else if (set.kind == SetKind::interval) {
       set.lower = std::min(set.lower - compression_[i], 0.0);
       set.upper = std::max(set.upper - compression_[i], 0.0);
@@ -202,7 +202,7 @@ double ImpactSolver::work_of_expansion() const {
   for (const RowGroup& group : phase_.groups()) {
     const auto row = static_cast<std::size_t>(group.first);
     if (compression_[row] <= 0.0 && expansion_[row] <= 0.0) continue;
-    if (phase_.sets()[row].kind == SetKind::interval && phase_.sets()[row].upper < infinity) continue;
+    if (phase_.sets()[row].kind == SetKind::interval && phase_.sets()[row].upper < unbounded) continue;
     work += 0.5 * expansion_[row] * (compressed_[row] + expanded_[row]);
   }
   return work;

@@ -9,12 +9,7 @@
 
 namespace carom {
 
-namespace {
-
-// A residual below which nothing is left to gain.
-constexpr double round_off = 1e-16;
-
-}  // namespace
+namespace {}  // namespace
 
 void LargeProblemSolver::set_budget(const SweepBudget& budget) {
   if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
@@ -51,7 +46,7 @@ void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double>
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < steps; ++step) {
     const double found = polish_.improve(dense_, impulse, 1).value;
-    if (found <= round_off || !(found <= 0.5 * before)) return;  // more steps only move noise
+    if (found <= NewtonPolish::round_off || !(found <= 0.5 * before)) return;  // more steps only move noise
     before = found;
   }
 }
@@ -75,7 +70,7 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
     found = judge(problem, impulse, xi);
   }
   const bool is_refused = judged(found.value) == Outcome::not_solved;
-  if (is_small ? !(found.value <= round_off) : is_refused && contacts <= most_polished) {
+  if (is_small ? !(found.value <= NewtonPolish::round_off) : is_refused && contacts <= most_polished) {
     polish(problem, impulse);
     found = judge(problem, impulse, xi);
   }

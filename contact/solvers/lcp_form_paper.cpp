@@ -11,7 +11,7 @@ namespace carom {
 namespace {
 
 // a b - c d with an error of two roundings of the result.
-double difference_of_products(double a, double b, double c, double d) {
+double fused_difference(double a, double b, double c, double d) {
   const double cd = c * d;
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
@@ -128,7 +128,7 @@ void PaperForm::fill_normal_rows(const ContactProblem& problem, Lcp& lcp) {
       if (t == 1) {
         // The paper's first entry, (1/m2 - m1 / Ibar^2), cancels badly as printed; this does not.
         const std::size_t e = eliminated_[0];
-        entry = difference_of_products(entry, w(e, e), w(at, e), w(e, other)) / w(e, e);
+        entry = fused_difference(entry, w(e, e), w(at, e), w(e, other)) / w(e, e);
       } else {
         for (std::size_t k = 0; k < t; ++k) entry -= w(at, eliminated_[k]) * transfer_[k * n + j];
       }

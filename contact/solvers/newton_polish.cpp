@@ -14,9 +14,6 @@ namespace {
 // Below this pivot ratio a direction of the Newton system is left alone: impulses that are not unique.
 constexpr double rank_tolerance = 1e-12;
 
-// A residual at rounding: further steps only move noise.
-constexpr double round_off = 1e-16;
-
 double group_rho(const ContactProblem& problem, const RowGroup& group) {
   double trace = 0.0;
   for (int i = group.first; i < group.first + group.size; ++i) trace += problem.w(i, i);

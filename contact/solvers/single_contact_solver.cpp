@@ -14,7 +14,7 @@ namespace {
 // Coupling and anisotropy below this part of W count as rounding in the closed form of a sphere.
 constexpr double decoupled_threshold = 8.0 * std::numeric_limits<double>::epsilon();
 
-constexpr SolverAnswer not_applicable{Outcome::not_solved, false, 0, "not applicable"};
+constexpr SolverAnswer does_not_apply{Outcome::not_solved, false, 0, "not applicable"};
 
 SolverAnswer solve_planar(const ContactProblem& problem, std::span<double> impulse) {
   const auto b = problem.vector();
@@ -50,7 +50,7 @@ SolverAnswer solve_decoupled_disc(const ContactProblem& problem, std::span<doubl
   const double anisotropy = std::max(std::abs(problem.w(1, 2)), std::abs(problem.w(1, 1) - problem.w(2, 2)));
   if (!(w_nn > 0.0 && w_tt > 0.0) || coupling > decoupled_threshold * std::min(w_nn, w_tt) ||
       anisotropy > decoupled_threshold * w_tt) {
-    return not_applicable;
+    return does_not_apply;
   }
   const double normal = std::max(-b[0] / w_nn, 0.0);
   const double wanted = std::hypot(b[1], b[2]) / w_tt;
@@ -68,18 +68,18 @@ SolverAnswer solve_decoupled_disc(const ContactProblem& problem, std::span<doubl
 }  // namespace
 
 SolverAnswer SingleContactSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
-  if (problem.groups().size() != 1) return not_applicable;
+  if (problem.groups().size() != 1) return does_not_apply;
   switch (problem.rows()) {
     case 1:
       return solve_lone_row(problem, impulse);
     case 2:
-      return problem.sets()[0].kind == SetKind::half_line ? solve_planar(problem, impulse) : not_applicable;
+      return problem.sets()[0].kind == SetKind::half_line ? solve_planar(problem, impulse) : does_not_apply;
     case 3:
       return problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_disc
                  ? solve_decoupled_disc(problem, impulse)
-                 : not_applicable;
+                 : does_not_apply;
     default:
-      return not_applicable;
+      return does_not_apply;
   }
 }
 

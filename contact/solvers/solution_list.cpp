@@ -15,7 +15,7 @@ namespace carom {
 namespace {
 
 // Pivots below this part of the largest make the system of a set of modes singular.
-constexpr double rank_tolerance = 1e-11;
+constexpr double singular_part = 1e-11;
 
 double group_trace(const ContactProblem& problem, const RowGroup& group) {
   double sum = 0.0;
@@ -150,7 +150,7 @@ void SolutionList::visit(const ContactProblem& problem, std::span<const std::siz
   }
   unknown.assign(size.unknowns, 0.0);
   faces.write_equations(problem, choice, rho_, work_->system, work_->rhs);
-  work_->qr.factor(work_->system, size.equations, size.unknowns, rank_tolerance);
+  work_->qr.factor(work_->system, size.equations, size.unknowns, singular_part);
   if (rays) {
     if (work_->qr.rank() + 1 != size.unknowns) return;
     work_->qr.null_vector(0, unknown);

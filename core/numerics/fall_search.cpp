@@ -2,15 +2,14 @@
 
 #include <carom/core/numerics/fall_search.h>
 
+#include <carom/core/numerics/never.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 // Error of the quintic over its sixth derivative: 1/(6! 2^6).
 constexpr double of_sixth = 1.0 / 46080.0;

@@ -2,6 +2,8 @@
 
 #include <carom/core/numerics/step_polynomial.h>
 
+#include <carom/core/numerics/never.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,6 @@
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 // Halvings after which two roots count as one that only touches.
 constexpr int most_halvings = 30;

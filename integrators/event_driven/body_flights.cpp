@@ -1,5 +1,6 @@
 // Problem: where can the bodies of a group be before its horizon?
 
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/body_flights.h>
 #include <carom/integrators/event_driven/joinable_group.h>
 
@@ -10,8 +11,6 @@
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 // Rounding of places, relative to their size: volumes are larger by it.
 constexpr double place_rounding = 64.0 * std::numeric_limits<double>::epsilon();

@@ -1,6 +1,7 @@
 // Problem: no event of a step is missed, and none is made of rounding.
 
 #include <carom/core/discontinuity.h>
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/event_detector.h>
 #include <carom/integrators/event_driven/event_location.h>
 #include <carom/integrators/event_driven/path_check.h>
@@ -13,9 +14,6 @@
 namespace carom {
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// The first discontinuity after a time; infinity if there is none.
 double next_discontinuity(const std::vector<Discontinuity>& all, double time) {
@@ -91,7 +89,8 @@ Event EventDetector::step(Flow& flow, double time, std::span<const double> y, do
     }
     if (repeat_shorter(step, event, time, y)) continue;
     const bool at_discontinuity =
-        until < never && flow.end() >= discontinuity - 2.0 * epsilon * std::abs(discontinuity);
+        until < never &&
+        flow.end() >= discontinuity - 2.0 * std::numeric_limits<double>::epsilon() * std::abs(discontinuity);
     if (event.guard == Guard::nothing && at_discontinuity) return {discontinuity, Guard::discontinuity, 0};
     return event;
   }

@@ -11,8 +11,6 @@ namespace carom {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 /// Guard of a predicted event where a step ended.
 struct Remainder {
   double value, rate, noise;
@@ -121,7 +119,8 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     }
     if (rest.has_rate && rest.value > 0.0 && rest.rate >= 0.0) return {time, Guard::restart, 0};
     at.take(time, rest.value, rest.value > 0.0 || opens);
-    if (at.high - at.low <= 2.0 * epsilon * std::max(1.0, std::abs(at.high))) break;
+    if (at.high - at.low <= 2.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(at.high)))
+      break;
     time = next_time(at, time, rest, opens || i % 8 == 7);
   }
   // From large to large of the other sign: no zero of the forces but a pole.

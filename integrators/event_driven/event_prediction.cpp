@@ -2,17 +2,15 @@
 // sign first?
 
 #include <carom/core/numerics/fall_search.h>
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/event_prediction.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Time before which an event must be to come before one found.
 double until(const Event& found) { return found.guard == Guard::nothing ? never : found.time; }

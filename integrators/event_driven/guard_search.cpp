@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/guard_search.h>
 
 #include <carom/core/numerics/fall_search.h>
+#include <carom/core/numerics/never.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 QuantityLook quantity_of(const GuardSample& sample, std::size_t guard, double sign) {
   const GuardMotion& at = sample.guards[guard];

@@ -1,5 +1,6 @@
 // Problem: no meeting of two groups is missed, although each has its own steps.
 
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/joinable_group.h>
 #include <carom/integrators/event_driven/meeting_search.h>
 
@@ -11,8 +12,6 @@
 namespace carom {
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Two bodies that fly freely, as they do between events; centres only.
 class FreePath final : public PairPath {

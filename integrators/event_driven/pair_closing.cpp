@@ -2,11 +2,11 @@
 
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/core/numerics/fall_search.h>
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/pair_closing.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 
@@ -55,7 +55,6 @@ private:
     return out;
   }
   [[nodiscard]] double between(const FeatureLook& from, const FeatureLook& to, int depth) {
-    constexpr double never = std::numeric_limits<double>::infinity();
     constexpr int deepest = 30;
     const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
     if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;

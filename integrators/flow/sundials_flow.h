@@ -6,11 +6,17 @@
 #include <carom/integrators/flow/flow.h>
 #include <carom/integrators/flow/sundials_link.h>
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace carom {
+
+/// Stands for no stop time; 6.4 cannot clear one.
+inline constexpr double no_stop_time = std::numeric_limits<double>::max();
+/// Reductions of a first step that was far too long; the default of 7 is too few.
+inline constexpr int error_test_failures = 25;
 
 /// A flow whose steps an integrator of SUNDIALS makes.
 class SundialsFlow : public Flow {

@@ -8,17 +8,12 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 namespace carom {
 
 namespace {
 
-// Stands for no stop time; 6.4 cannot clear one.
-constexpr double never = std::numeric_limits<double>::max();
-// Reductions of a first step that was far too long; the default of 7 is too few.
-constexpr int error_test_failures = 25;
 // CVODE aims at errors of a sixth of what is allowed. Those of BDF of an odd order change the amplitude of
 // what swings, by the same sign in every step, so that they add up in the energy: faster than a tenth of the
 // tolerance a step, which the other methods stay below. This part costs a quarter more steps (order 5).
@@ -94,7 +89,7 @@ int MultistepFlow::step(double longest, double& reached) {
   // that is not reached would cut the next step too; it is set only where it will be, as far as that is
   // known.
   demand(CVodeSetMaxStep(memory_, longest));
-  demand(CVodeSetStopTime(memory_, largest_next_ > longest ? begin_ + longest : never));
+  demand(CVodeSetStopTime(memory_, largest_next_ > longest ? begin_ + longest : no_stop_time));
   const int flag = CVode(memory_, horizon(longest), end_vector_.get(), &reached, CV_ONE_STEP);
   if (flag < 0) return flag;
   restart_ = false;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 
@@ -16,14 +15,10 @@ namespace {
 // Dormand and Prince: the last evaluation of a step is the first of the next. Named, since what SUNDIALS
 // takes for order 5 by itself has changed between its versions.
 constexpr auto table = ARKODE_DORMAND_PRINCE_7_4_5;
-// Stands for no stop time; 6.4 cannot clear one.
-constexpr double never = std::numeric_limits<double>::max();
 // A step may be longer than the one before by this factor; the step after one that was guessed, which may be
 // far too short, by the other. Those of ARKODE, which takes the second after the first step it ever makes, of
 // whatever motion.
 constexpr double growth = 25.0, growth_from_guess = 1e4;
-// Reductions of a first step that was far too long; the default of 7 is too few.
-constexpr int error_test_failures = 25;
 
 // How long the next step is to be by the errors of this and the step before: the PI controller that ARKODE
 // has for explicit methods, but with a memory that can be handed on.
@@ -251,7 +246,7 @@ int RungeKuttaFlow::step(double longest, double& reached) {
   // A stop time that is not reached would cut the step after this one too, so it is set only where it will
   // be. So cut, a first step is not also to be limited.
   stepper_.longest_step(cut ? wanted : longest);
-  stepper_.stop_at(cut ? begin_ + longest : never);
+  stepper_.stop_at(cut ? begin_ + longest : no_stop_time);
   int flag = stepper_.step(horizon(longest), end_vector_.get(), reached);
   // ERKStep does not try a shorter step where a stage meets rates that are not finite. Each of ours ends
   // before the place where the last one did.
@@ -262,7 +257,7 @@ int RungeKuttaFlow::step(double longest, double& reached) {
     stepper_.start(begin_, begin_vector_.get(), guessed);
     stepper_.first_step(std::min(shorter, longest));
     stepper_.longest_step(longest);
-    stepper_.stop_at(never);
+    stepper_.stop_at(no_stop_time);
     flag = stepper_.step(horizon(longest), end_vector_.get(), reached);
   }
   if (flag < 0) return flag;

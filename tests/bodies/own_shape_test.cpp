@@ -83,7 +83,7 @@ TEST(OwnShape, LiesOnHalfPlanesAndOnOtherGround) {
     system.add(Gravity{{0.0, -gravity}});
     system.set_default_law(Surface{.friction = 0.5, .normal_restitution = 0.0});
     if (flat) system.add(HalfPlane{.normal = {0.0, 1.0}});
-    if (!flat) system.add(Block{.vertices = {{-1.0, -1.0}, {1.0, -1.0}, {1.0, 0.0}, {-1.0, 0.0}}});
+    if (!flat) system.add(planar::Block{.vertices = {{-1.0, -1.0}, {1.0, -1.0}, {1.0, 0.0}, {-1.0, 0.0}}});
     const double apothem = 0.1 * std::sqrt(0.75);
     const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, apothem + 0.05}});
     system.add(Nut{.body = body, .size = 0.1});

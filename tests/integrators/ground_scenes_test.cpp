@@ -56,7 +56,7 @@ void add_ground(System& system, bool moving) {
   Terrain down = stairs({-1.5, 0.5}, 4, 0.45, -0.3);
   system.add(down, "stairs");
   system.add(Peg{.centre = {0.9, 0.7}, .radius = 0.1}, "peg");
-  system.add(Block{.vertices = {{1.4, -0.3}, {1.9, 0.2}, {2.2, -0.3}}}, "block");
+  system.add(planar::Block{.vertices = {{1.4, -0.3}, {1.9, 0.2}, {2.2, -0.3}}}, "block");
   Wall paddle{.from = {-0.6, 1.6}, .to = {0.2, 1.6}, .radius = 0.04, .pivot = {-0.2, 1.6}};
   if (moving) {
     paddle.motion.angle = [](double t) { return 0.8 * std::sin(2.0 * t); };

@@ -84,8 +84,8 @@ private:
         add(Wall{.from = Vec<2>(0.05, 0.0), .to = far_right, .radius = 0.5 * thickness});
         break;
       case GroundForm::block:
-        add(Block{.vertices = {{-1.5, -0.5}, {1.5, -0.5}, {0.7, 0.4}, {-0.6, 0.5}},
-                  .radius = random_.below(2) * 0.05});
+        add(planar::Block{.vertices = {{-1.5, -0.5}, {1.5, -0.5}, {0.7, 0.4}, {-0.6, 0.5}},
+                          .radius = random_.below(2) * 0.05});
         break;
       case GroundForm::pegs:
         for (int i = -3; i <= 3; ++i) {

@@ -69,7 +69,7 @@ OwnedOutline disc(double x, double y, double radius) { return {{{x, y}}, radius}
 TEST(GroundPieces, SolidsAreTouchedAllAround) {
   System system;
   system.add(Wall{.from = {-1, 0}, .to = {1, 0}, .radius = 0.125}, law);
-  system.add(Block{.vertices = {{4, 0}, {4, 1}, {5, 1}, {5, 0}}}, law);
+  system.add(planar::Block{.vertices = {{4, 0}, {4, 1}, {5, 1}, {5, 0}}}, law);
   system.add(Peg{.centre = {0, 5}, .radius = 0.5}, law);
   const Ground ground(system);
   ASSERT_EQ(ground.pieces.size(), 3U);
@@ -269,7 +269,8 @@ TEST(GroundPieces, ImpossibleShapesAreRefused) {
                      "to is the same point as from");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}, .radius = -1}, law), "radius is -1 m");
   EXPECT_MODEL_ERROR(system.add(Wall{.from = {1, 1}, .to = {2, 1}}, law), "radius is nan m");
-  EXPECT_MODEL_ERROR(system.add(Block{.vertices = {{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}}, law), "not convex");
+  EXPECT_MODEL_ERROR(system.add(planar::Block{.vertices = {{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}}, law),
+                     "not convex");
   EXPECT_MODEL_ERROR(system.add(Peg{}, law), "peg #0", "radius is nan m");
   EXPECT_MODEL_ERROR(system.add(Peg{.radius = 1, .surface_speed = nan}, law), "surface_speed is nan m/s");
   EXPECT_MODEL_ERROR(system.add(Peg{.radius = 1, .pivot = {0, infinity}}, law), "pivot is inf m");

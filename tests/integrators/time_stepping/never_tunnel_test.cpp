@@ -66,7 +66,7 @@ TEST(NeverTunnel, BulletsAndAThinWall) {
 TEST(NeverTunnel, ABulletBetweenTwoWalls) {
   for (const double speed : speeds) {
     System system = bullet_before_wall(speed, 1.0);
-    system.add(Block{.vertices = {{-0.031, -1.0}, {-0.03, -1.0}, {-0.03, 1.0}, {-0.031, 1.0}}},
+    system.add(planar::Block{.vertices = {{-0.031, -1.0}, {-0.03, -1.0}, {-0.03, 1.0}, {-0.031, 1.0}}},
                Surface{.friction = 0.0, .normal_restitution = 1.0});
     Simulation simulation(system, safe);
     simulation.run_until(0.02);
@@ -197,7 +197,7 @@ TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
   system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
-  system.add(Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}}});
+  system.add(planar::Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}}});
   add_disc(system, 0.2, {0.0, 0.5}, {1.0, 0.0});
   add_disc(system, 0.2, {0.1, 1.1});
   Simulation with(system, safe),
