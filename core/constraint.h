@@ -77,32 +77,34 @@ struct Constraint {
     int columns = 0;    ///< its velocities
   };
 
-  // Numbers that every contact problem reads come first and close together.
-  ConstraintKey key;                                    ///< identity
+  // Numbers that the problem of a contact reads come first and close together: many contacts are read in
+  // turn.
   ConstraintType type = ConstraintType::contact;        ///< origin
   int rows = 0;                                         ///< of a contact 2 in the plane, 3 in space
   int bodies = 0;                                       ///< blocks in use
   std::array<Block, std::size_t{max_bodies}> blocks{};  ///< bodies whose velocities have columns
-  Index source = none;  ///< of a limit and of friction in a joint: its number in the detector
   /// The coefficient of friction that acts: law.friction_at() the sliding speed found, in time stepping
   /// law.sticking_friction() where it stuck in the step before.
   double friction = 0.0;
-  Surface law;       ///< coefficients
-  double gap = 0.0;  ///< negative where violated [m]
+  Surface law;  ///< coefficients
   /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
   /// with which it may still approach at its end [m/s]. Else 0.
   double allowed_approach = 0.0;
-  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
-                                ///< or impulse
   std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity{};  ///< of the moving ground shape where it is touched, along the rows [m/s]
   std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity_after{};  ///< likewise of the same place at the end of a time step; else the same as
                                  ///< surface_velocity [m/s]
-  std::array<double, static_cast<std::size_t>(max_rows)>
-      drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
   std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
       jacobian{};  ///< row by row, of columns() numbers each, block after block
+
+  ConstraintKey key;            ///< identity
+  double gap = 0.0;             ///< negative where violated [m]
+  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
+                                ///< or impulse
+  std::array<double, static_cast<std::size_t>(max_rows)>
+      drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
+  Index source = none;  ///< of a limit and of friction in a joint: its number in the detector
 
   /// True of friction in a joint and of what is like it: a row without a normal.
   [[nodiscard]] bool has_dry_friction() const { return type >= ConstraintType::joint_friction; }
