@@ -104,6 +104,7 @@ MotionPhase& LocatedMotion::add_phase(const At& at, double begin, double end) {
   phase.begin = begin;
   phase.end = end;
   phase.hit = hit_;
+  phase.turning_work = 0.0;
   read(at.trial.end.q, at.slot.q, at.slot.q_size, phase.q);
   read(at.trial.end.v, at.slot.v, at.slot.v_size, phase.v0);
   phase.constraints.clear();
