@@ -55,11 +55,23 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
   }
 }
 
+/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing.
+bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
+  constexpr double noise = 1e-12;  // of the velocities along a normal
+  if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
+  const double* const v = in.start.v.data();
+  return constraint.velocity(0, v) > noise * constraint.speed(0, v);
+}
+
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
                               std::vector<Constraint>& out) {
   const std::size_t first = out.size();
   const StateView start = in.start.view();
   detector_.find(components, query(in, trial), out);
+  if (parting_ == Parting::is_free) {
+    const auto parts = [&](const Constraint& found) { return is_left_out(in, found); };
+    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), parts), out.end());
+  }
   // Components with joints come alone.
   if (detector_.has_dry_friction() && components.size() == 1) {
     detector_.find_joint_friction(components.begin, start, trial.at_start, out);
@@ -84,7 +96,9 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
   out.swap(with_rolling_);
 }
 
-void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
+void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
+                           Parting parting) {
+  parting_ = parting;
   remember(in, in.last_step);
   constraints_.clear();
   if (detector_.bodies_touch()) return find_joining(in, batches, trial);
@@ -100,7 +114,15 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   single_.clear();
   for (const Range batch : batches) find_in(in, batch, trial, single_);
   const BodyContacts& bodies = detector_.bodies();
-  const std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  if (parting_ == Parting::is_free) {
+    std::erase_if(search_.touching, [&](const BodyTouch& touch) {
+      Constraint written;
+      bodies.write(touch, in.start.view(), written);
+      return is_left_out(in, written);
+    });
+    touching = search_.touching;
+  }
   if (touching.empty()) {
     constraints_.swap(single_);
     islands_.find(batches);

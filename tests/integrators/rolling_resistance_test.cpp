@@ -214,8 +214,6 @@ TEST(RollingResistance, ImpactLawsTakeItToo) {
 TEST(RollingResistance, RefusedWhereItIsNotKnown) {
   const DiscOnGround scene(0.0, 0.01, 1.0);
   EXPECT_THROWS(ModelError, Simulation(scene.system, EventDriven{}), "rolling_resistance", "event-driven");
-  EXPECT_THROWS(ModelError, Simulation(scene.system, TimeStepping{.impacts = ImpactTimes::located}),
-                "located", "rolling resistance");
 }
 
 }  // namespace
