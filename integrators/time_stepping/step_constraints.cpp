@@ -84,6 +84,16 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   if (resists_rolling(detector_)) add_rolling(first, out);
 }
 
+/// The ground that a body rolls on may turn.
+void StepConstraints::take_spin(Constraint& rolling) const {
+  if (rolling.key.b.owner != FeatureKey::Owner::obstacle) return;
+  const GroundShapes& shapes = detector_.pieces().shapes();
+  const Index shape = shapes.find(rolling.key.b.serial);
+  if (shape == none || !shapes.moves(shape)) return;
+  rolling.surface_velocity[0] = shapes.motion(shape, places_)->spin;
+  rolling.surface_velocity_after[0] = shapes.motion(shape, places_after_)->spin;
+}
+
 /// Rolling resistance behind each contact that has some, of the constraints from `first` on.
 void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& out) {
   with_rolling_.assign(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first));
@@ -91,6 +101,7 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
     with_rolling_.push_back(out[i]);
     if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
       with_rolling_.push_back(rolling_resistance(out[i]));
+      take_spin(with_rolling_.back());
     }
   }
   out.swap(with_rolling_);
