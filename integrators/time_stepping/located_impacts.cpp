@@ -15,6 +15,11 @@ bool follow_newton(const Detector& detector, const ImpactRules& rules) {
          !has_other_impact_law(detector) && !resists_rolling(detector);
 }
 
+/// True if a contact closes faster than a speed at the start of a step.
+bool hits(const StepInput& in, const Constraint& contact, double faster_than) {
+  return contact.normal_velocity(in.start.v.data()) < -faster_than;
+}
+
 }  // namespace
 
 LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detector,
@@ -111,13 +116,9 @@ void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact,
 void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, StepTrial& trial) {
   for (const Constraint& contact : island_.contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
-    if (!contact.turns() && !hits(in, contact)) continue;
+    if (!contact.turns() && !hits(in, contact, capture_speed_)) continue;
     take_up(in, contact.body(), trial);
   }
-}
-
-bool LocatedImpacts::hits(const StepInput& in, const Constraint& contact) const {
-  return contact.normal_velocity(in.start.v.data()) < -capture_speed_;
 }
 
 /// A body that shares a constraint with another keeps to the step of both.
@@ -132,8 +133,9 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
   if (in_use_ == motions_.size()) motions_.emplace_back();
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
-  const bool struck = std::any_of(island_.own.begin(), island_.own.end(),
-                                  [&](const Constraint& contact) { return hits(in, contact); });
+  const bool struck = std::any_of(island_.own.begin(), island_.own.end(), [&](const Constraint& contact) {
+    return hits(in, contact, capture_speed_);
+  });
   motions_[in_use_++].begin(body, island_.own, struck);
 }
 

@@ -78,7 +78,6 @@ private:
   [[nodiscard]] double change_by_correction(const StepInput& in, Index component, bool local,
                                             const LoadJumps& acted);
   void take_up(const StepInput& in, Index body, StepTrial& trial);
-  [[nodiscard]] bool hits(const StepInput& in, const Constraint& contact) const;
   [[nodiscard]] std::size_t place(Index body) const;
 
   const Assembly* assembly_;

@@ -165,11 +165,10 @@ bool LocatedMotion::fly_once(const At& at, MotionPhase& flight) {
 /// Brings the contacts of a flight to the directions halfway. What these make of the velocities at both ends,
 /// beyond what the directions there make of them, is taken for a motion of the ground.
 void LocatedMotion::turn(const At& at, MotionPhase& flight) {
-  constexpr double any_gap = std::numeric_limits<double>::infinity();
   const double* const v = at.trial.end.v.data();
   const auto find = [&](double share, std::vector<Constraint>& out) {
     sweep(at, flight, share);
-    observe(at, share, any_gap, false);
+    observe(at, share, std::numeric_limits<double>::infinity(), false);
     out.clear();
     take_closed(out);
   };

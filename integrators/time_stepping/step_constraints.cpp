@@ -18,8 +18,7 @@ constexpr double rounding = 1e-12;
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
-      capture_speed_(options.capture_speed),
-      slack_(options.impacts == ImpactTimes::located ? rounding : 0.0),
+      rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0},
       islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
@@ -32,7 +31,7 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
-  detector_.remember(in.companion.modes, std::max(in.step, last_step), slack_, lasting_);
+  detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : in.companion.modes) {
@@ -68,7 +67,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const std::size_t first = out.size();
   const StateView start = in.start.view();
   detector_.find(components, query(in, trial), out);
-  if (parting_ == Parting::is_free) {
+  if (rules_.parting == Parting::is_free) {
     const auto parts = [&](const Constraint& found) { return is_left_out(in, found); };
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), parts), out.end());
   }
@@ -80,7 +79,8 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   take_sticking(found);
   // Friction in joints comes last.
-  if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
+  if (found.back().has_dry_friction())
+    share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
   if (resists_rolling(detector_)) add_rolling(first, out);
 }
 
@@ -109,7 +109,7 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
                            Parting parting) {
-  parting_ = parting;
+  rules_.parting = parting;
   remember(in, in.last_step);
   constraints_.clear();
   if (detector_.bodies_touch()) return find_joining(in, batches, trial);
@@ -126,7 +126,7 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   for (const Range batch : batches) find_in(in, batch, trial, single_);
   const BodyContacts& bodies = detector_.bodies();
   std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
-  if (parting_ == Parting::is_free) {
+  if (rules_.parting == Parting::is_free) {
     std::erase_if(search_.touching, [&](const BodyTouch& touch) {
       Constraint written;
       bodies.write(touch, in.start.view(), written);

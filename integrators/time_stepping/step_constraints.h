@@ -60,9 +60,11 @@ private:
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
   Detector detector_;
-  double capture_speed_;
-  double slack_;                         // opening of lasting contacts that is none [m]
-  Parting parting_ = Parting::acts;      // in the last find()
+  struct {
+    double capture_speed;
+    double slack;                     // opening of lasting contacts that is none [m]
+    Parting parting = Parting::acts;  // in the last find()
+  } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
