@@ -7,10 +7,11 @@
 
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/contact_mode.h>
-#include <carom/contact/solvers/large_problem_solver.h>
+#include <carom/core/errors.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace carom {
@@ -68,22 +69,21 @@ void share_modes(std::span<const Constraint> constraints, std::span<const Contac
   }
 }
 
-// Ratio of masses above which sweeps would need as many sweeps, heavy bodies on light ones: few contacts are
-// left to exact solvers.
-constexpr double uneven_masses = 1e3;
+/// Rows up to which W is made in full: half a gigabyte, of which solvers need several times as much.
+constexpr int most_dense_rows = 8192;
 
-bool has_uneven_masses(const ResponseFactors& factors) {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (std::size_t slot = 0; slot < factors.slots(); ++slot) {
-    const double inverse = factors.inverse_mass[ResponseFactors::columns * slot];
-    if (inverse == 0.0) continue;  // immovable
-    least = std::min(least, inverse);
-    most = std::max(most, inverse);
-  }
-  return most > uneven_masses * least;
+void demand_room(std::size_t constraints, int rows) {
+  if (rows <= most_dense_rows) return;
+  constexpr double gigabyte = 1e9;
+  const double size = static_cast<double>(sizeof(double)) * rows * rows / gigabyte;
+  throw SolverError("more contacts than memory allows: " + std::to_string(constraints) +
+                        " constraints of one contact problem, whose " + std::to_string(rows) +
+                        " rows answer to each other (W in full would take " + to_text(size) +
+                        " GB); allowed: at most " + std::to_string(most_dense_rows) + " rows",
+                    {});
 }
 
-/// W in full after all: bodies do not answer for themselves, or sweeps would be of no use. The sets stay.
+/// W in full after all: bodies do not answer for themselves. The sets stay.
 /// \param sets scratch
 void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
   sets.assign(problem.sets().begin(), problem.sets().end());
@@ -164,6 +164,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   // A large W is not to be made before it is known whether anybody needs it.
   const bool many = !constraints.empty() && constraints.size() >= options_.factored_from;
   const bool factored = many && fit_factors(constraints);
+  if (!factored) demand_room(constraints.size(), rows);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
   restitution_.resize(count);
@@ -195,11 +196,10 @@ void IslandProblem::build_any(const double* velocity_before) {
 
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
-    const bool few = constraints_.size() <= LargeProblemSolver::most_exact;
-    if (delassus_.build_factors(directions_, response, problem_) &&
-        !(few && has_uneven_masses(problem_.factors()))) {
+    if (delassus_.build_factors(directions_, response, problem_)) {
       return problem_.group();
     }
+    demand_room(constraints_.size(), problem_.rows());
     make_dense(scratch_.sets, problem_);
   }
   delassus_.build(directions_, response);

@@ -46,7 +46,7 @@ class CAROM_API IslandProblem {
 public:
   explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
-  /// forgotten; respond() is to be called next.
+  /// forgotten; respond() is next. Both throw SolverError for more constraints than W in full has room for.
   void build(std::span<const Constraint> constraints, const double* velocity_before);
   /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for
   /// set_velocity().

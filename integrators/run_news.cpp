@@ -10,6 +10,32 @@ void write_findings(Log& log, std::span<const ModelFinding> findings) {
   }
 }
 
+namespace {
+
+/// Contacts whose answers are not those of the law: jams without restitution, and what sweeps have not
+/// finished.
+void write_doubtful(Log& log, const std::string& when, const StepReport& report, const Detector& detector) {
+  std::size_t jams = 0, capped = 0;
+  const ContactRecord *jam = nullptr, *worst = nullptr;
+  for (const ContactRecord& contact : report.contacts) {
+    if (contact.restitution_factor == 0.0 && jams++ == 0) jam = &contact;
+    if (contact.outcome != Outcome::accepted_at_cap) continue;
+    ++capped;
+    if (worst == nullptr || contact.residual > worst->residual) worst = &contact;
+  }
+  if (jams > 0) {
+    log.write(LogLevel::warning, when + std::to_string(jams) + " contacts jam, as that of " +
+                                     detector.name(jam->key) + "; solved with e = 0");
+  }
+  if (capped == 0) return;
+  log.write(LogLevel::warning, when + std::to_string(capped) +
+                                   " contacts have an answer accepted at the cap of " +
+                                   "sweeps, residual up to " + to_text(worst->residual) + " with that of " +
+                                   detector.name(worst->key) + "; if some of them jam it does not show");
+}
+
+}  // namespace
+
 void write_step_news(Log& log, const StepReport& report, const Detector& detector) {
   if (!log.enabled(LogLevel::warning)) return;
   const std::string when = "t = " + to_text(report.time) + " s: ";
@@ -17,6 +43,7 @@ void write_step_news(Log& log, const StepReport& report, const Detector& detecto
   if (impact_gain > 0.0) {
     log.write(LogLevel::warning, when + "impact adds " + to_text(impact_gain) + " J");
   }
+  write_doubtful(log, when, report, detector);
   for (const ContactRecord& contact : report.contacts) {
     if (contact.outcome != Outcome::several_solutions) continue;
     log.write(LogLevel::warning, when + "contact of " + detector.name(contact.key) +

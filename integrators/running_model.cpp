@@ -14,9 +14,7 @@ ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const Sto
   if (const auto* options = std::get_if<TimeStepping>(&mode)) {
     stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
     controller = std::make_unique<StepController>(assembly, *options);
-    if (options->overlaps.never_tunnel && assembly.layout()->dimension() == 2) {
-      parted = std::make_unique<PartedSteps>(assembly, stepper->detector());
-    }
+    if (PartedSteps::needed(assembly, *stepper)) parted = std::make_unique<PartedSteps>(assembly, *stepper);
   } else {
     driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
   }
@@ -25,15 +23,16 @@ ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const Sto
 void ModeMachines::advance(const Run& run, double limit) {
   State& state = run.state;
   Companion& companion = run.companion;
+  const auto make_step = [&](State& from, Companion& with, double step, double end, StepReport& report) {
+    parted ? parted->step(from, with, step, end, report) : stepper->step(from, with, step, end, report);
+  };
   if (controller && std::get<TimeStepping>(run.mode).control) {
-    controller->step(*stepper, state, companion, limit, run.report);
+    controller->step(make_step, state, companion, limit, run.report);
     return;
   }
   const auto advance_to = [&](double step, double end) {
-    if (parted) {
-      parted->step(*stepper, state, companion, step, end, run.report);
-    } else if (stepper) {
-      stepper->step(state, companion, step, end, run.report);
+    if (stepper) {
+      make_step(state, companion, step, end, run.report);
     } else {
       driver->advance(state, companion, end, run.report, run.events);
     }

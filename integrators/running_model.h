@@ -41,7 +41,7 @@ struct ModeMachines {
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< likewise
-  std::unique_ptr<PartedSteps> parted;         ///< null unless nothing may pass through anything
+  std::unique_ptr<PartedSteps> parted;         ///< null where no step has to be parted
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
 };
 

@@ -324,6 +324,8 @@ void Simulation::show_progress(bool on) { impl_->progress = on; }
 void Simulation::save(const std::string& path) const {
   impl_->guard.demand("save", CallGuard::Need::no_step);
   save_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
+  // Steps ahead of the state are not in the file: whoever loads it starts anew, and so does this run.
+  if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
 }
 
 void Simulation::load(const std::string& path) {

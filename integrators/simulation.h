@@ -130,12 +130,12 @@ public:
   /// Draws a progress bar during run_until() where the standard error is a terminal and the run is long.
   void show_progress(bool on);
 
-  /// Saves state and companion with a fingerprint of the model. Throws FileError.
+  /// Saves state and companion with a fingerprint of the model; an event-driven run restarts its integrators
+  /// then, so that it goes on as one that loads them. Throws FileError.
   void save(const std::string& path) const;
-  /// Loads what save() wrote; a time-stepping run then continues bit for bit, an event-driven one restarts
-  /// its integrators and continues within their tolerance. The periodic actions (every()) must be the same.
-  /// Throws FileError for a file that cannot be read or is of another model; the simulation is then
-  /// unchanged.
+  /// Loads what save() wrote; the run continues bit for bit like the one that was saved. The periodic actions
+  /// (every()) must be the same. Throws FileError for a file that cannot be read or is of another model; the
+  /// simulation is then unchanged.
   void load(const std::string& path);
 
 private:

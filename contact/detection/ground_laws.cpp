@@ -29,11 +29,6 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
                          std::string(to_string(law->impact_law)) + " and rolling_resistance " +
                          to_text(law->rolling_resistance) + " m; allowed in space: newton and 0");
       }
-      if (law->resists_rolling() && shapes.moves(shape)) {
-        const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};
-        throw ModelError("contact of " + contact_name(system, key) + ": rolling_resistance is " +
-                         to_text(law->rolling_resistance) + " m; allowed on a shape that moves: 0");
-      }
       if (!shapes.has_pieces(shape)) touched_.push_back(shape);
       laws_.push_back(*law);
       has_static_friction_ = has_static_friction_ || law->has_static_friction();

@@ -4,12 +4,33 @@
 
 #include <carom/contact/solvers/contact_mode.h>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 namespace carom {
 
 namespace {}  // namespace
+
+double LargeProblemSolver::mass_ratio(const ContactProblem& problem) {
+  const ResponseFactors& factors = problem.factors();
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (std::size_t slot = 0; slot < factors.slots(); ++slot) {
+    const double inverse = factors.inverse_mass[ResponseFactors::columns * slot];
+    if (inverse == 0.0) continue;  // immovable
+    least = std::min(least, inverse);
+    most = std::max(most, inverse);
+  }
+  return most > 0.0 ? most / least : 1.0;
+}
+
+/// Sweeps of a problem: conjugate gradients need as many as the square root of its condition, which grows
+/// with the ratio of masses that lie on each other.
+int LargeProblemSolver::sweeps_of(const ContactProblem& problem) const {
+  constexpr double most_times = 64.0;
+  const double times = std::clamp(std::sqrt(mass_ratio(problem) / uneven_masses), 1.0, most_times);
+  return static_cast<int>(std::min(times * budget_.sweeps, double{std::numeric_limits<int>::max() / 16}));
+}
 
 void LargeProblemSolver::set_budget(const SweepBudget& budget) {
   if (budget.sweeps < 0 || !(budget.residual > 0.0) || !(budget.accepted >= 0.0)) {
@@ -61,6 +82,7 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   Residual found = judge(problem, impulse, xi);
   if (!(found.value <= budget_.residual)) {
     SweepBudget budget = budget_;
+    budget.sweeps = sweeps_of(problem);
     // Sweeps over few contacts cost less than anything else: all that there are.
     if (is_small) budget.accepted = std::min(budget.accepted, budget.residual);
     sweeps_.set_budget(budget);

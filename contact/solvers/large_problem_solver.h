@@ -26,6 +26,12 @@ public:
   /// Contacts up to which an answer that must not be used is polished all the same: some 0.1 s.
   static constexpr std::size_t most_polished = 200;
 
+  /// Ratio of masses from which on heavy bodies on light ones need more sweeps than the budget has.
+  static constexpr double uneven_masses = 1e3;
+
+  /// Largest mass of a problem in factors over the smallest one; immovable bodies do not count.
+  [[nodiscard]] static double mass_ratio(const ContactProblem& problem);
+
   /// Budget of an answer. Throws std::invalid_argument unless sweeps >= 0, 0 < residual and 0 <=
   /// accepted.
   void set_budget(const SweepBudget& budget);
@@ -45,6 +51,7 @@ public:
   [[nodiscard]] NonlinearCgSolver& sweeps() { return sweeps_; }
 
 private:
+  [[nodiscard]] int sweeps_of(const ContactProblem& problem) const;
   [[nodiscard]] Residual judge(const ContactProblem& problem, std::span<const double> impulse,
                                std::span<double> xi);
   void polish(const ContactProblem& problem, std::span<double> impulse);

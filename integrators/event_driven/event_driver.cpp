@@ -143,6 +143,13 @@ void EventDriver::advance_groups(double to) {
     } else {
       groups_.for_each([&](ClockGroup& group) { group.advance(to, balance_); });
     }
+  } catch (const SolverError& error) {
+    started_ = false;
+    memory_.chain.reset_statistics();
+    if (std::string_view(error.what()).starts_with("event-driven")) throw;  // it says where
+    SolverFailure failure = error.failure();
+    failure.time = trial_.time;
+    throw SolverError("event-driven at t = " + to_text(trial_.time) + " s: " + error.what(), failure);
   } catch (...) {
     started_ = false;
     memory_.chain.reset_statistics();

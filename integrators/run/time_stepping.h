@@ -36,8 +36,8 @@ enum class ImpactTimes : std::uint8_t {
   /// section 4). Of first order across impacts.
   at_step_start,
   /// When the gap closes: a body flies there, is hit, and flies on, what it is coupled to follows within the
-  /// same implicit step. Of second order across isolated impacts. Bodies that joints bind, and components
-  /// that the linearly implicit iteration solves, are hit at the start of the next step all the same.
+  /// same implicit step; where bodies touch each other or joints bind them, the step ends there, and another
+  /// one begins with the impact. Of second order across isolated impacts (docs/two_modes.md).
   located
 };
 

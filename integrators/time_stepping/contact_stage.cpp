@@ -7,6 +7,12 @@
 
 namespace carom {
 
+SweepBudget budget_of(const TimeStepping& options) {
+  SweepBudget budget = options.contact_budget;
+  if (options.impact_rules.refuse_jams) budget.accepted = 0.0;
+  return budget;
+}
+
 ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options)
     : assembly_(&assembly),
       masses_(assembly),
@@ -19,7 +25,7 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
   }
   block_problems_.resize(most_blocks);
   chains_.resize(most_runs);
-  for (SolverChain& chain : chains_) chain.set_budget(options.contact_budget);
+  for (SolverChain& chain : chains_) chain.set_budget(budget_of(options));
 }
 
 IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {

@@ -18,6 +18,10 @@
 
 namespace carom {
 
+/// Budget of contact problems. Where jams are refused no answer is taken that sweeps have not finished:
+/// whether many contacts jam nobody can tell from it.
+[[nodiscard]] CAROM_API SweepBudget budget_of(const TimeStepping& options);
+
 /// Solves contact. Keeps memory, and statistics of its solvers.
 class CAROM_API ContactStage {
 public:

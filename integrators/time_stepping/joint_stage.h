@@ -129,6 +129,8 @@ public:
   /// \param assembly must outlive it
   explicit JointStages(const Assembly& assembly);
 
+  /// True if there are joints.
+  [[nodiscard]] bool any() const { return rows_ > 0; }
   /// Those of a component; null where there are none.
   [[nodiscard]] JointStage* of(Index component) const {
     return stages_.empty() ? nullptr : stages_[component].get();

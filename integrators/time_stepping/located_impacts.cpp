@@ -7,11 +7,26 @@
 
 namespace carom {
 
+namespace {
+
+/// True if all impacts are of Newton's law, each of all contacts that are closed, as those of LocatedMotion.
+bool follow_newton(const Detector& detector, const ImpactRules& rules) {
+  return rules.order == ImpactOrder::simultaneous && rules.energy_gain != EnergyGain::limit &&
+         !has_other_impact_law(detector) && !resists_rolling(detector);
+}
+
+/// True if a contact closes faster than a speed at the start of a step.
+bool hits(const StepInput& in, const Constraint& contact, double faster_than) {
+  return contact.normal_velocity(in.start.v.data()) < -faster_than;
+}
+
+}  // namespace
+
 LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detector,
                                const TimeStepping& options)
     : assembly_(&assembly),
       detector_(&detector),
-      on_(options.impacts == ImpactTimes::located),
+      on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       most_impacts_(options.most_impacts),
       capture_speed_(options.capture_speed),
       refuse_jams_(options.impact_rules.refuse_jams) {}
@@ -32,11 +47,25 @@ bool LocatedImpacts::contains_any(Range bodies) const {
   return at < order_.size() && order_[at].first < bodies.end;
 }
 
-std::span<const Constraint> LocatedImpacts::of_body(std::span<const Constraint> contacts, Index body) const {
-  const auto before = [](const Constraint& contact, Index of) { return contact.body() < of; };
-  const auto first = std::lower_bound(contacts.begin(), contacts.end(), body, before);
+/// Lists the contacts of an island by body; one of two bodies is listed for both.
+void LocatedImpacts::list(std::span<const Constraint> contacts) {
+  island_.contacts = contacts;
+  island_.of_bodies.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    for (int b = 0; b < contacts[c].bodies; ++b) {
+      island_.of_bodies.emplace_back(contacts[c].blocks[static_cast<std::size_t>(b)].body, c);
+    }
+  }
+  if (!std::is_sorted(island_.of_bodies.begin(), island_.of_bodies.end()))
+    std::sort(island_.of_bodies.begin(), island_.of_bodies.end());
+}
+
+/// Those of one body.
+std::span<const LocatedImpacts::OfBody> LocatedImpacts::of(Index body) const {
+  const auto before = [](const OfBody& entry, Index of) { return entry.first < of; };
+  const auto first = std::lower_bound(island_.of_bodies.begin(), island_.of_bodies.end(), body, before);
   auto last = first;
-  while (last != contacts.end() && last->body() == body) ++last;
+  while (last != island_.of_bodies.end() && last->first == body) ++last;
   return {first, last};
 }
 
@@ -46,14 +75,14 @@ void LocatedImpacts::expect(const StepInput& in, Index component, std::span<cons
   double fastest = 0.0;
   for (Index i = all.v.begin; i < all.v.end; ++i) fastest = std::max(fastest, std::abs(in.start.v[i]));
   const StateView start = in.start.view();
+  list(contacts);
   found_.clear();
   detector_->find({component, component + 1},
                   {start, trial.at_start, places, nullptr, 2.0 * in.step * fastest}, found_);
   for (const Constraint& contact : found_) {
-    if (contact.gap + in.step * contact.normal_velocity(start.v) < 0.0)
-      take_up_new(in, contact, contacts, trial);
+    if (contact.gap + in.step * contact.normal_velocity(start.v) < 0.0) take_up_new(in, contact, trial);
   }
-  take_up_held(in, all.bodies, contacts, trial);
+  take_up_held(in, all.bodies, trial);
 }
 
 bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
@@ -64,52 +93,50 @@ bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<co
       evaluate_positions(*assembly_, component, end, trial.at_end);
     }
   }
+  list(contacts);
   found_.clear();
   detector_->find(components, {end, trial.at_end, places}, found_);
   const std::size_t known = in_use_;
   for (const Constraint& contact : found_) {
     if (contact.gap == 0.0 && !(contact.normal_velocity(end.v) < 0.0)) continue;
-    take_up_new(in, contact, contacts, trial);
+    take_up_new(in, contact, trial);
   }
-  take_up_held(in, assembly_->bodies_of(components), contacts, trial);
+  take_up_held(in, assembly_->bodies_of(components), trial);
   return in_use_ > known;
 }
 
 /// The body of a contact, unless that takes part from the start on.
-void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact,
-                                 std::span<const Constraint> contacts, StepTrial& trial) {
-  const std::span<const Constraint> own = of_body(contacts, contact.body());
-  const auto is_same = [&](const Constraint& other) { return other.key == contact.key; };
-  if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), own, trial);
+void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact, StepTrial& trial) {
+  const std::span<const OfBody> own = of(contact.body());
+  const auto is_same = [&](const OfBody& other) { return island_.contacts[other.second].key == contact.key; };
+  if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), trial);
 }
 
 /// Bodies that contacts hit at the start, or hold where they turn.
-void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, std::span<const Constraint> contacts,
-                                  StepTrial& trial) {
-  for (const Constraint& contact : contacts) {
+void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, StepTrial& trial) {
+  for (const Constraint& contact : island_.contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
-    if (!contact.turns() && !hits(in, contact)) continue;
-    take_up(in, contact.body(), of_body(contacts, contact.body()), trial);
+    if (!contact.turns() && !hits(in, contact, capture_speed_)) continue;
+    take_up(in, contact.body(), trial);
   }
 }
 
-bool LocatedImpacts::hits(const StepInput& in, const Constraint& contact) const {
-  return contact.normal_velocity(in.start.v.data()) < -capture_speed_;
-}
-
 /// A body that shares a constraint with another keeps to the step of both.
-void LocatedImpacts::take_up(const StepInput& in, Index body, std::span<const Constraint> contacts,
-                             StepTrial& trial) {
+void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) {
   const std::size_t at = place(body);
   if (at < order_.size() && order_[at].first == body) return;
-  const auto is_shared = [](const Constraint& contact) { return contact.bodies > 1; };
-  if (std::any_of(contacts.begin(), contacts.end(), is_shared)) return;
+  island_.own.clear();
+  for (const auto& [of, contact] : of(body)) {
+    if (island_.contacts[contact].bodies > 1) return;
+    island_.own.push_back(island_.contacts[contact]);
+  }
   if (in_use_ == motions_.size()) motions_.emplace_back();
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
-  const bool struck = std::any_of(contacts.begin(), contacts.end(),
-                                  [&](const Constraint& contact) { return hits(in, contact); });
-  motions_[in_use_++].begin(body, contacts, struck);
+  const bool struck = std::any_of(island_.own.begin(), island_.own.end(), [&](const Constraint& contact) {
+    return hits(in, contact, capture_speed_);
+  });
+  motions_[in_use_++].begin(body, island_.own, struck);
 }
 
 void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,

@@ -23,7 +23,8 @@ public:
   /// \param assembly,detector must outlive it
   LocatedImpacts(const Assembly& assembly, const Detector& detector, const TimeStepping& options);
 
-  /// True if impacts are located at all.
+  /// True if impacts are located here. Those of other laws than Newton's, or with rules of their own, are by
+  /// steps that end there (parted_steps.h).
   [[nodiscard]] bool on() const { return on_; }
   /// Forgets all bodies.
   void clear();
@@ -64,10 +65,11 @@ public:
   void forget_statistics();
 
 private:
-  void take_up_new(const StepInput& in, const Constraint& contact, std::span<const Constraint> contacts,
-                   StepTrial& trial);
-  void take_up_held(const StepInput& in, Range bodies, std::span<const Constraint> contacts,
-                    StepTrial& trial);
+  using OfBody = std::pair<Index, std::size_t>;  // a body, one of its contacts
+  void list(std::span<const Constraint> contacts);
+  [[nodiscard]] std::span<const OfBody> of(Index body) const;
+  void take_up_new(const StepInput& in, const Constraint& contact, StepTrial& trial);
+  void take_up_held(const StepInput& in, Range bodies, StepTrial& trial);
   [[nodiscard]] bool surround_hit(Index component);
   template <class F>
   void for_jumps(Index component, bool local, F&& f) const;
@@ -75,9 +77,7 @@ private:
                       std::vector<double>& out);
   [[nodiscard]] double change_by_correction(const StepInput& in, Index component, bool local,
                                             const LoadJumps& acted);
-  [[nodiscard]] std::span<const Constraint> of_body(std::span<const Constraint> contacts, Index body) const;
-  void take_up(const StepInput& in, Index body, std::span<const Constraint> contacts, StepTrial& trial);
-  [[nodiscard]] bool hits(const StepInput& in, const Constraint& contact) const;
+  void take_up(const StepInput& in, Index body, StepTrial& trial);
   [[nodiscard]] std::size_t place(Index body) const;
 
   const Assembly* assembly_;
@@ -89,6 +89,11 @@ private:
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
+  struct {
+    std::span<const Constraint> contacts;
+    std::vector<OfBody> of_bodies;  // of these, ascending
+    std::vector<Constraint> own;    // of one body
+  } island_;                        // at hand
   std::vector<Constraint> found_;
   Surroundings around_;                             // blocks on which loads may jump
   std::vector<double> jump_, correction_, change_;  // as LoadJumps, at the iterate

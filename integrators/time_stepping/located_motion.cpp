@@ -104,6 +104,7 @@ MotionPhase& LocatedMotion::add_phase(const At& at, double begin, double end) {
   phase.begin = begin;
   phase.end = end;
   phase.hit = hit_;
+  phase.turning_work = 0.0;
   read(at.trial.end.q, at.slot.q, at.slot.q_size, phase.q);
   read(at.trial.end.v, at.slot.v, at.slot.v_size, phase.v0);
   phase.constraints.clear();
@@ -164,11 +165,10 @@ bool LocatedMotion::fly_once(const At& at, MotionPhase& flight) {
 /// Brings the contacts of a flight to the directions halfway. What these make of the velocities at both ends,
 /// beyond what the directions there make of them, is taken for a motion of the ground.
 void LocatedMotion::turn(const At& at, MotionPhase& flight) {
-  constexpr double any_gap = std::numeric_limits<double>::infinity();
   const double* const v = at.trial.end.v.data();
   const auto find = [&](double share, std::vector<Constraint>& out) {
     sweep(at, flight, share);
-    observe(at, share, any_gap, false);
+    observe(at, share, std::numeric_limits<double>::infinity(), false);
     out.clear();
     take_closed(out);
   };

@@ -1,22 +1,24 @@
-// Problem: a step in which nothing passes through anything.
+// Problem: a step in which nothing passes through anything, or bodies are hit when they meet.
 
 #include <carom/core/errors.h>
 #include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/parted_steps.h>
 
+#include <limits>
 #include <utility>
 
 namespace carom {
 
 namespace {
 
-[[noreturn]] void fail(const Detector& detector, const ConstraintKey& key, double time, double step) {
+[[noreturn]] void fail(const Detector& detector, const ConstraintKey& key, const char* option, double time,
+                       double step) {
   SolverFailure failure;
   failure.time = time;
   failure.step = step;
   failure.parts.push_back(detector.name(key));
   const std::string message = "time stepping at t = " + to_text(time) + " s, step " + to_text(step) +
-                              " s: overlaps.never_tunnel: the step ends again and again where " +
+                              " s: " + option + ": the step ends again and again where " +
                               failure.parts.front() + " meet; allowed: at most " +
                               std::to_string(PartedSteps::most_parts) + " times (a shorter step, or e < 1)";
   throw SolverError(message, std::move(failure));
@@ -24,34 +26,80 @@ namespace {
 
 }  // namespace
 
-void PartedSteps::step(TimeStepper& stepper, State& state, Companion& companion, double step, double end_time,
-                       StepReport& report) {
+bool PartedSteps::needed(const Assembly& assembly, const TimeStepper& stepper) {
+  return stepper.ends_at_closings() ||
+         (stepper.options().overlaps.never_tunnel && assembly.layout()->dimension() == 2);
+}
+
+PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper) : stepper_(&stepper) {
+  if (stepper.ends_at_closings()) {
+    closings_ = std::make_unique<ClosingSearch>(assembly, stepper.detector(), stepper.options());
+  } else {
+    passages_ = std::make_unique<PassageSearch>(assembly, stepper.detector());
+  }
+}
+
+void PartedSteps::make_part(double length, double end) {
+  trial_.state = done_.state;
+  trial_.companion = done_.companion;
+  stepper_->step(trial_.state, trial_.companion, length, end, part_);
+}
+
+/// A part up to the end of the step, or to where something is deep enough.
+void PartedSteps::part_before_passage(const Whole& whole, double length) {
+  for (double end = whole.end;;) {
+    make_part(length, end);
+    const PassageSearch::Passage passage = passages_->first(done_.state, trial_.state);
+    if (!(passage.share < 1.0)) return;
+    const double earlier = done_.state.time + passage.share * (end - done_.state.time);
+    if (earlier == end) return;
+    if (++parts_ > most_parts || !(earlier > done_.state.time)) {
+      fail(stepper_->detector(), passage.key, "overlaps.never_tunnel", whole.start, whole.step);
+    }
+    end = earlier;
+    length = end - done_.state.time;
+  }
+}
+
+/// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
+/// by Newton's method, kept between an end at which all is open and one at which it is not.
+void PartedSteps::part_at_closing(const Whole& whole, double length) {
+  constexpr double aim = 0.5 * ClosingSearch::rounding;
+  const double begin = done_.state.time;
+  double open = begin, closed = std::numeric_limits<double>::infinity();
+  ClosingSearch::Closing hit;  // the last one found
+  for (double end = whole.end;;) {
+    make_part(length, end);
+    const ClosingSearch::Closing found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
+    (found.is_late() ? closed : open) = end;
+    if (open == whole.end) return;
+    if (found.gap <= 0.0) hit = found;
+    if (found.is_now()) break;
+    double next = end - (found.gap + aim) / found.rate;
+    if (!(next > open && next < closed)) next = 0.5 * (open + closed);
+    const bool is_between = next > open && next < closed;
+    if (!is_between && end == closed) break;  // as near as times can be told apart
+    end = is_between ? next : closed;
+    length = end - begin;
+  }
+  if (++parts_ > most_parts) fail(stepper_->detector(), hit.key, "impacts", whole.start, whole.step);
+  closings_->count(hit);
+}
+
+void PartedSteps::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   done_.state = state;
   done_.companion = companion;
-  double length = step;  // of the next part
-  for (int parts = 0; done_.state.time < end_time;) {
-    double end = end_time;
-    for (;;) {
-      trial_.state = done_.state;
-      trial_.companion = done_.companion;
-      stepper.step(trial_.state, trial_.companion, length, end, part_);
-      const PassageSearch::Passage passage = search_.first(done_.state, trial_.state);
-      if (!(passage.share < 1.0)) break;
-      const double earlier = done_.state.time + passage.share * (end - done_.state.time);
-      if (earlier == end) break;
-      if (++parts > most_parts || !(earlier > done_.state.time)) {
-        fail(stepper.detector(), passage.key, state.time, step);
-      }
-      end = earlier;
-      length = end - done_.state.time;
-    }
+  parts_ = 0;
+  if (closings_) closings_->begin_step();
+  const Whole whole{state.time, step, end_time};
+  for (double length = step; done_.state.time < end_time; length = end_time - done_.state.time) {
+    closings_ ? part_at_closing(whole, length) : part_before_passage(whole, length);
     if (done_.state.time == state.time) {
       std::swap(sum_, part_);
     } else {
       add(part_, sum_);
     }
     std::swap(done_, trial_);
-    length = end_time - done_.state.time;
   }
   sum_.step = step;
   sum_.findings.swap(report.findings);

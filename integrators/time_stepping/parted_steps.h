@@ -1,15 +1,19 @@
 #pragma once
 
 /// \file
-/// Steps that nothing passes through anything in (OverlapRules::never_tunnel): a step in which a pair would
-/// come too deep ends there, and the rest of it is another one, which begins with their impact.
+/// Steps in several parts. A step ends early where a pair would come too deep (OverlapRules::never_tunnel),
+/// or where a contact closes that has to be hit then (TimeStepping::impacts); the rest of it is another one,
+/// which begins with the impact.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/step_report.h>
+#include <carom/integrators/time_stepping/closing_search.h>
 #include <carom/integrators/time_stepping/passage_search.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
+
+#include <memory>
 
 namespace carom {
 
@@ -19,21 +23,33 @@ public:
   /// Parts of one step at the most: more are needed only where something flies to and fro in it for ever.
   static constexpr int most_parts = 10000;
 
-  /// Both must outlive it.
-  PartedSteps(const Assembly& assembly, const Detector& detector) : search_(assembly, detector) {}
+  /// All must outlive it.
+  PartedSteps(const Assembly& assembly, TimeStepper& stepper);
+  /// True if steps may have to be parted.
+  [[nodiscard]] static bool needed(const Assembly& assembly, const TimeStepper& stepper);
 
   /// Makes a step as TimeStepper::step(), in as many parts as it takes. Throws SolverError naming the pair
   /// that needs too many; on an error none of the three has changed.
-  void step(TimeStepper& stepper, State& state, Companion& companion, double step, double end_time,
-            StepReport& report);
+  void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
 
 private:
   struct Run {
     State state;
     Companion companion;
   };
-  PassageSearch search_;
+  // Where the whole step begins, and its length.
+  struct Whole {
+    double start, step, end;
+  };
+  void make_part(double length, double end);
+  void part_before_passage(const Whole& whole, double length);
+  void part_at_closing(const Whole& whole, double length);
+
+  TimeStepper* stepper_;
+  std::unique_ptr<PassageSearch> passages_;  // one of these is null
+  std::unique_ptr<ClosingSearch> closings_;
   Run done_, trial_;
+  int parts_ = 0;  // that ended early
   StepReport part_, sum_;
 };
 

@@ -159,6 +159,24 @@ void PassageSearch::look(const State& start, double share) {
   std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
 }
 
+/// Keeps the depths of pairs that overlap at the start, each with its deepest contact first.
+void PassageSearch::keep_depths() {
+  at_start_.clear();
+  for (const Constraint& contact : contacts_) {
+    if (contact.gap < 0.0) at_start_.emplace_back(pair_of(contact), -contact.gap);
+  }
+  std::sort(at_start_.begin(), at_start_.end(), [](const auto& a, const auto& b) {
+    return a.first < b.first || (a.first == b.first && a.second > b.second);
+  });
+}
+
+double PassageSearch::depth_at_start(const Constraint& contact) const {
+  const Pair pair = pair_of(contact);
+  const auto before = [](const auto& known, const Pair& of) { return known.first < of; };
+  const auto known = std::lower_bound(at_start_.begin(), at_start_.end(), pair, before);
+  return known != at_start_.end() && known->first == pair ? known->second : 0.0;
+}
+
 PassageSearch::Passage PassageSearch::first(const State& start, const State& end) {
   if (thickness_.empty()) return {};
   step_ = end.time - start.time;
@@ -168,18 +186,12 @@ PassageSearch::Passage PassageSearch::first(const State& start, const State& end
   detector_->place(end.time, places_at_end_);
   margin_ = most;
   look(start, 0.0);
-  depth_at_start_.clear();
-  for (const Constraint& contact : contacts_) {
-    if (contact.gap >= 0.0) continue;
-    double& depth = depth_at_start_[pair_of(contact)];
-    depth = std::max(depth, -contact.gap);
-  }
+  keep_depths();
   for (double share = 0.0;;) {
     Passage next;
     for (const Constraint& contact : contacts_) {
-      const auto known = depth_at_start_.find(pair_of(contact));
       const double most_deep = allowed(contact);
-      const double left = contact.gap + most_deep + (known == depth_at_start_.end() ? 0.0 : known->second);
+      const double left = contact.gap + most_deep + depth_at_start(contact);
       if (!(left > 0.0)) return {share, contact.key};
       const double nearer = approach(contact);
       if (!(nearer > 0.0)) continue;

@@ -50,6 +50,8 @@ private:
   [[nodiscard]] double approach(const Constraint& contact) const;
   [[nodiscard]] double most_approach(const State& start, const State& end);
   void look(const State& start, double share);
+  void keep_depths();
+  [[nodiscard]] double depth_at_start(const Constraint& contact) const;
 
   const Assembly* assembly_;
   const Detector* detector_;
@@ -61,10 +63,10 @@ private:
   GroundPlaces places_, places_at_end_;
   BodyContactSearch search_;
   std::vector<Constraint> contacts_;
-  std::vector<double> displacement_;       // over all velocities, of the whole step
-  std::map<Pair, double> depth_at_start_;  // of pairs that overlap then [m]
-  double step_ = 0.0;                      // [s]
-  double margin_ = 0.0;                    // of what may come near in the rest of the step [m]
+  std::vector<double> displacement_;               // over all velocities, of the whole step
+  std::vector<std::pair<Pair, double>> at_start_;  // pairs that overlap then, by how much [m]
+  double step_ = 0.0;                              // [s]
+  double margin_ = 0.0;                            // of what may come near in the rest of the step [m]
 };
 
 }  // namespace carom

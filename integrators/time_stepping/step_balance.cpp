@@ -199,6 +199,8 @@ void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact
   entry.rolling_moment = moment;
   entry.contact_work += work;
   result_.flows[EnergyFlow::rolling] -= work;
+  result_.flows[EnergyFlow::external] +=
+      impulse_work(moment, at.surface_velocity[0], at.surface_velocity_after[0]);
 }
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is

@@ -18,8 +18,7 @@ constexpr double rounding = 1e-12;
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
-      capture_speed_(options.capture_speed),
-      slack_(options.impacts == ImpactTimes::located ? rounding : 0.0),
+      rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0},
       islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
@@ -32,7 +31,7 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
-  detector_.remember(in.companion.modes, std::max(in.step, last_step), slack_, lasting_);
+  detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : in.companion.modes) {
@@ -55,11 +54,23 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
   }
 }
 
+/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing.
+bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
+  constexpr double noise = 1e-12;  // of the velocities along a normal
+  if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
+  const double* const v = in.start.v.data();
+  return constraint.velocity(0, v) > noise * constraint.speed(0, v);
+}
+
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
                               std::vector<Constraint>& out) {
   const std::size_t first = out.size();
   const StateView start = in.start.view();
   detector_.find(components, query(in, trial), out);
+  if (rules_.parting == Parting::is_free) {
+    const auto parts = [&](const Constraint& found) { return is_left_out(in, found); };
+    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), parts), out.end());
+  }
   // Components with joints come alone.
   if (detector_.has_dry_friction() && components.size() == 1) {
     detector_.find_joint_friction(components.begin, start, trial.at_start, out);
@@ -68,8 +79,19 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   take_sticking(found);
   // Friction in joints comes last.
-  if (found.back().has_dry_friction()) share_impact_restitution(found, in.start.v.data(), capture_speed_);
+  if (found.back().has_dry_friction())
+    share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
   if (resists_rolling(detector_)) add_rolling(first, out);
+}
+
+/// The ground that a body rolls on may turn.
+void StepConstraints::take_spin(Constraint& rolling) const {
+  if (rolling.key.b.owner != FeatureKey::Owner::obstacle) return;
+  const GroundShapes& shapes = detector_.pieces().shapes();
+  const Index shape = shapes.find(rolling.key.b.serial);
+  if (shape == none || !shapes.moves(shape)) return;
+  rolling.surface_velocity[0] = shapes.motion(shape, places_)->spin;
+  rolling.surface_velocity_after[0] = shapes.motion(shape, places_after_)->spin;
 }
 
 /// Rolling resistance behind each contact that has some, of the constraints from `first` on.
@@ -79,12 +101,15 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
     with_rolling_.push_back(out[i]);
     if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
       with_rolling_.push_back(rolling_resistance(out[i]));
+      take_spin(with_rolling_.back());
     }
   }
   out.swap(with_rolling_);
 }
 
-void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial) {
+void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
+                           Parting parting) {
+  rules_.parting = parting;
   remember(in, in.last_step);
   constraints_.clear();
   if (detector_.bodies_touch()) return find_joining(in, batches, trial);
@@ -100,7 +125,15 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   single_.clear();
   for (const Range batch : batches) find_in(in, batch, trial, single_);
   const BodyContacts& bodies = detector_.bodies();
-  const std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  if (rules_.parting == Parting::is_free) {
+    std::erase_if(search_.touching, [&](const BodyTouch& touch) {
+      Constraint written;
+      bodies.write(touch, in.start.view(), written);
+      return is_left_out(in, written);
+    });
+    touching = search_.touching;
+  }
   if (touching.empty()) {
     constraints_.swap(single_);
     islands_.find(batches);

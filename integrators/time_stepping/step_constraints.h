@@ -14,10 +14,15 @@
 #include <carom/integrators/time_stepping/step_trial.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace carom {
+
+/// Contacts that are closed to rounding and part at the start of a step: they act in it, so that what comes
+/// back in it is held where it is; or they do not, and their next closing is looked for (ClosingSearch).
+enum class Parting : std::uint8_t { acts, is_free };
 
 /// Finds constraints and islands. Keeps memory.
 class CAROM_API StepConstraints {
@@ -36,7 +41,8 @@ public:
 
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
   /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
-  void find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
+  void find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
+            Parting parting = Parting::acts);
   /// The islands, in the order of their first components. Valid until the next find().
   [[nodiscard]] std::span<const StepIsland> islands() const { return islands_.list(); }
   /// Finds the constraints of an island of one component as they were at the start, for another iteration.
@@ -46,14 +52,19 @@ private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
   void find_joining(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
+  [[nodiscard]] bool is_left_out(const StepInput& in, const Constraint& constraint) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
+  void take_spin(Constraint& rolling) const;
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
   Detector detector_;
-  double capture_speed_;
-  double slack_;                         // opening of lasting contacts that is none [m]
+  struct {
+    double capture_speed;
+    double slack;                     // opening of lasting contacts that is none [m]
+    Parting parting = Parting::acts;  // in the last find()
+  } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks

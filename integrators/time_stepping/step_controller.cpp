@@ -26,7 +26,7 @@ StepController::StepController(const Assembly& assembly, const TimeStepping& opt
   if (options.control) lengths_ = assembly.length_scales();
 }
 
-void StepController::step(TimeStepper& stepper, State& state, Companion& companion, double limit,
+void StepController::step(MakeStep make, State& state, Companion& companion, double limit,
                           StepReport& report) {
   const double wanted = companion.next_step > 0.0 ? companion.next_step : options_.step;
   const double room = limit - state.time;
@@ -35,7 +35,7 @@ void StepController::step(TimeStepper& stepper, State& state, Companion& compani
   for (int rejected = 0;; ++rejected) {
     if (!(state.time + 0.5 * step > state.time)) fail_short(state.time, step);
     const Attempt attempt =
-        this->attempt(stepper, state, companion, step, step == room ? limit : state.time + step);
+        this->attempt(make, state, companion, step, step == room ? limit : state.time + step);
     if (attempt.accepted) {
       std::swap(state, halves_.state);
       std::swap(companion, halves_.companion);
@@ -57,14 +57,14 @@ void StepController::step(TimeStepper& stepper, State& state, Companion& compani
 }
 
 /// Makes a step, judges it, and finds the length to go on with.
-StepController::Attempt StepController::attempt(TimeStepper& stepper, const State& state,
-                                                const Companion& companion, double step, double end) {
+StepController::Attempt StepController::attempt(MakeStep make, const State& state, const Companion& companion,
+                                                double step, double end) {
   // Of the length that the error allows, for the error of its estimate; and bounds of one change.
   constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
   constexpr double order = 3.0;  // of the error of one step
   Attempt made;
   try {
-    made.compared = try_step(stepper, state, companion, step, end);
+    made.compared = try_step(make, state, companion, step, end);
   } catch (const SolverError&) {
     // A shorter step may succeed; at the smallest the error is the caller's.
     if (step <= options_.control->smallest) throw;
@@ -103,15 +103,15 @@ void StepController::fail_short(double time, double step) {
 }
 
 /// Makes the step at once and in halves. Returns whether the two can be compared.
-bool StepController::try_step(TimeStepper& stepper, const State& state, const Companion& companion,
-                              double step, double end) {
+bool StepController::try_step(MakeStep make, const State& state, const Companion& companion, double step,
+                              double end) {
   whole_.state = state;
   whole_.companion = companion;
   halves_.state = state;
   halves_.companion = companion;
-  stepper.step(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
-  stepper.step(halves_.state, halves_.companion, 0.5 * step, end, second_);
-  stepper.step(whole_.state, whole_.companion, step, end, of_whole_);
+  make(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
+  make(halves_.state, halves_.companion, 0.5 * step, end, second_);
+  make(whole_.state, whole_.companion, step, end, of_whole_);
   return same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_);
 }
 

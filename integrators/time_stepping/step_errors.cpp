@@ -75,12 +75,6 @@ void check_budget(const SweepBudget& budget) {
 
 /// Options that do not go together.
 void check_exclusions(const TimeStepping& options) {
-  if (options.impacts == ImpactTimes::located && (options.impact_rules.order != ImpactOrder::simultaneous ||
-                                                  options.impact_rules.energy_gain == EnergyGain::limit)) {
-    throw ModelError(
-        "time stepping: impacts is located; allowed where impact_rules.order is sequential or "
-        "impact_rules.energy_gain is limit: at_step_start");
-  }
   if (options.overlaps.never_tunnel && (options.control || options.impacts == ImpactTimes::located)) {
     throw ModelError(std::string("time stepping: overlaps.never_tunnel is true; allowed where ") +
                      (options.control ? "control is given" : "impacts is located") + ": false");
@@ -129,6 +123,14 @@ void fail_motion(const SolverError& error, const StepInput& in) {
   failure.time = in.start.time;
   failure.step = in.step;
   throw SolverError(place(in) + error.what(), std::move(failure));
+}
+
+SolverError with_place(const SolverError& error, const StepInput& in) {
+  if (error.failure().step > 0.0) return error;
+  SolverFailure failure = error.failure();
+  failure.time = in.start.time;
+  failure.step = in.step;
+  return {place(in) + error.what(), std::move(failure)};
 }
 
 SolverError with_file(const SolverError& error, const TimeStepping& options) {

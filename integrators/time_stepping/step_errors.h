@@ -24,6 +24,9 @@ CAROM_API void check_options(const TimeStepping& options);
 /// Throws an error of a prescribed motion again, with the time of the step.
 [[noreturn]] CAROM_API void fail_motion(const SolverError& error, const StepInput& in);
 
+/// An error that knows of no step, with the place of this one.
+[[nodiscard]] CAROM_API SolverError with_place(const SolverError& error, const StepInput& in);
+
 /// The error with the name of a file of its contact problem, if it has one and a directory is given.
 [[nodiscard]] CAROM_API SolverError with_file(const SolverError& error, const TimeStepping& options);
 

@@ -14,26 +14,26 @@ constexpr double speed_rounding = 1e-12;
 // Impacts of one island in one step: more do not happen but by e = 1 in a corner.
 constexpr int most_impacts_at_once = 10000;
 
+/// Large ones are left to sweeps, but for laws whose solver needs W in full.
+IslandOptions options_of_impacts(const StepParts& parts) {
+  IslandOptions options{.plastic_jams = !parts.options.impact_rules.refuse_jams};
+  if (!has_other_impact_law(parts.constraints.detector())) options.factored_from = factored_constraints;
+  return options;
+}
+
 }  // namespace
 
 StepImpacts::StepImpacts(StepParts& parts)
     : parts_(&parts),
       on_(parts.options.impact_rules.order == ImpactOrder::sequential ||
           parts.options.impact_rules.energy_gain == EnergyGain::limit ||
-          parts.options.overlaps.never_tunnel || has_other_impact_law(parts.constraints.detector())),
+          parts.options.overlaps.never_tunnel || parts.ends_at_closings() ||
+          has_other_impact_law(parts.constraints.detector())),
       balance_(*parts.assembly, parts.options),
-      problem_(IslandOptions{.plastic_jams = !parts.options.impact_rules.refuse_jams}),
+      problem_(options_of_impacts(parts)),
       response_(*parts.assembly) {
-  if (parts.options.impacts == ImpactTimes::located && resists_rolling(parts.constraints.detector())) {
-    throw ModelError(
-        "time stepping: impacts is located; allowed where a contact has rolling resistance: at_step_start");
-  }
   if (!on_) return;
-  if (parts.options.impacts == ImpactTimes::located && has_other_impact_law(parts.constraints.detector())) {
-    throw ModelError(
-        "time stepping: impacts is located; allowed where a law of impact is poisson or energetic: "
-        "at_step_start");
-  }
+  chain_.set_budget(budget_of(parts.options));
   const Assembly& assembly = *parts.assembly;
   joints_.reserve(assembly.components().size());
   for (Index component = 0; component < assembly.components().size(); ++component) {

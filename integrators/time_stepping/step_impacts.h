@@ -29,7 +29,7 @@ namespace carom {
 /// Resolves such impacts. Keeps memory, and statistics of its solvers.
 class CAROM_API StepImpacts {
 public:
-  /// Throws ModelError where impacts are located and a law is not Newton's. \param parts must outlive it
+  /// \param parts must outlive it
   explicit StepImpacts(StepParts& parts);
 
   /// True if impacts are resolved at the start of steps.

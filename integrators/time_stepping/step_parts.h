@@ -42,6 +42,12 @@ struct StepParts {
   [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
     return {in, component, constraints.detector(), options, trial};
   }
+  /// True if impacts are located and LocatedImpacts does not find all of them: bodies touch each other,
+  /// joints bind them, or impacts have rules of their own.
+  [[nodiscard]] bool ends_at_closings() const {
+    return options.impacts == ImpactTimes::located &&
+           (!located.on() || constraints.detector().bodies_touch() || joints.any());
+  }
   /// The problem where bodies of an island answer together; null where nothing touches.
   [[nodiscard]] IslandProblem* problem() {
     return contacts.problems().empty() ? nullptr : &contacts.problems().front();

@@ -11,18 +11,6 @@
 
 namespace carom {
 
-namespace {
-
-/// Options that know of contact with shapes on ground only. Throws ModelError naming them.
-void demand_options_for_bodies(const Detector& detector, const TimeStepping& options) {
-  if (!detector.bodies_touch()) return;
-  if (options.impacts != ImpactTimes::located) return;
-  throw ModelError(
-      "time stepping: impacts is located where bodies may touch each other; allowed: at_step_start");
-}
-
-}  // namespace
-
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : parts_(assembly, (check_options(options), options)),
       impacts_(std::make_unique<StepImpacts>(parts_)),
@@ -31,7 +19,6 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       balance_(assembly, options),
       projection_(parts_),
       couplings_(assembly) {
-  demand_options_for_bodies(parts_.constraints.detector(), options);
   if (!impacts_->on()) impacts_.reset();
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
@@ -45,7 +32,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   try {
     if (!strike(in)) return step_from(in, state, companion, report);
   } catch (const SolverError& error) {
-    throw with_file(error, parts_.options);
+    throw with_file(with_place(error, in), parts_.options);
   }
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
@@ -84,7 +71,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     commit(in, memory_, parts_.trial, result, state, companion, report);
   } catch (const SolverError& error) {
     give_up(in, companion);
-    throw with_file(error, parts_.options);
+    throw with_file(with_place(error, in), parts_.options);
   } catch (...) {
     give_up(in, companion);
     throw;
@@ -101,7 +88,8 @@ void TimeStepper::give_up(const StepInput& in, Companion& companion) {
 StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
   // gaps <= 0, joint limits, dry friction, at t_j
-  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
+  const Parting parting = parts_.ends_at_closings() ? Parting::is_free : Parting::acts;
+  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parting);
   if (impacts_ != nullptr) {
     StepImpacts::remove_restitution(parts_.constraints.islands());
     if (struck_) balance_.add(impacts_->result());

@@ -48,6 +48,8 @@ public:
 
   /// Options.
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
+  /// True if a step is to end where contacts close, so that its rest begins with the impact (parted_steps.h).
+  [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 

@@ -1,6 +1,7 @@
 // Saved and loaded, a run continues bit for bit; files that cannot be are refused by name.
 
 #include "examples/scenes/incline.h"
+#include "tests/integrators/event_runs.h"
 #include "tests/integrators/same_run.h"
 #include "tests/integrators/throws.h"
 
@@ -81,6 +82,35 @@ TEST_F(Checkpoint, ContinuesBitForBit) {
     fresh.run_until(3.0);
     EXPECT_EQ(bits_of(fresh), bits_of(whole)) << time;
     EXPECT_GT(whole.statistics().impacts, 5);
+  }
+}
+
+// Discs that meet, and fall on the plane, by every method: of the steps ahead of the state nothing is left.
+TEST_F(Checkpoint, ContinuesBitForBitFromEventToEvent) {
+  const auto discs = [](System& system) {
+    for (int i = 0; i < 3; ++i) {
+      const BodyId body =
+          system.add(RigidBody{.mass = disc(1.0 + i, 0.2), .position = {3.0 + 0.05 * i, 1.0 + 0.6 * i}});
+      system.add(Disc{.body = body, .radius = 0.2});
+    }
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+  };
+  for (const FlowMethod method : carom_test::flow_methods) {
+    for (const double time : {0.1, 0.5, 0.73219}) {
+      Simulation whole(scene(discs), EventDriven{.method = method});
+      whole.run_until(time);
+      whole.save(path_);
+      Simulation fresh(scene(discs), EventDriven{.method = method});
+      fresh.load(path_);
+      EXPECT_EQ(bits_of(fresh), bits_of(whole)) << time;
+      for (const double end : {time + 0.2, 1.5}) {
+        whole.run_until(end);
+        fresh.run_until(end);
+        EXPECT_EQ(bits_of(fresh), bits_of(whole)) << time;
+        EXPECT_EQ(fresh.statistics().events, whole.statistics().events) << time;
+      }
+      EXPECT_GT(whole.statistics().impacts, 5);
+    }
   }
 }
 

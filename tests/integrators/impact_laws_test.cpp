@@ -247,10 +247,6 @@ TEST(ImpactLaws, BadInputIsNamed) {
       ModelError,
       Simulation(cradle.system, EventDriven{.impact_rules = {.energy_gain = static_cast<EnergyGain>(7)}}),
       "energy_gain", "7");
-  EXPECT_THROWS(ModelError,
-                Simulation(cradle.system, TimeStepping{.impact_rules = {.order = ImpactOrder::sequential},
-                                                       .impacts = ImpactTimes::located}),
-                "located", "sequential");
 }
 
 }  // namespace

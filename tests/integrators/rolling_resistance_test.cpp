@@ -211,11 +211,60 @@ TEST(RollingResistance, ImpactLawsTakeItToo) {
   }
 }
 
+TEST(RollingResistance, GroundThatTurnsTakesADiscAlong) {
+  // A disc falls without spin on ground that turns about where it is hit, without friction: M = rho P_n.
+  constexpr double rho = 0.01, turn = 30.0, e = 0.5, speed = 1.0;
+  for (const bool pieces : {false, true}) {
+    System system;
+    const PrescribedMotion motion{.angle = [](double t) { return turn * t; },
+                                  .spin = [](double) { return turn; },
+                                  .angular_acceleration = [](double) { return 0.0; }};
+    const Surface law{.friction = 0.0, .normal_restitution = e, .rolling_resistance = rho};
+    if (pieces) {
+      system.add(Block{.vertices = {{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}, .motion = motion}, law);
+    } else {
+      system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = motion}, law);
+    }
+    const BodyId disc = add_disc(system, mass, radius, {0.0, radius - 1e-9}, {0.0, -speed});
+    Simulation simulation(system, TimeStepping{.step = 1e-6});
+    simulation.step();
+    const double inertia = 0.5 * mass * radius * radius, spin = rho * (1.0 + e) * speed * mass / inertia;
+    // The normal turns by 3e-5 in the step.
+    EXPECT_NEAR(simulation.state().spin(disc), spin, 1e-4 * spin) << pieces;
+    EXPECT_LE(std::abs(simulation.energy().residual()), 1e-13) << pieces;
+    // The relative spin goes from -30/s to -30/s + spin, and the ground does the rest.
+    const double moment = inertia * spin;
+    EXPECT_NEAR(simulation.energy().flow(EnergyFlow::rolling), moment * (turn - 0.5 * spin),
+                1e-3 * moment * turn)
+        << pieces;
+  }
+}
+
+TEST(RollingResistance, ADiscRollsWhereItIsInADrumThatTurns) {
+  // The moment of its weight about where it touches is rho P_n: it stays at the angle atan(rho/r).
+  constexpr double rho = 0.02, spin = 2.0, drum_radius = 1.0, time = 2.0;
+  const double angle = std::atan(rho / radius);
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(drum({0.0, 0.0}, drum_radius, spin),
+             Surface{.friction = 0.8, .normal_restitution = 0.0, .rolling_resistance = rho});
+  const double rolls = spin * drum_radius / radius;
+  const Vec<2> place = (drum_radius - radius) * Vec<2>(std::sin(angle), -std::cos(angle));
+  const BodyId disc = add_disc(system, mass, radius, place, {0.0, 0.0}, rolls);
+  Simulation simulation(system, TimeStepping{.step = 1e-4});
+  simulation.run_until(time);
+  // Rows at the start of a step: of first order, g h t.
+  EXPECT_LT((simulation.state().position(disc) - place).norm(), 2e-3);
+  EXPECT_NEAR(simulation.state().spin(disc), rolls, 2e-2);
+  EXPECT_LE(std::abs(simulation.energy().residual()), 1e-11);
+  const double moment = rho * mass * g * std::cos(angle);
+  EXPECT_NEAR(simulation.energy().flow(EnergyFlow::rolling), moment * (rolls - spin) * time, 1e-2);
+  EXPECT_NEAR(simulation.energy().flow(EnergyFlow::external), moment * (rolls - spin) * time, 1e-2);
+}
+
 TEST(RollingResistance, RefusedWhereItIsNotKnown) {
   const DiscOnGround scene(0.0, 0.01, 1.0);
   EXPECT_THROWS(ModelError, Simulation(scene.system, EventDriven{}), "rolling_resistance", "event-driven");
-  EXPECT_THROWS(ModelError, Simulation(scene.system, TimeStepping{.impacts = ImpactTimes::located}),
-                "located", "rolling resistance");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Nothing passes through anything, however fast and thin it is.
 
+#include "tests/allocation_counter.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/throws.h"
 #include "tests/model_error.h"
@@ -190,6 +191,27 @@ TEST(NeverTunnel, ShapesInABoxOfThinWalls) {
     EXPECT_TRUE(ledger_closes(simulation.energy()));
   }
   EXPECT_GT(impacts, 1000);  // else hardly anything was tried
+}
+
+// Discs that lie on each other, and one that flies to and fro between walls in a step: no part of it
+// allocates.
+TEST(NeverTunnel, TakesNoMemoryOnceItWasSeen) {
+  for (const double speed : {1.0, 5e3}) {
+    System system;
+    system.set_default_law({.friction = 0.1, .normal_restitution = 1.0, .tangential_restitution = 1.0});
+    system.add(Gravity{{0.0, -9.81}});
+    for (const double y : {-0.5, 0.5}) {
+      system.add(Wall{.from = {-1.0, y}, .to = {1.0, y}, .radius = 1e-3});
+    }
+    const int discs = speed > 1.0 ? 1 : 4;
+    for (int i = 0; i < discs; ++i) add_disc(system, 0.05, {0.2 * i - 0.3, -0.2}, {0.0, speed});
+    Simulation simulation(system, safe);
+    simulation.run_until(2.0);
+    const std::int64_t before = carom_test::allocations(), steps = simulation.statistics().steps;
+    for (int i = 0; i < 200; ++i) simulation.step();
+    EXPECT_EQ(carom_test::allocations() - before, 0) << speed;
+    EXPECT_EQ(simulation.statistics().steps - steps > 400, speed > 1.0) << speed;  // parts
+  }
 }
 
 TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {

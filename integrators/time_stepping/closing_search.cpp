@@ -1,0 +1,82 @@
+// Problem: which contact closes first in a step that did not know of it.
+
+#include <carom/integrators/time_stepping/closing_search.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+/// True if two contacts are of the same bodies, or of the same body and shape on ground.
+bool have_same_parts(const ConstraintKey& a, const ConstraintKey& b) {
+  const auto same = [](const FeatureKey& one, const FeatureKey& other) {
+    return one.owner == other.owner && one.serial == other.serial;
+  };
+  return same(a.a, b.a) && same(a.b, b.b);
+}
+
+}  // namespace
+
+void ClosingSearch::find(const State& state, double margin, std::vector<Constraint>& out) {
+  evaluate_positions(*assembly_, state.view(), evaluation_);
+  detector_->place(state.time, places_);
+  out.clear();
+  detector_->find_all({state.view(), evaluation_, places_, nullptr, margin}, search_, out);
+}
+
+/// True unless the contact acted up to the end of the part, or has closed often enough.
+bool ClosingSearch::may_close(const Constraint& contact, Modes acted) const {
+  const auto is_of = [&](const auto& entry) { return entry.first == contact.key; };
+  const auto mode = std::find_if(acted.rbegin(), acted.rend(), is_of);
+  if (mode != acted.rend() && mode->second != ContactMode::open) return false;
+  const auto known = std::find_if(closed_.begin(), closed_.end(),
+                                  [&](const Count& count) { return count.key == contact.key; });
+  return known == closed_.end() || (known->fast < most_impacts_ && known->slow < most_impacts_);
+}
+
+/// True if a contact was open at the start: if it is not listed then, as other contacts of its parts, for the
+/// nearest features of two outlines change.
+bool ClosingSearch::was_open(const Constraint& contact) const {
+  const auto is_it = [&](const Constraint& other) { return other.key == contact.key; };
+  const auto known = std::find_if(at_start_.begin(), at_start_.end(), is_it);
+  if (known != at_start_.end()) return known->gap >= -rounding;
+  return std::none_of(at_start_.begin(), at_start_.end(), [&](const Constraint& other) {
+    return have_same_parts(other.key, contact.key) && other.gap < -rounding;
+  });
+}
+
+ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
+  find(end, near_, at_end_);
+  const double* const v = end.v.data();
+  std::erase_if(at_end_, [&](const Constraint& contact) {
+    return !(contact.normal_velocity(v) < 0.0) || !may_close(contact, acted);
+  });
+  Closing first;
+  if (at_end_.empty()) return first;
+  // As far as contacts may have come since the start.
+  double reach = 0.0;
+  for (const Constraint& contact : at_end_) {
+    constexpr double caution = 2.0;
+    const double speed = std::max(contact.speed(0, v), contact.speed(0, start.v.data()));
+    reach = std::max(reach, std::abs(contact.gap) + caution * (end.time - start.time) * speed);
+  }
+  find(start, reach, at_start_);
+  for (const Constraint& contact : at_end_) {
+    if (!(contact.gap < first.gap) || !was_open(contact)) continue;
+    first = {contact.gap, contact.normal_velocity(v), contact.key};
+  }
+  near_ = std::max(near_, 2.0 * std::abs(std::min(first.gap, 0.0)));
+  return first;
+}
+
+void ClosingSearch::count(const Closing& closing) {
+  near_ = 0.0;
+  const auto is_it = [&](const Count& count) { return count.key == closing.key; };
+  auto known = std::find_if(closed_.begin(), closed_.end(), is_it);
+  if (known == closed_.end()) known = closed_.insert(closed_.end(), {closing.key});
+  ++(closing.rate < -capture_speed_ ? known->fast : known->slow);
+}
+
+}  // namespace carom

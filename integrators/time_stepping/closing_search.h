@@ -1,0 +1,80 @@
+#pragma once
+
+/// \file
+/// Closings: contacts that close within a step although they did not act in it. Of second order are steps
+/// that end there, whose rest begins with the impact (TimeStepping::impacts, where LocatedMotion does not
+/// follow a body alone: bodies that touch each other).
+
+#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/solvers/contact_mode.h>
+#include <carom/core/assembly.h>
+#include <carom/core/export.h>
+#include <carom/core/state.h>
+#include <carom/integrators/run/time_stepping.h>
+
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// Searches the ends of steps for closings. Keeps memory, and what has closed in a step.
+class CAROM_API ClosingSearch {
+public:
+  /// A contact that hits within rounding, if a step ends there [m]: so it takes part in the next.
+  static constexpr double rounding = 1e-12;
+  /// Modes of the contacts that acted in a step, as Companion::modes.
+  using Modes = std::span<const std::pair<ConstraintKey, ContactMode>>;
+
+  /// The contact that is deepest at the end of a part of a step, of those that did not act in it.
+  struct Closing {
+    double gap = std::numeric_limits<double>::infinity();  ///< [m]; infinite: none is near
+    double rate = 0.0;                                     ///< of the gap [m/s]
+    ConstraintKey key;                                     ///< which it is
+
+    /// True if the part ends too late.
+    [[nodiscard]] bool is_late() const { return gap < -rounding; }
+    /// True if it ends when the contact closes.
+    [[nodiscard]] bool is_now() const { return gap <= 0.0 && !is_late(); }
+  };
+
+  /// Both must outlive it.
+  ClosingSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
+      : assembly_(&assembly),
+        detector_(&detector),
+        most_impacts_(options.most_impacts),
+        capture_speed_(options.capture_speed),
+        evaluation_(make_evaluation(assembly)) {}
+
+  /// Forgets what has closed: a step begins.
+  void begin_step() { closed_.clear(); }
+  /// The closing that a part of a step from one state to another passes first, or nearly reaches.
+  [[nodiscard]] Closing look(const State& start, const State& end, Modes acted);
+  /// Counts a closing at which a part ends. One contact has as many of them, fast and slow ones, as
+  /// TimeStepping::most_impacts in a step; after these it acts from the next step on.
+  void count(const Closing& closing);
+
+private:
+  struct Count {
+    ConstraintKey key;
+    int fast = 0, slow = 0;
+  };
+  [[nodiscard]] bool may_close(const Constraint& contact, Modes acted) const;
+  [[nodiscard]] bool was_open(const Constraint& contact) const;
+  void find(const State& state, double margin, std::vector<Constraint>& out);
+
+  const Assembly* assembly_;
+  const Detector* detector_;
+  int most_impacts_;
+  double capture_speed_;
+  Evaluation evaluation_;
+  GroundPlaces places_;
+  BodyContactSearch search_;
+  std::vector<Constraint> at_start_, at_end_;
+  std::vector<Count> closed_;
+  double near_ = 0.0;  // gaps that are looked at, for the parts of one search [m]
+};
+
+}  // namespace carom
