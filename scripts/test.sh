@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds carom and runs its tests; the last line is "N passed, M failed".
 #   scripts/test.sh [preset]    release (default: every test), dev, sanitizers, clang (those labelled fast)
+#   scripts/test.sh fast        those labelled fast alone, in release
 #   scripts/test.sh long        those labelled long alone, in release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,9 +9,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-release}
 fast=ON
 label=()
-if [[ $preset == long ]]; then
-  preset=release fast=OFF label=(--label-regex long)
-fi
+case $preset in
+  fast) preset=release label=(--label-regex fast) ;;
+  long) preset=release fast=OFF label=(--label-regex long) ;;
+esac
 jobs=$(nproc)
 log="build/$preset/tests.log"
 
