@@ -112,6 +112,13 @@ double FeatureRegions::separation_along(const OutlineEdge& edge) const {
   return least;
 }
 
+Index FeatureRegions::coming(double slow) const {
+  const Index feature = nearest();
+  if (sharp_) return feature;
+  const FeatureMargin at = margin(feature);
+  return at.value <= 2.0 * border() && at.rate < -slow ? at.beyond : feature;
+}
+
 bool FeatureRegions::may_touch() const {
   if (!sharp_ || !has_several()) return true;
   const Index feature = nearest();

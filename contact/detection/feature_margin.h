@@ -37,6 +37,9 @@ public:
   /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows from each other the edge
   /// that one of them touches, where the vertex of the pair is that one.
   [[nodiscard]] Index nearest() const;
+  /// The feature of the motion from now on: the nearest one, of rounded ones at their border that which comes
+  /// next. \param slow rates of margins up to this are none [m/s]
+  [[nodiscard]] Index coming(double slow) const;
   /// False of a sharp corner that stands before no edge, by more than FeatureMargin::corner_touches.
   [[nodiscard]] bool may_touch() const;
   /// Distance beyond the border of a feature at which it is taken to be left [m].

@@ -49,8 +49,7 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   guards_.update(ends_.start().sample.guards, scales_.guard_noise);
 }
 
-/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes
-/// next.
+/// Takes the features that vertices touch for those of the phase.
 void EventDetector::take_features(double time, const double* y) {
   bool sampled = false;
   for (ActiveContact& closed : motion_->active().list()) {
@@ -60,10 +59,7 @@ void EventDetector::take_features(double time, const double* y) {
     sampled = true;
     const FeatureRegions regions = motion_->regions(closed.pair, memory_->within);
     if (!regions.has_several()) continue;
-    closed.feature = regions.nearest();
-    const FeatureMargin margin = regions.margin(closed.feature);
-    const bool at_border = !regions.is_sharp() && margin.value <= 2.0 * regions.border();
-    if (at_border && margin.rate < -scales_.speed_noise) closed.feature = margin.beyond;
+    closed.feature = regions.coming(scales_.speed_noise);
   }
 }
 
