@@ -247,11 +247,16 @@ void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::sp
   if (!keeps_motion(motion, now, candidates)) take_forces();
 }
 
-/// True if the forces that the flow has in the modes of the candidates move bodies as the answer does.
+/// True if the forces that the flow has in the modes of the candidates move bodies as the answer does. They
+/// do where nothing slips: forces that are not unique cancel each other then.
 bool ModeDecision::keeps_motion(SmoothMotion& motion, MotionSample& now,
                                 std::span<const Candidate> candidates) {
   constexpr double same = 1e-8;  // of the accelerations without contact
   list_closed(candidates);
+  const bool slides = std::any_of(active_.begin(), active_.end(), [](const ActiveContact& closed) {
+    return !closed.sticks() && closed.friction != 0.0;
+  });
+  if (!slides || active_.size() < 2) return true;
   double change = 0.0;
   BoundIteration once;
   if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))
