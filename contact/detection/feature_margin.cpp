@@ -135,8 +135,12 @@ FeatureMargin FeatureRegions::margin(Index feature) const {
     return nearer({along, speed, edge.tail}, {edge.length - along, -speed, edge.head});
   }
   const OutlineEdge behind(outline_, feature), before(outline_, outline_.before(feature));
-  return nearer({-behind.coordinate(place_), -behind.along.dot(rate_), n + feature},
-                {before.coordinate(place_) - before.length, before.along.dot(rate_), n + before.tail});
+  FeatureMargin margin =
+      nearer({-behind.coordinate(place_), -behind.along.dot(rate_), n + feature},
+             {before.coordinate(place_) - before.length, before.along.dot(rate_), n + before.tail});
+  // Both edges of a capsule begin at the same border: what is beyond is the one on the side of the vertex.
+  if (n == 2) margin.beyond = n + (behind.height(place_) > 0.0 ? behind.tail : before.tail);
+  return margin;
 }
 
 }  // namespace carom

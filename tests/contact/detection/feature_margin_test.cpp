@@ -65,4 +65,19 @@ TEST(FeatureMargin, CornersInEachOtherTouch) {
   }
 }
 
+TEST(FeatureMargin, BeyondTheEndOfACapsuleIsTheEdgeOnTheSideOfTheVertex) {
+  const std::vector<Vec<2>> ends{{-1.0, 0.0}, {1.0, 0.0}};
+  const Vec<2> disc = Vec<2>::Zero();
+  for (const double side : {-1.0, 1.0}) {
+    PlaneFrame of_disc, of_capsule;
+    of_disc.centre = {1.0 + 1e-3, 0.2 * side};  // before the right end, on its way to the edge
+    of_disc.velocity = {-1.0, 0.0};
+    const FeatureRegions regions({of_disc, of_capsule, disc, {{&disc, 1}, 0.1}, {ends, 0.1}, {}});
+    ASSERT_EQ(regions.nearest(), 1U);
+    // Of two vertices the edge from 0 to 1 looks down (feature 2), the one back up (3).
+    EXPECT_EQ(regions.margin(1).beyond, side < 0.0 ? 2U : 3U);
+    EXPECT_NEAR(regions.margin(1).value, 1e-3, 1e-15);
+  }
+}
+
 }  // namespace
