@@ -13,7 +13,11 @@
 namespace carom {
 
 FeatureRegions::FeatureRegions(const OutlinePair& pair)
-    : outline_(pair.outline), chain_(pair.chain), of_vertex_(pair.around), sharp_(pair.is_sharp()) {
+    : outline_(pair.outline),
+      chain_(pair.chain),
+      of_vertex_(pair.around),
+      vertex_(pair.vertex),
+      sharp_(pair.is_sharp()) {
   const PlaneFrame &of_vertex = pair.vertex_frame, &frame = pair.outline_frame;
   const Vec<2> arm = of_vertex.turned(pair.vertex);
   const Vec<2> from_centre = of_vertex.centre + arm - frame.centre;
@@ -43,7 +47,7 @@ Index FeatureRegions::nearest() const {
   for (Index corner = 0; corner < outline_.size(); ++corner) {
     const Vec<2> off = place_ - outline_.vertices[corner];
     if (std::max(std::abs(off[0]), std::abs(off[1])) <= FeatureMargin::corner_follows)
-      return edge_at(corner, feature);
+      return touching_at(corner, feature);
   }
   return feature;
 }
@@ -61,6 +65,44 @@ Index FeatureRegions::edge_at(Index corner, Index found) const {
   return separation_along(OutlineEdge(outline_, before)) > behind_corner ? n + before : n + corner;
 }
 
+/// The edge that the vertex touches at a corner, or the corner where it touches none: it stands beyond the
+/// end of the edge, so that the corner stands before an edge of the other outline, or that separates them
+/// more.
+Index FeatureRegions::touching_at(Index corner, Index found) const {
+  const Index edge = edge_at(corner, found);
+  if (chain_ || margin(edge).value >= -FeatureMargin::corner_touches) return edge;
+  const auto end = std::find(of_vertex_.vertices.begin(), of_vertex_.vertices.end(), vertex_);
+  const auto vertex = static_cast<Index>(end - of_vertex_.vertices.begin());
+  if (vertex == of_vertex_.size()) return edge;
+  const Vec<2> place = in_frame_of_vertex(outline_.vertices[corner]);
+  double largest = -std::numeric_limits<double>::infinity(), along = 0.0;
+  for (const Index tail : {vertex, of_vertex_.before(vertex)}) {
+    const OutlineEdge other(of_vertex_, tail);
+    const double separation = separation_along_other(other);
+    if (!(separation > largest)) continue;
+    largest = separation;
+    along = std::min(other.coordinate(place), other.length - other.coordinate(place));
+  }
+  const bool other_touches = along >= -FeatureMargin::corner_touches;
+  const bool separates = separation_along(OutlineEdge(outline_, edge - outline_.size())) >= largest;
+  return separates && !other_touches ? edge : corner;
+}
+
+Vec<2> FeatureRegions::in_frame_of_vertex(const Vec<2>& point) const {
+  const Vec<2> apart = point - shift_;
+  return {cosine_ * apart[0] + sine_ * apart[1], cosine_ * apart[1] - sine_ * apart[0]};
+}
+
+/// Height of the outline over an edge of that of the vertex.
+double FeatureRegions::separation_along_other(const OutlineEdge& edge) const {
+  double least = std::numeric_limits<double>::infinity();
+  if (edge.length == 0.0) return -least;
+  for (const Vec<2>& vertex : outline_.vertices) {
+    least = std::min(least, edge.height(in_frame_of_vertex(vertex)));
+  }
+  return least;
+}
+
 double FeatureRegions::separation_along(const OutlineEdge& edge) const {
   double least = std::numeric_limits<double>::infinity();
   for (const Vec<2>& vertex : of_vertex_.vertices) {
@@ -70,10 +112,18 @@ double FeatureRegions::separation_along(const OutlineEdge& edge) const {
   return least;
 }
 
+Index FeatureRegions::coming(double slow) const {
+  const Index feature = nearest();
+  if (sharp_) return feature;
+  const FeatureMargin at = margin(feature);
+  return at.value <= 2.0 * border() && at.rate < -slow ? at.beyond : feature;
+}
+
 bool FeatureRegions::may_touch() const {
   if (!sharp_ || !has_several()) return true;
   const Index feature = nearest();
-  return outline_.is_edge(feature) && margin(feature).value >= -FeatureMargin::corner_touches;
+  if (!outline_.is_edge(feature)) return false;
+  return !chain_ || margin(feature).value >= -FeatureMargin::corner_touches;
 }
 
 FeatureMargin FeatureRegions::margin(Index feature) const {
@@ -85,8 +135,12 @@ FeatureMargin FeatureRegions::margin(Index feature) const {
     return nearer({along, speed, edge.tail}, {edge.length - along, -speed, edge.head});
   }
   const OutlineEdge behind(outline_, feature), before(outline_, outline_.before(feature));
-  return nearer({-behind.coordinate(place_), -behind.along.dot(rate_), n + feature},
-                {before.coordinate(place_) - before.length, before.along.dot(rate_), n + before.tail});
+  FeatureMargin margin =
+      nearer({-behind.coordinate(place_), -behind.along.dot(rate_), n + feature},
+             {before.coordinate(place_) - before.length, before.along.dot(rate_), n + before.tail});
+  // Both edges of a capsule begin at the same border: what is beyond is the one on the side of the vertex.
+  if (n == 2) margin.beyond = n + (behind.height(place_) > 0.0 ? behind.tail : before.tail);
+  return margin;
 }
 
 }  // namespace carom

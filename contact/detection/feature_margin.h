@@ -34,9 +34,13 @@ public:
   [[nodiscard]] bool has_several() const { return outline_.size() > 1; }
   /// True if neither vertex nor outline are rounded.
   [[nodiscard]] bool is_sharp() const { return sharp_; }
-  /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows beyond an edge that edge.
+  /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows from each other the edge
+  /// that one of them touches, where the vertex of the pair is that one.
   [[nodiscard]] Index nearest() const;
-  /// False of sharp corners that stand beyond the edges by more than FeatureMargin::corner_touches.
+  /// The feature of the motion from now on: the nearest one, of rounded ones at their border that which comes
+  /// next. \param slow rates of margins up to this are none [m/s]
+  [[nodiscard]] Index coming(double slow) const;
+  /// False of a sharp corner that stands before no edge, by more than FeatureMargin::corner_touches.
   [[nodiscard]] bool may_touch() const;
   /// Distance beyond the border of a feature at which it is taken to be left [m].
   [[nodiscard]] double border() const { return sharp_ ? FeatureMargin::corner_leaves : past_border; }
@@ -44,13 +48,17 @@ public:
   [[nodiscard]] FeatureMargin margin(Index feature) const;
 
 private:
+  [[nodiscard]] Index touching_at(Index corner, Index found) const;
   [[nodiscard]] Index edge_at(Index corner, Index found) const;
+  [[nodiscard]] Vec<2> in_frame_of_vertex(const Vec<2>& point) const;
+  [[nodiscard]] double separation_along_other(const OutlineEdge& edge) const;
   [[nodiscard]] double separation_along(const OutlineEdge& edge) const;
 
   ConvexOutline outline_;  // in the frame of its body,
   std::optional<FaceChain> chain_;
   Vec<2> place_, rate_;               // as the vertex and its velocity,
-  ConvexOutline of_vertex_;           // in the frame of the other body, which
+  ConvexOutline of_vertex_;           // in the frame of the other body,
+  Vec<2> vertex_ = Vec<2>::Zero();    // as the vertex; that body
   Vec<2> shift_;                      // stands here in the frame of the first,
   double cosine_ = 1.0, sine_ = 0.0;  // turned by this
   bool sharp_ = false;

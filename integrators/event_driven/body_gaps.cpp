@@ -66,7 +66,7 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
   return finite;
 }
 
-Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Event before) {
+Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event before) {
   const GroupModel& model = step.motion.model();
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   const double length = step.end() - step.begin();
@@ -74,7 +74,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
   Event found = before;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
     const std::size_t pair = model.bounds[place].pair;
-    if (step.is_active[pair] != 0 || passed_over[pair] != 0) continue;
+    if (step.is_active[pair] != 0 || from[pair] >= step.end()) continue;
     ClosingRule rule;
     rule.noise = step.scales.gap_noise;
     rule.level = step.ends.gap_level(pair);
@@ -82,9 +82,11 @@ Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over, Ev
     if (start.gaps[pair].value + end.gaps[pair].value - rule.fastest * length > 2.0 * rule.noise) continue;
     rule.flies_freely = step.motion.flies_freely();
     rule.until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
-    const double time = first_closing(path, gap_of(model, place), rule,
-                                      {step.begin(), start.gap_known[place] != 0, start.gaps[pair]},
-                                      {step.end(), end.gap_known[place] != 0, end.gaps[pair]});
+    const PairGap gap = gap_of(model, place);
+    GapLook first{step.begin(), start.gap_known[place] != 0, start.gaps[pair]};
+    if (from[pair] > step.begin()) first = {from[pair], true, gap_in(gap, path.sample(from[pair]))};
+    const double time =
+        first_closing(path, gap, rule, first, {step.end(), end.gap_known[place] != 0, end.gaps[pair]});
     if (time < rule.until) found = {time, Guard::gap, pair};
   }
   return found;

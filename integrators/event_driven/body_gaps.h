@@ -18,8 +18,9 @@ namespace carom {
 [[nodiscard]] CAROM_API bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_active,
                                               const MotionSample& at, StepEnd& out);
 
-/// The first closing before an event, else that event. \param passed_over by pair: not looked at
-[[nodiscard]] CAROM_API Event predict_body_gap(SearchedStep& step, std::span<const char> passed_over,
+/// The first closing before an event, else that event. \param from by pair: when its gap is looked at first
+/// [s]
+[[nodiscard]] CAROM_API Event predict_body_gap(SearchedStep& step, std::span<const double> from,
                                                Event before);
 
 }  // namespace carom

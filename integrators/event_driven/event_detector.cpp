@@ -47,8 +47,7 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   guards_.update(ends_.start().sample.guards, scales_.guard_noise);
 }
 
-/// Takes the features that vertices touch for those of the phase; at the border of two the one that comes
-/// next.
+/// Takes the features that vertices touch for those of the phase.
 void EventDetector::take_features(double time, const double* y) {
   bool sampled = false;
   for (ActiveContact& closed : motion_->active().list()) {
@@ -58,10 +57,7 @@ void EventDetector::take_features(double time, const double* y) {
     sampled = true;
     const FeatureRegions regions = motion_->regions(closed.pair, memory_->within);
     if (!regions.has_several()) continue;
-    closed.feature = regions.nearest();
-    const FeatureMargin margin = regions.margin(closed.feature);
-    const bool at_border = !regions.is_sharp() && margin.value <= 2.0 * regions.border();
-    if (at_border && margin.rate < -scales_.speed_noise) closed.feature = margin.beyond;
+    closed.feature = regions.coming(scales_.speed_noise);
   }
 }
 
@@ -124,7 +120,7 @@ bool EventDetector::finds_unbounded_force(const Flow& flow) {
 }
 
 Event EventDetector::first(SearchedStep& step) {
-  passed_over_.gaps.assign(ends_.end().gaps.size(), 0);
+  passed_over_.gaps.assign(ends_.end().gaps.size(), step.begin());
   passed_over_.forces.assign(ends_.end().sample.margins.size(), 0);
   for (;;) {
     const Event predicted = predict_event(step, passed_over_);
@@ -135,8 +131,21 @@ Event EventDetector::first(SearchedStep& step) {
     const Event located = locate_event(step, predicted, landing_);
     if (located.guard != Guard::restart) return first_of(step, predicted, located);
     if (!is_false_alarm(step, predicted, located)) return located;
-    (predicted.guard == Guard::force ? passed_over_.forces : passed_over_.gaps)[predicted.which] = 1;
+    pass_over(step, predicted);
   }
+}
+
+/// A gap that is open at the begin of a step is looked at from a little later on, at ever larger distances:
+/// it may open and close again, within the step too.
+void EventDetector::pass_over(const SearchedStep& step, const Event& predicted) {
+  if (predicted.guard == Guard::force) {
+    passed_over_.forces[predicted.which] = 1;
+    return;
+  }
+  constexpr double shortest = 1e-9, growth = 4.0;  // of the step
+  const double length = step.end() - step.begin();
+  double& from = passed_over_.gaps[predicted.which];
+  from = std::min(step.begin() + std::max(shortest * length, growth * (from - step.begin())), step.end());
 }
 
 /// True if the step can be kept although a predicted event is not there.
@@ -147,7 +156,8 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
     return true;
   if (predicted.guard != Guard::gap) return false;
   // A gap with an outline may open and close again where the nearest feature changes.
-  if (motion_->model().bound_of[predicted.which] != none) return !(located.time > step.begin());
+  if (!(located.time > step.begin())) return true;
+  if (motion_->model().bound_of[predicted.which] != none) return false;
   // A gap that opens: in steps of low order there would be one after each restart.
   const StepPolynomial::End &start = ends_.start().gaps[predicted.which],
                             &end = ends_.end().gaps[predicted.which];

@@ -48,6 +48,7 @@ public:
 private:
   void take_features(double time, const double* y);
   [[nodiscard]] Event first(SearchedStep& step);
+  void pass_over(const SearchedStep& step, const Event& predicted);
   [[nodiscard]] bool is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] Event first_of(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] bool finds_unbounded_force(const Flow& flow);

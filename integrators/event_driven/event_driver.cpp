@@ -46,6 +46,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
+      overlaps_(assembly, detector_, options_),
       memory_(assembly, options, stop),
       groups_(assembly, detector_, options_, memory_),
       evaluation_(make_evaluation(assembly)),
@@ -107,6 +108,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
+  demand_apart(state.time);
   balance_.finish();
   write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
@@ -151,8 +153,7 @@ void EventDriver::advance_groups(double to) {
     failure.time = trial_.time;
     throw SolverError("event-driven at t = " + to_text(trial_.time) + " s: " + error.what(), failure);
   } catch (...) {
-    started_ = false;
-    memory_.chain.reset_statistics();
+    abandon();
     throw;
   }
 }
@@ -175,9 +176,23 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
   report_contacts(out);
 }
 
-void EventDriver::fail_energy(double from, double to) {
+void EventDriver::demand_apart(double from) {
+  try {
+    overlaps_.demand_apart(trial_, evaluation_, from);
+  } catch (...) {
+    abandon();
+    throw;
+  }
+}
+
+/// What groups have run ahead by is of no use after an error.
+void EventDriver::abandon() {
   started_ = false;
   memory_.chain.reset_statistics();
+}
+
+void EventDriver::fail_energy(double from, double to) {
+  abandon();
   SolverFailure failure;
   failure.time = from;
   failure.step = to - from;

@@ -13,6 +13,7 @@
 #include <carom/integrators/event_driven/group_memory.h>
 #include <carom/integrators/event_driven/group_set.h>
 #include <carom/integrators/event_driven/law_continuity.h>
+#include <carom/integrators/event_driven/overlap_check.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/step_report.h>
@@ -35,7 +36,8 @@ public:
   void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
-  /// ModelError where bodies are too deep in shapes on ground at a start.
+  /// ModelError where bodies are too deep in shapes on ground at a start, SolverError where anything is too
+  /// deep in anything at the end (OverlapCheck).
   void advance(State& state, Companion& companion, double target, StepReport& report,
                std::vector<EventRecord>& events);
   /// Reaction of a joint at a state last advanced to, or changed to since.
@@ -56,6 +58,8 @@ private:
   void count(Companion& companion);
   void advance_groups(double to);
   void write_report(double from, double to, StepReport& out) const;
+  void demand_apart(double from);
+  void abandon();
   [[noreturn]] void fail_energy(double from, double to);
   void report_contacts(StepReport& report) const;
 
@@ -63,6 +67,7 @@ private:
   EventDriven options_;
   Detector detector_;
   LawContinuity laws_;
+  OverlapCheck overlaps_;
   GroupMemory memory_;
   GroupSet groups_;
   std::unique_ptr<GroupMeetings> meetings_;  // null where no two bodies may touch

@@ -22,11 +22,18 @@ struct Bracket {
   double low, high;
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // a value below zero was found
+  bool rises = false;  // at the high end it has turned: a zero may be before that
 
   void take(double time, double value, bool as_low) {
     (as_low ? low : high) = time;
     (as_low ? f_low : f_high) = value;
     below = below || !as_low;
+    rises = rises && as_low;
+  }
+  void take_rising(double time, double value) {
+    high = time;
+    f_high = value;
+    rises = true;
   }
 };
 
@@ -117,11 +124,16 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
       landing.y.assign(y.begin(), y.end());
       return {time, predicted.guard, predicted.which, predicted.sign};
     }
-    if (rest.has_rate && rest.value > 0.0 && rest.rate >= 0.0) return {time, Guard::restart, 0};
-    at.take(time, rest.value, rest.value > 0.0 || opens);
+    const bool rises = rest.has_rate && rest.value > 0.0 && rest.rate >= 0.0;
+    if (rises && time <= predicted_time) return {time, Guard::restart, 0};
+    if (rises) {
+      at.take_rising(time, rest.value);
+    } else {
+      at.take(time, rest.value, rest.value > 0.0 || opens);
+    }
     if (at.high - at.low <= 2.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(at.high)))
       break;
-    time = next_time(at, time, rest, opens || i % 8 == 7);
+    time = next_time(at, time, rest, opens || at.rises || i % 8 == 7);
   }
   // From large to large of the other sign: no zero of the forces but a pole.
   const double large = UnboundedForces::growth * step.scales.force;

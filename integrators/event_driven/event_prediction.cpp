@@ -136,8 +136,8 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   Event found = before;
   for (std::size_t i = 0; i < step.motion.model().pairs.size(); ++i) {
-    if (step.is_active[i] != 0 || passed_over.gaps[i] != 0 || step.motion.model().bound_of[i] != none)
-      continue;
+    if (step.is_active[i] != 0 || step.motion.model().bound_of[i] != none) continue;
+    if (passed_over.gaps[i] >= step.end()) continue;
     // The flow does not know the motion of shapes on ground.
     const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
     FallRule rule;
@@ -156,9 +156,10 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
                contact.normal_acceleration(at.acceleration.data())},
               curvature};
     });
-    const double time =
-        FallSearch(gap, rule, until(found))
-            .first({step.begin(), start.gaps[i], curvature}, {step.end(), end.gaps[i], curvature});
+    const bool whole = passed_over.gaps[i] <= step.begin();
+    const QuantityLook from =
+        whole ? QuantityLook{step.begin(), start.gaps[i], curvature} : gap.look(passed_over.gaps[i]);
+    const double time = FallSearch(gap, rule, until(found)).first(from, {step.end(), end.gaps[i], curvature});
     if (time < until(found)) found = {time, Guard::gap, i};
   }
   return predict_body_gap(step, passed_over.gaps, found);

@@ -13,8 +13,8 @@ namespace carom {
 
 /// Guards of a step that turned out to be false alarms.
 struct FalseAlarms {
-  std::vector<char> gaps;    ///< by pair
-  std::vector<char> forces;  ///< by island that touches
+  std::vector<double> gaps;  ///< by pair: its gap is looked at from then on [s]
+  std::vector<char> forces;  ///< by island that touches: not looked at
 };
 
 /// The first event, or `nothing` at the end of the step.

@@ -1,6 +1,7 @@
 // Problem: modes of the contacts of an island from its accelerations.
 
 #include <carom/integrators/event_driven/mode_decision.h>
+#include <carom/integrators/event_driven/modes_by_motion.h>
 
 #include <algorithm>
 #include <cmath>
@@ -222,21 +223,47 @@ void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
 /// Modes by accelerations instead of forces. Where forces are not unique, solvers answer with extreme ones:
 /// friction at its bound although nothing slips, or nothing on a contact that others relieve; and forces that
 /// are zero may be rounding above it although the contact parts. Taken by their forces, such contacts would
-/// change their modes from event to event.
+/// change their modes from event to event. Where contacts slip, forces that are not unique may move bodies,
+/// and the flow has others than the answer: then a contact is decided to start slipping, is stopped by the
+/// flow at once, and so on. So the modes are those in which the flow moves as the answer does: by
+/// accelerations, else by forces, else with friction fixed where the answer has it at its bound or none,
+/// which leaves the flow as few unknown forces as the answer has.
 void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
-  const double small = SlipDirections::no_acceleration * size_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    Candidate& candidate = candidates[taking_part_[c]];
-    const Constraint& contact = contacts_[c];
-    if (candidate.mode == ContactMode::open || contact.has_dry_friction()) continue;
-    if (contact.normal_acceleration(acceleration_.data()) > small) candidate.mode = ContactMode::open;
-    const bool may_stick = candidate.slip == 0.0 && !candidate.starts_slipping && !candidate.frictionless;
-    if (candidate.mode == ContactMode::open || !may_stick) continue;
-    if (contact.rows < 2 || contact.friction == 0.0) continue;
-    if (std::abs(contact.tangential_acceleration(acceleration_.data())) <= small)
-      candidate.mode = ContactMode::stick;
-  }
+  const DecidedContacts decided{contacts_, taking_part_, acceleration_.data(),
+                                SlipDirections::no_acceleration * size_};
+  const auto take_forces = [&] {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      candidates[i].mode = by_forces_[i];
+      candidates[i].frictionless = candidates[i].at.law.sticking_friction() == 0.0;
+    }
+  };
+  open_where_parting(decided, candidates);
+  by_forces_.clear();
+  for (const Candidate& candidate : candidates) by_forces_.push_back(candidate.mode);
+  stick_where_still(decided, candidates);
   complete_modes(motion, now, candidates);
+  if (keeps_motion(motion, now, candidates)) return;
+  take_forces();
+  if (keeps_motion(motion, now, candidates)) return;
+  fix_extreme_friction(decided, problem_, candidates);
+  if (!keeps_motion(motion, now, candidates)) take_forces();
+}
+
+/// True if the forces that the flow has in the modes of the candidates move bodies as the answer does. They
+/// do where nothing slips: forces that are not unique cancel each other then.
+bool ModeDecision::keeps_motion(SmoothMotion& motion, MotionSample& now,
+                                std::span<const Candidate> candidates) {
+  constexpr double same = 1e-8;  // of the accelerations without contact
+  list_closed(candidates);
+  const bool slides = std::any_of(active_.begin(), active_.end(), [](const ActiveContact& closed) {
+    return !closed.sticks() && closed.friction != 0.0;
+  });
+  if (!slides || active_.size() < 2) return true;
+  double change = 0.0;
+  BoundIteration once;
+  if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))
+    return false;
+  return motion_apart(problem_, active_, comparison_) <= same * size_;
 }
 
 /// The contacts that stay closed, in their modes.
@@ -251,7 +278,7 @@ void ModeDecision::list_closed(std::span<const Candidate> candidates) {
     closed.mode = candidate.mode;
     closed.frictionless = candidate.frictionless;
     closed.at = contacts_[c];
-    closed.friction = contacts_[c].friction;
+    closed.friction = candidate.frictionless ? 0.0 : contacts_[c].friction;
   }
 }
 

@@ -11,6 +11,7 @@
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/export.h>
+#include <carom/integrators/event_driven/modes_by_motion.h>
 #include <carom/integrators/event_driven/slip_directions.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
@@ -54,6 +55,8 @@ private:
   bool converge_friction_bounds(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                                 SolverChain& chain);
   void settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
+  [[nodiscard]] bool keeps_motion(SmoothMotion& motion, MotionSample& now,
+                                  std::span<const Candidate> candidates);
   void complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
@@ -66,6 +69,8 @@ private:
   double size_ = 0.0;                  // of accelerations along rows, without contact [m/s^2]
   std::vector<ActiveContact> active_;  // those that stay, in the order of contacts_
   std::vector<ForceMargin> margins_;
+  std::vector<ContactMode> by_forces_;  // modes of the answer
+  MotionComparison comparison_;
 };
 
 }  // namespace carom

@@ -98,6 +98,7 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     candidate.pair = at.motion.model().pairs[i];
     candidate.place = i;
     candidate.at = contact;
+    take_coming_feature(at, candidate);
     if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
     const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
     candidate.slip = std::abs(slip) > speed_noise && candidate.pair != stopped_ ? slip : 0.0;
@@ -112,6 +113,18 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     }
     candidate.releases = std::find(releasing_.begin(), releasing_.end(), candidate.pair) != releasing_.end();
   }
+}
+
+/// At the border of two features the rows are the same, and their rates are not: what is decided is to hold
+/// for the feature that the motion comes to.
+void ModeSelection::take_coming_feature(const EventInstant& at, Candidate& candidate) {
+  if (!candidate.pair.has_outline()) return;
+  const FeatureRegions regions = at.motion.regions(candidate.pair, at.now);
+  if (regions.is_sharp() || !regions.has_several()) return;
+  const Index feature = regions.coming(at.scales.speed_noise);
+  if (feature == regions.nearest()) return;
+  follow(*at.motion.model().detector, candidate.pair, feature, at.now.view(), at.now.evaluation,
+         at.now.places, candidate.at);
 }
 
 bool ModeSelection::has_unbounded_force() const {

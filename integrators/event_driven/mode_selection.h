@@ -57,6 +57,7 @@ private:
     double noise;  // of it
   };
 
+  static void take_coming_feature(const EventInstant& at, Candidate& candidate);
   void collect_candidates(std::span<const Index> pairs, const EventInstant& at);
   [[nodiscard]] bool select_island(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] Decision decide(EventInstant& at);

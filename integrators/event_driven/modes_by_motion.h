@@ -1,0 +1,46 @@
+#pragma once
+
+/// \file
+/// Modes of contacts by their accelerations, where forces do not tell them: forces that are not unique may be
+/// at their bounds, or zero, by chance.
+
+#include <carom/contact/active_contact.h>
+#include <carom/contact/island_problem.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/slip_directions.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Contacts of a problem of accelerations that has been answered. A view.
+struct DecidedContacts {
+  std::span<const Constraint> contacts;      ///< of the problem
+  std::span<const std::size_t> taking_part;  ///< candidates by contact
+  const double* acceleration;                ///< of all bodies
+  double small;                              ///< accelerations up to this are zero [m/s^2]
+};
+
+/// Memory of motion_apart().
+struct MotionComparison {
+  std::vector<double> force, answered, given;  ///< by row
+};
+
+/// Opens closed candidates whose contacts part.
+CAROM_API void open_where_parting(const DecidedContacts& decided, std::span<Candidate> candidates);
+/// Lets closed candidates stick that have no velocity of slip and get none, except where friction is
+/// exhausted.
+CAROM_API void stick_where_still(const DecidedContacts& decided, std::span<Candidate> candidates);
+/// Takes contacts that stick for slipping ones where the answer has their friction at its bound, or none:
+/// they have that friction then, and no unknown force. That they do not slip follows from the others.
+CAROM_API void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& problem,
+                                    std::span<Candidate> candidates);
+/// Largest difference of the accelerations along rows between the answer of a problem and forces of some of
+/// its contacts, nothing at the others [m/s^2]. \param closed these, in the order of the problem
+[[nodiscard]] CAROM_API double motion_apart(const IslandProblem& problem,
+                                            std::span<const ActiveContact> closed, MotionComparison& memory);
+
+}  // namespace carom

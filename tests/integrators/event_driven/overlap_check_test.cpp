@@ -1,0 +1,67 @@
+// The check at the end of a step: what is in each other is named, what touches is left alone.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+
+#include <carom/carom.h>
+#include <carom/core/assembly.h>
+#include <carom/integrators/event_driven/overlap_check.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace {
+
+using namespace body_scenes;
+
+/// Two boxes side by side on a floor, a gap between them; and what the check says of them.
+class TwoBoxes {
+public:
+  TwoBoxes(double gap, double height) {
+    system_.set_default_law({.friction = 0.3, .normal_restitution = 0.0});
+    system_.add(HalfPlane{.normal = {0.0, 1.0}});
+    add_box(system_, 1.0, 0.2, 0.1, {-0.1, 0.05 + height});
+    add_box(system_, 1.0, 0.2, 0.1, {0.1 + gap, 0.05 + height});
+  }
+
+  [[nodiscard]] std::string told() const {
+    const Simulation start(system_, TimeStepping{.step = 1e-3});
+    const Assembly assembly(system_);
+    const Detector detector(assembly);
+    const EventDriven options;
+    OverlapCheck check(assembly, detector, options);
+    Evaluation evaluation = make_evaluation(assembly);
+    evaluate_positions(assembly, start.state().view(), evaluation);
+    try {
+      check.demand_apart(start.state(), evaluation, -0.25);
+    } catch (const SolverError& error) {
+      EXPECT_EQ(error.failure().time, -0.25);
+      EXPECT_EQ(error.failure().step, 0.25);
+      EXPECT_EQ(error.failure().parts.size(), 1U);
+      return error.what();
+    }
+    return {};
+  }
+
+private:
+  System system_;
+};
+
+TEST(OverlapCheck, LeavesAloneWhatTouchesOrIsApart) {
+  EXPECT_EQ(TwoBoxes(0.01, 0.01).told(), "");
+  EXPECT_EQ(TwoBoxes(0.0, 0.0).told(), "");
+  // 10 (gap_tolerance + relative_tolerance * 0.1 m + absolute_tolerance) = 1.1e-8 m.
+  EXPECT_EQ(TwoBoxes(-1.0e-8, 0.0).told(), "");
+}
+
+TEST(OverlapCheck, NamesTheDeepestContact) {
+  const std::string of_bodies = TwoBoxes(-1e-3, -1e-4).told();
+  EXPECT_NE(of_bodies.find("rigid body #0 on polygon #1"), std::string::npos) << of_bodies;
+  EXPECT_NE(of_bodies.find("is -0.001"), std::string::npos) << of_bodies;
+  const std::string of_ground = TwoBoxes(-1e-4, -2e-3).told();
+  EXPECT_NE(of_ground.find("on half-plane #0"), std::string::npos) << of_ground;
+  EXPECT_NE(TwoBoxes(-1.3e-8, 0.0).told(), "");
+}
+
+}  // namespace
