@@ -115,11 +115,9 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   return decision;
 }
 
-/// The limit of impacts of vanishing time eps, with b = gamma + eps a and e = 0: a problem whose matrix is
-/// copositive, so that it has an answer where that of accelerations with given directions of slip has none,
-/// or none that solvers find. Divided by eps, contacts that slip have a velocity gamma/eps without bound.
-/// Where they go on slipping the impulses divided by eps are the forces; else impulses of the size of gamma
-/// stop some of them, and there are no forces.
+/// The limit of impacts of vanishing time eps, b = gamma + eps a and e = 0, divided by eps: its matrix is
+/// copositive, so that it has an answer where the problem of accelerations has none that solvers find. What
+/// slips has a velocity gamma/eps without bound; if impulses stop it, there are no forces.
 Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
                                       std::span<Candidate> candidates, SolverChain& chain) {
   constexpr double unbounded = 1e6;  // against the accelerations without contact
@@ -220,23 +218,11 @@ void ModeDecision::take(std::span<Candidate> candidates, std::size_t solution) {
   read_modes(candidates, problem_.impulses());
 }
 
-/// Modes by accelerations instead of forces. Where forces are not unique, solvers answer with extreme ones:
-/// friction at its bound although nothing slips, or nothing on a contact that others relieve; and forces that
-/// are zero may be rounding above it although the contact parts. Taken by their forces, such contacts would
-/// change their modes from event to event. Where contacts slip, forces that are not unique may move bodies,
-/// and the flow has others than the answer: then a contact is decided to start slipping, is stopped by the
-/// flow at once, and so on. So the modes are those in which the flow moves as the answer does: by
-/// accelerations, else by forces, else with friction fixed where the answer has it at its bound or none,
-/// which leaves the flow as few unknown forces as the answer has.
+/// Modes in which the flow moves as the answer does (modes_by_motion.h).
 void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates) {
   const DecidedContacts decided{contacts_, taking_part_, acceleration_.data(),
                                 SlipDirections::no_acceleration * size_};
-  const auto take_forces = [&] {
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      candidates[i].mode = by_forces_[i];
-      candidates[i].frictionless = candidates[i].at.law.sticking_friction() == 0.0;
-    }
-  };
+  const auto take_forces = [&] { take_modes(by_forces_, candidates); };
   open_where_parting(decided, candidates);
   by_forces_.clear();
   for (const Candidate& candidate : candidates) by_forces_.push_back(candidate.mode);
@@ -330,9 +316,8 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
   }
 }
 
-/// Forces of redundant contacts are not unique, and bounds of friction in joints follow from them: the
-/// decision needs those that the flow will find, or the flow undoes it at once. Modes by the problem at given
-/// bounds, and bounds by the forces that the flow has in these modes, in turns.
+/// Bounds of friction in joints follow from forces that may not be unique: the decision needs those that the
+/// flow will find. Modes by the problem at given bounds, and bounds by the flow's forces in these, in turns.
 bool ModeDecision::converge_friction_bounds(SmoothMotion& motion, MotionSample& now,
                                             std::span<Candidate> candidates, SolverChain& chain) {
   BoundIteration iteration;

@@ -3,6 +3,14 @@
 /// \file
 /// Modes of contacts by their accelerations, where forces do not tell them: forces that are not unique may be
 /// at their bounds, or zero, by chance.
+///
+/// Solvers answer with extreme ones: friction at its bound although nothing slips, or nothing on a contact
+/// that others relieve; and forces that are zero may be rounding above it although the contact parts. Taken
+/// by their forces, such contacts would change their modes from event to event. Where contacts slip, forces
+/// that are not unique may move bodies, and the flow has others than the answer: then a contact is decided to
+/// start slipping, is stopped by the flow at once, and so on. So the modes are those in which the flow moves
+/// as the answer does: by accelerations, else by forces, else with friction fixed where the answer has it at
+/// its bound or none, which leaves the flow as few unknown forces as the answer has.
 
 #include <carom/contact/active_contact.h>
 #include <carom/contact/island_problem.h>
@@ -38,6 +46,13 @@ CAROM_API void stick_where_still(const DecidedContacts& decided, std::span<Candi
 /// they have that friction then, and no unknown force. That they do not slip follows from the others.
 CAROM_API void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& problem,
                                     std::span<Candidate> candidates);
+/// Gives candidates modes, and the friction of their laws. \param modes by candidate
+inline void take_modes(std::span<const ContactMode> modes, std::span<Candidate> candidates) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    candidates[i].mode = modes[i];
+    candidates[i].frictionless = candidates[i].at.law.sticking_friction() == 0.0;
+  }
+}
 /// Largest difference of the accelerations along rows between the answer of a problem and forces of some of
 /// its contacts, nothing at the others [m/s^2]. \param closed these, in the order of the problem
 [[nodiscard]] CAROM_API double motion_apart(const IslandProblem& problem,
