@@ -46,7 +46,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
-      overlaps_(assembly, detector_, options_),
+      overlaps_(detector_, options_),
       memory_(assembly, options, stop),
       groups_(assembly, detector_, options_, memory_),
       evaluation_(make_evaluation(assembly)),
@@ -60,6 +60,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
         "the "
         "time-stepping mode");
   }
+  constexpr std::size_t few = 8;
+  modes_.reserve(few);
   if (!detector_.bodies_touch()) return;
   meetings_ = std::make_unique<GroupMeetings>(assembly, detector_, options_, memory_, groups_);
 }

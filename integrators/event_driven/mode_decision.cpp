@@ -225,6 +225,7 @@ void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::sp
   const auto take_forces = [&] { take_modes(by_forces_, candidates); };
   open_where_parting(decided, candidates);
   by_forces_.clear();
+  by_forces_.reserve(candidates.size());
   for (const Candidate& candidate : candidates) by_forces_.push_back(candidate.mode);
   stick_where_still(decided, candidates);
   complete_modes(motion, now, candidates);
@@ -240,11 +241,8 @@ void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::sp
 bool ModeDecision::keeps_motion(SmoothMotion& motion, MotionSample& now,
                                 std::span<const Candidate> candidates) {
   constexpr double same = 1e-8;  // of the accelerations without contact
+  if (!forces_may_move(contacts_, taking_part_, candidates)) return true;
   list_closed(candidates);
-  const bool slides = std::any_of(active_.begin(), active_.end(), [](const ActiveContact& closed) {
-    return !closed.sticks() && closed.friction != 0.0;
-  });
-  if (!slides || active_.size() < 2) return true;
   double change = 0.0;
   BoundIteration once;
   if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))

@@ -88,7 +88,9 @@ bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at
 
 void ModeSelection::collect_candidates(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Candidate>& candidates = memory_->candidates;
+  constexpr std::size_t few = 8;
   candidates.clear();
+  candidates.reserve(std::min(pairs.size(), few));
   const double speed_noise = at.scales.speed_noise;
   const double* const velocity = at.velocities();
   for (const Index i : pairs) {

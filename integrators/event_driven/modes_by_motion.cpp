@@ -58,6 +58,20 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
   }
 }
 
+bool forces_may_move(std::span<const Constraint> contacts, std::span<const std::size_t> taking_part,
+                     std::span<const Candidate> candidates) {
+  std::size_t closed = 0;
+  bool slides = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Candidate& candidate = candidates[taking_part[c]];
+    if (candidate.mode == ContactMode::open) continue;
+    ++closed;
+    const bool rubs = !candidate.frictionless && contacts[c].friction != 0.0;
+    slides = slides || (rubs && candidate.mode != ContactMode::stick);
+  }
+  return slides && closed > 1;
+}
+
 double motion_apart(const IslandProblem& problem, std::span<const ActiveContact> closed,
                     MotionComparison& memory) {
   const std::span<const Constraint> contacts = problem.constraints();

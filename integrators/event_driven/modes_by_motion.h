@@ -46,6 +46,11 @@ CAROM_API void stick_where_still(const DecidedContacts& decided, std::span<Candi
 /// they have that friction then, and no unknown force. That they do not slip follows from the others.
 CAROM_API void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& problem,
                                     std::span<Candidate> candidates);
+/// True if forces that are not unique may move bodies: of several closed contacts one slips with friction.
+/// \param taking_part as DecidedContacts::taking_part
+[[nodiscard]] CAROM_API bool forces_may_move(std::span<const Constraint> contacts,
+                                             std::span<const std::size_t> taking_part,
+                                             std::span<const Candidate> candidates);
 /// Gives candidates modes, and the friction of their laws. \param modes by candidate
 inline void take_modes(std::span<const ContactMode> modes, std::span<Candidate> candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {

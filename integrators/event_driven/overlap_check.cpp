@@ -10,6 +10,12 @@
 
 namespace carom {
 
+OverlapCheck::OverlapCheck(const Detector& detector, const EventDriven& options)
+    : detector_(&detector), options_(&options) {
+  constexpr std::size_t few = 8;
+  found_.reserve(few);
+}
+
 double OverlapCheck::allowed(const State& state) const {
   constexpr double tolerances = 10.0;  // output within a step is less exact than its end
   double size = 0.0;

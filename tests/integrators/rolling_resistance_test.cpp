@@ -221,7 +221,7 @@ TEST(RollingResistance, GroundThatTurnsTakesADiscAlong) {
                                   .angular_acceleration = [](double) { return 0.0; }};
     const Surface law{.friction = 0.0, .normal_restitution = e, .rolling_resistance = rho};
     if (pieces) {
-      system.add(Block{.vertices = {{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}, .motion = motion}, law);
+      system.add(planar::Block{.vertices = {{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}, .motion = motion}, law);
     } else {
       system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = motion}, law);
     }
