@@ -28,8 +28,9 @@ double LargeProblemSolver::mass_ratio(const ContactProblem& problem) {
 /// with the ratio of masses that lie on each other.
 int LargeProblemSolver::sweeps_of(const ContactProblem& problem) const {
   constexpr double most_times = 64.0;
+  constexpr int most_sweeps = std::numeric_limits<int>::max() / 16;
   const double times = std::clamp(std::sqrt(mass_ratio(problem) / uneven_masses), 1.0, most_times);
-  return static_cast<int>(std::min(times * budget_.sweeps, double{std::numeric_limits<int>::max() / 16}));
+  return static_cast<int>(std::min(times * budget_.sweeps, double{most_sweeps}));
 }
 
 void LargeProblemSolver::set_budget(const SweepBudget& budget) {
