@@ -10,8 +10,6 @@
 
 namespace carom {
 
-namespace {}  // namespace
-
 double LargeProblemSolver::mass_ratio(const ContactProblem& problem) {
   const ResponseFactors& factors = problem.factors();
   double least = std::numeric_limits<double>::infinity(), most = 0.0;

@@ -93,12 +93,13 @@ void EventBalance::order_events() {
   for (std::size_t i = 0; i < events.size(); ++i) order_.emplace_back(events[i].time, i);
   std::sort(order_.begin(), order_.end());
   for (std::size_t first = 0; first < order_.size(); ++first) {
+    if (order_[first].second == first) continue;
     const EventRecord held = events[first];
     std::size_t to = first;
     for (std::size_t from; (from = std::exchange(order_[to].second, to)) != first; to = from) {
       events[to] = events[from];
     }
-    if (to != first) events[to] = held;
+    events[to] = held;
   }
 }
 

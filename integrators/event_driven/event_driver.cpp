@@ -46,7 +46,7 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       options_((check_options(options), options)),
       detector_(assembly),
       laws_(assembly, detector_),
-      overlaps_(detector_, options_),
+      overlaps_(assembly, detector_, options_),
       memory_(assembly, options, stop),
       groups_(assembly, detector_, options_, memory_),
       evaluation_(make_evaluation(assembly)),
@@ -187,7 +187,7 @@ void EventDriver::demand_apart(double from) {
   }
 }
 
-/// What groups have run ahead by is of no use after an error.
+/// Steps of groups ahead of the state are of no use after an error.
 void EventDriver::abandon() {
   started_ = false;
   memory_.chain.reset_statistics();

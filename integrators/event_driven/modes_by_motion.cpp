@@ -42,7 +42,7 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
   for (std::size_t c = 0; c < decided.contacts.size(); ++c) {
     Candidate& candidate = candidates[decided.taking_part[c]];
     const Constraint& contact = decided.contacts[c];
-    // What takes more to slip than to slide would have another force.
+    // Static friction larger than sliding friction would change the force.
     if (!is_still(decided, c, candidate) || contact.has_dry_friction() || contact.law.has_static_friction())
       continue;
     const auto row = static_cast<std::size_t>(problem.first_row(c));

@@ -10,8 +10,8 @@
 
 namespace carom {
 
-OverlapCheck::OverlapCheck(const Detector& detector, const EventDriven& options)
-    : detector_(&detector), options_(&options) {
+OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options)
+    : assembly_(&assembly), detector_(&detector), options_(&options) {
   constexpr std::size_t few = 8;
   found_.reserve(few);
 }
@@ -24,24 +24,37 @@ double OverlapCheck::allowed(const State& state) const {
   return tolerances * (options_->gap_tolerance + of_integrator);
 }
 
+/// Component by component: of many contacts that last hardly any are kept at a time.
 void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
-  const double deepest = allowed(state);
+  const double allowed_gap = -allowed(state);
   detector_->place(state.time, places_);
+  const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();
-  detector_->find_all({state.view(), evaluation, places_}, search_, found_);
-  const Constraint* worst = nullptr;
-  for (const Constraint& at : found_) {
-    if (at.type != ConstraintType::contact || at.gap >= -deepest) continue;
-    if (worst == nullptr || at.gap < worst->gap) worst = &at;
+  double deepest = allowed_gap;
+  ConstraintKey worst;
+  const auto judge = [&] {
+    for (const Constraint& at : found_) {
+      if (at.type != ConstraintType::contact || at.gap >= deepest) continue;
+      deepest = at.gap;
+      worst = at.key;
+    }
+    found_.clear();
+  };
+  const auto components = static_cast<Index>(assembly_->components().size());
+  for (Index component = 0; component < components; ++component) {
+    detector_->find(Range{component, component + 1}, query, found_);
+    judge();
   }
-  if (worst == nullptr) return;
+  if (detector_->bodies_touch()) detector_->bodies().find(query, search_, found_);
+  judge();
+  if (deepest == allowed_gap) return;
   SolverFailure failure;
   failure.time = from;
   failure.step = state.time - from;
-  failure.parts.push_back(detector_->name(worst->key));
+  failure.parts.push_back(detector_->name(worst));
   const std::string what = "event-driven at t = " + to_text(state.time) + " s: gap of " +
-                           failure.parts.front() + " is " + to_text(worst->gap) + " m; allowed: not below " +
-                           to_text(-deepest) + " m. Its closing was missed";
+                           failure.parts.front() + " is " + to_text(deepest) + " m; allowed: not below " +
+                           to_text(allowed_gap) + " m. Its closing was missed";
   throw SolverError(what, std::move(failure));
 }
 

@@ -6,6 +6,7 @@
 /// was missed is an error that names the contact, never a motion of bodies in each other.
 
 #include <carom/contact/detection/detector.h>
+#include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
@@ -19,8 +20,8 @@ namespace carom {
 /// The check of the states of one model. Keeps memory only.
 class CAROM_API OverlapCheck {
 public:
-  /// Both must outlive it.
-  OverlapCheck(const Detector& detector, const EventDriven& options);
+  /// All must outlive it.
+  OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options);
 
   /// How deep shapes may be in each other at the end of a step [m]: ten times the tolerance of gaps, and what
   /// the tolerances of the integrator leave of a place.
@@ -30,6 +31,7 @@ public:
   void demand_apart(const State& state, const Evaluation& evaluation, double from);
 
 private:
+  const Assembly* assembly_;
   const Detector* detector_;
   const EventDriven* options_;
   GroundPlaces places_;
