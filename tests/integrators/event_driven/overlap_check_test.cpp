@@ -30,7 +30,7 @@ public:
     const Assembly assembly(system_);
     const Detector detector(assembly);
     const EventDriven options;
-    OverlapCheck check(detector, options);
+    OverlapCheck check(assembly, detector, options);
     Evaluation evaluation = make_evaluation(assembly);
     evaluate_positions(assembly, start.state().view(), evaluation);
     try {

@@ -1,6 +1,7 @@
 // Bounds of contact in time stepping: more contacts than memory allows are refused by number, and answers
 // that are not those of the law are never taken silently.
 
+#include "tests/integrators/falling_polygon.h"
 #include "tests/integrators/throws.h"
 #include "tests/random.h"
 
@@ -9,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +19,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::add_falling_polygon;
 using carom_test::Random;
 
 constexpr double g = 9.81;
@@ -58,21 +59,7 @@ System trough(std::uint64_t seed, int bodies) {
   system.set_default_law(law);
   system.add(Wall{.from = {-0.05, 0.0}, .to = {-0.6, 2.0}, .radius = 0.05}, "left");
   system.add(Wall{.from = {0.05, 0.0}, .to = {0.6, 2.0}, .radius = 0.05}, "right");
-  for (int i = 0; i < bodies; ++i) {
-    std::vector<Vec<2>> vertices;
-    const unsigned corners = 3 + random.below(4);
-    for (unsigned k = 0; k < corners; ++k) {
-      const double at = 6.283185307179586 * (k + random.uniform(0.0, 0.5)) / corners;
-      vertices.emplace_back(0.15 * std::cos(at), 0.15 * std::sin(at));
-    }
-    const MassProperties<2> mass = polygon(random.uniform(0.3, 3.0), vertices);
-    for (Vec<2>& vertex : vertices) vertex -= mass.centre;
-    const BodyId body = system.add(RigidBody{.mass = {mass.mass, mass.inertia},
-                                             .position = {random.uniform(-0.05, 0.05), 0.9 + 0.35 * i},
-                                             .angle = random.uniform(-3.0, 3.0),
-                                             .spin = random.uniform(-10.0, 10.0)});
-    system.add(Polygon{.body = body, .vertices = vertices});
-  }
+  for (int i = 0; i < bodies; ++i) add_falling_polygon(system, random, 0.9 + 0.35 * i);
   return system;
 }
 

@@ -1,6 +1,7 @@
 // Polygons that jam in a trough, where e_n differs from e_t: every step is solved, and says how.
 
 #include "tests/energy/ledger_check.h"
+#include "tests/integrators/falling_polygon.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
@@ -17,6 +18,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::add_falling_polygon;
 using carom_test::ledger_closes;
 using carom_test::Random;
 
@@ -31,21 +33,7 @@ System trough(std::uint64_t seed, int bodies) {
   const Vec<2> left(-2.0 * std::cos(slope), 2.0 * std::sin(slope)), right(-left[0], left[1]);
   system.add(Wall{.from = {-0.05, 0.0}, .to = left, .radius = 0.05}, law, "left");
   system.add(Wall{.from = {0.05, 0.0}, .to = right, .radius = 0.05}, law, "right");
-  for (int i = 0; i < bodies; ++i) {
-    std::vector<Vec<2>> vertices;
-    const unsigned corners = 3 + random.below(4);
-    for (unsigned k = 0; k < corners; ++k) {
-      const double at = 6.283185307179586 * (k + random.uniform(0.0, 0.5)) / corners;
-      vertices.emplace_back(0.15 * std::cos(at), 0.15 * std::sin(at));
-    }
-    const MassProperties<2> mass = polygon(random.uniform(0.3, 3.0), vertices);
-    for (Vec<2>& vertex : vertices) vertex -= mass.centre;
-    const BodyId body = system.add(RigidBody{.mass = centred(mass),
-                                             .position = {random.uniform(-0.05, 0.05), 0.9 + 0.35 * i},
-                                             .angle = random.uniform(-3.0, 3.0),
-                                             .spin = random.uniform(-10.0, 10.0)});
-    system.add(Polygon{.body = body, .vertices = vertices});
-  }
+  for (int i = 0; i < bodies; ++i) add_falling_polygon(system, random, 0.9 + 0.35 * i);
   return system;
 }
 
