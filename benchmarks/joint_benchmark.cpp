@@ -1,7 +1,7 @@
 // Mechanisms of rigid rods: one evaluation of accelerations with multipliers, beside Eigen's bare
 // factorisation and solve of the same matrix G M^-1 G^T. `per_rod` and `eigen_per_rod` in seconds of CPU.
 // Storage of a simulation of a chain: `bytes_per_rod`. And ten rods of 1 m and 1 kg, released level, for 10
-// s: `seconds` of CPU, `drift` of the energy [J].
+// s: `seconds` of CPU, `drift` of the energy [J]. Rods released in line in time stepping: `per_rod` and step.
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
@@ -17,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -182,16 +184,21 @@ void storage(benchmark::State& state, const Mode& mode) {
 BENCHMARK_CAPTURE(storage, stepped, TimeStepping{.step = 1e-4})->Iterations(1)->Repetitions(1);
 BENCHMARK_CAPTURE(storage, event, EventDriven{.interval = 1e-3})->Iterations(1)->Repetitions(1);
 
-void ten_rods(benchmark::State& state) {
-  System system;
-  system.add(Gravity{{0.0, -9.81}});
+/// Rods of 1 m and 1 kg, pinned to the origin and to each other, level.
+void add_level_rods(System& system, int rods) {
   BodyId before = ground;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < rods; ++i) {
     const BodyId body = system.add(RigidBody{.mass = rod(1.0, 1.0), .position = {i + 0.5, 0.0}});
     const End<2> end = i == 0 ? End<2>(ground) : End<2>(before, {0.5, 0.0});
     system.add(Revolute{.from = end, .to = {body, {-0.5, 0.0}}});
     before = body;
   }
+}
+
+void ten_rods(benchmark::State& state) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  add_level_rods(system, 10);
   double drift = 0.0, cpu = 0.0;
   for (auto _ : state) {
     Simulation simulation(system, EventDriven{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-10});
@@ -204,5 +211,32 @@ void ten_rods(benchmark::State& state) {
   state.counters["drift"] = drift;
 }
 BENCHMARK(ten_rods)->Unit(benchmark::kMillisecond);
+
+/// Rods released level, all in line, in time stepping: 0.1 s in steps of 1 ms. `per_rod` and step, in
+/// seconds.
+void rods_in_line(benchmark::State& state) {
+  const auto rods = static_cast<int>(state.range(0));
+  constexpr double end = 0.1, step = 1e-3;
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  add_level_rods(system, rods);
+  double sweeps = 0.0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::optional<Simulation> simulation(std::in_place, system, TimeStepping{.step = step});
+    state.ResumeTiming();
+    simulation->run_until(end);
+    state.PauseTiming();
+    const Statistics& made = simulation->statistics();
+    sweeps = static_cast<double>(made.sweeps) / static_cast<double>(made.steps);
+    simulation.reset();
+    state.ResumeTiming();
+  }
+  using benchmark::Counter;
+  state.counters["per_rod"] =
+      Counter(rods * end / step, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["sweeps"] = sweeps;
+}
+BENCHMARK(rods_in_line)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,7 +1,8 @@
 // Free discs over a floor, in time stepping: time per disc and step, beside one loop by hand that does the
 // same sweep and account, and beside the same discs as one component.
 //
-// Names: <what>/<N> for N discs. `per_disc` is in seconds, over one step.
+// Names: <what>/<N> for N discs. `per_disc` is in seconds, over one step. And balls event-driven:
+// `bytes_per_ball`.
 
 #include <carom/carom.h>
 
@@ -118,6 +119,32 @@ void by_hand_with_gaps(benchmark::State& state) {
              [](benchmarks::PlainDiscs& plain) { benchmarks::plain_step_with_gaps(plain, radius, step); });
 }
 
+/// Bytes that an event-driven run of balls holds for each, the user's own System apart, after the 90 impacts
+/// of each have accumulated; no event is recorded.
+void event_storage(benchmark::State& state) {
+  namespace planar = carom::planar;
+  constexpr int balls = 1000;
+  constexpr double rest = 3.0;  // [s]
+  carom::System system;
+  system.add(planar::Gravity{.acceleration = {0.0, -benchmarks::disc_gravity}});
+  system.add(planar::HalfPlane{.normal = {0.0, 1.0}},
+             carom::Surface{.friction = 0.3, .normal_restitution = 0.9});
+  for (int i = 0; i < balls; ++i) {
+    const double fall = 0.02 + 0.08 * i / (balls - 1);
+    const carom::BodyId ball =
+        system.add(planar::RigidBody{.mass = planar::solid_sphere(0.01, radius),
+                                     .position = benchmarks::disc_position(i, radius, radius + fall),
+                                     .velocity = {benchmarks::disc_speed, 0.0}});
+    system.add(planar::Disc{.body = ball, .radius = radius});
+  }
+  for (auto _ : state) {
+    const std::int64_t before = benchmarks::live_bytes();
+    carom::Simulation simulation(system, carom::EventDriven{.record_events = false});
+    simulation.run_until(rest);
+    state.counters["bytes_per_ball"] = static_cast<double>(benchmarks::live_bytes() - before) / balls;
+  }
+}
+
 void sizes(benchmark::internal::Benchmark* timed) {
   for (const int n : {100, 2000, 10000}) timed->Arg(n);
 }
@@ -127,5 +154,6 @@ BENCHMARK(by_hand_with_gaps)->Apply(sizes);
 BENCHMARK(uncoupled)->Apply(sizes);
 BENCHMARK(uncoupled_rolling)->Apply(sizes);
 BENCHMARK(one_component)->Arg(2000);
+BENCHMARK(event_storage)->Iterations(1)->Repetitions(1);
 
 }  // namespace
