@@ -35,6 +35,8 @@ VERSION = 1
 _STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
 _TABLES = ("contacts", "events")
 _CHUNK_BYTES = 1 << 16
+# Ends of steps differ by rounding: by this part of the interval at most.
+_SAME_TIME = 1e-6
 
 
 def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = "") -> Any:
@@ -119,10 +121,12 @@ class FileStore:
                 )
             frames = _complete(before)
             times = before["states/times"][:frames]
-            kept = int(numpy.searchsorted(times, time, side="right"))
+            # The end of one step may differ by rounding from run to run: it is recorded once all the same.
+            until = time + max(_SAME_TIME * before.attrs["interval"], 4.0 * numpy.spacing(time))
+            kept = int(numpy.searchsorted(times, until, side="right"))
             counts = {name: _count(before, name, kept) for name in ("contact_ends", "event_ends")}
             later = before["events/rows"]["time"][counts["event_ends"] : _count(before, "event_ends", frames)]
-            counts["event_ends"] += int(numpy.count_nonzero(later <= time))
+            counts["event_ends"] += int(numpy.count_nonzero(later <= until))
             names = [name.decode() for name in before["names"][()]]
             last = float(times[kept - 1]) if kept else numpy.nan
         file = _reopen(path)

@@ -60,8 +60,11 @@ def test_a_killed_program_leaves_a_recording(tmp_path, after):
     numpy.testing.assert_array_equal(whole.events["time"], killed.events["time"])
 
 
-@pytest.mark.parametrize("is_killed", [False, True], ids=["closed", "killed"])
-def test_a_resumed_file_is_that_of_one_run(tmp_path, is_killed):
+@pytest.mark.parametrize(
+    "is_killed, shift", [(False, 1e-3), (False, -1e-15), (False, 1e-15), (True, 1e-3), (True, 0.0)]
+)
+def test_a_resumed_file_is_that_of_one_run(tmp_path, is_killed, shift):
+    """Continued from between two samples, and from one of them but for rounding."""
     path, checkpoint = tmp_path / "run.h5", tmp_path / "half"
     if is_killed:
         kill_a_recording(path, 0.5)
@@ -71,7 +74,7 @@ def test_a_resumed_file_is_that_of_one_run(tmp_path, is_killed):
         simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
         with Recorder(simulation, path, interval=0.002):
             simulation.run_until(until)
-    half = round(0.5 * until, 3) + 1e-3  # not a multiple of the interval
+    half = 0.002 * round(0.25 * until / 0.001) + shift
     simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
     simulation.run_until(half)
     simulation.save(checkpoint)
