@@ -71,7 +71,7 @@ void BodyFlights::start(const State& state, double extra) {
 
 double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end) {
   const SmoothMotion& motion = group.motion();
-  const bool is_free = motion.flies_freely();
+  const bool is_free = motion.is_ballistic();
   JoinableGroup(group).sample(time, false, now);
   const auto for_flights = [&](auto&& f) {
     for (const MotionUnknowns::Part& part : motion.model().parts()) {

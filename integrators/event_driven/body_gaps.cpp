@@ -31,7 +31,7 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
   const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
   const GroupModel& model = step.motion.model();
   // The flow does not know the motion of shapes on ground.
-  if (step.motion.flies_freely() && !moves(*model.detector, model.pairs[model.bounds[bound].pair]))
+  if (step.motion.is_ballistic() && !moves(*model.detector, model.pairs[model.bounds[bound].pair]))
     return speed;
   // Loads within the step are as at its ends, but for what steps may be wrong by.
   constexpr double unseen = 2.0;
@@ -80,7 +80,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     rule.level = step.ends.gap_level(pair);
     rule.fastest = fastest_in(step, place);
     if (start.gaps[pair].value + end.gaps[pair].value - rule.fastest * length > 2.0 * rule.noise) continue;
-    rule.flies_freely = step.motion.flies_freely();
+    rule.flies_freely = step.motion.is_ballistic();
     rule.until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
     const PairGap gap = gap_of(model, place);
     GapLook first{step.begin(), start.gap_known[place] != 0, start.gaps[pair]};

@@ -144,7 +144,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     rule.raise = step.scales.gap_noise - step.ends.gap_level(i);
     rule.fine = fine;
     rule.clear_falls = false;  // of several gaps the first is wanted
-    rule.measured = moving || !step.motion.flies_freely();
+    rule.measured = moving || !step.motion.is_ballistic();
     rule.least_depth = moving ? least_of_moving : 0;
     const double curvature = std::max(start.gap_curvature_bound[i], end.gap_curvature_bound[i]);
     QuantityOf gap([&](double time) -> QuantityLook {

@@ -10,6 +10,9 @@ void GroupFlow::forget() {
 }
 
 void GroupFlow::start(double time, std::span<const double> y, bool one_step) {
+  const bool is_ballistic = problem_->is_ballistic();
+  if (is_ballistic != is_ballistic_) loan_.reset();
+  is_ballistic_ = is_ballistic;
   if (!loan_) loan_ = pool_->borrow(*problem_);
   is_recorded_ = false;
   loan_->start(time, y, one_step ? first_step_ : 0.0);

@@ -39,6 +39,7 @@ private:
   FlowProblem* problem_;
   FlowPool::Loan loan_;  // null at rest, and where `left_` is all there is to know
   FlowStep left_;
+  bool is_ballistic_ = false;
   bool is_recorded_ = false;  // `left_` is the step of the flow
   double first_step_ = 0.0;   // of the next phase [s]
 };

@@ -54,8 +54,8 @@ void add_load_traits(const Assembly& assembly, Index component, LoadTraits& trai
     traits.books_external = traits.books_external || elements.books_external();
     traits.depends_on_time = traits.depends_on_time || elements.depends_on_time();
     traits.needs_rotations = traits.needs_rotations || elements.needs_rotations();
-    traits.only_fields = traits.only_fields && elements.is_field() && !elements.books_dissipative() &&
-                         !elements.depends_on_time();
+    traits.are_constant = traits.are_constant && elements.is_constant() && !elements.books_external() &&
+                          !elements.books_dissipative() && !elements.depends_on_time();
   }
 }
 

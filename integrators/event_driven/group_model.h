@@ -28,7 +28,7 @@ struct LoadTraits {
   bool books_dissipative = false;  ///< some elements book losses
   bool books_external = false;     ///< some elements book external work
   bool depends_on_time = false;    ///< loads, joints or shapes on ground do
-  bool only_fields = true;         ///< nothing but uniform fields acts
+  bool are_constant = true;        ///< nothing acts but fields that are constant in time and space
   bool needs_rotations = false;    ///< loads, joints or places of contact depend on rotations of bodies
 };
 

@@ -48,7 +48,7 @@ struct ClosingRule {
   double noise = 0.0;         ///< rounding of gaps [m]
   double level = 0.0;         ///< a gap closes where it falls below this by the noise, <= 0 [m]
   double fastest = 0.0;       ///< bound of its rate [m/s]
-  bool flies_freely = false;  ///< both bodies: nothing but uniform fields acts
+  bool flies_freely = false;  ///< both bodies: nothing but constant fields acts
   double until = 0.0;         ///< later closings are of no interest [s]
 };
 

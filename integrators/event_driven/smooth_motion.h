@@ -46,6 +46,10 @@ public:
     return has_jacobian() ? model_.unknowns.q_size() : 0;
   }
   void jacobian(double time, const double* y, std::vector<RateDerivative>& out) override;
+  /// True if nothing but constant fields acts: places are polynomials of time but for turning.
+  [[nodiscard]] bool is_ballistic() const override {
+    return model_.loads.are_constant && has_jacobian() && joints_.rows().empty() && active_.list().empty();
+  }
 
   /// Evaluates one state. The rows of joints and the forces of closed contacts are those of this state then.
   void sample(double time, const double* y, Forces forces, MotionSample& out);
@@ -78,10 +82,6 @@ public:
   /// True if guards can be sampled along a path of coordinates (step_path.h).
   [[nodiscard]] bool guards_follow_path() const {
     return guards_.count() != 0 && guards_.all_have_motion() && has_jacobian();
-  }
-  /// True if nothing but uniform fields acts: places are polynomials of time but for turning.
-  [[nodiscard]] bool flies_freely() const {
-    return model_.loads.only_fields && joints_.rows().empty() && active_.list().empty();
   }
   /// Memory shared with other motions.
   [[nodiscard]] MotionMemory& memory() { return *memory_; }

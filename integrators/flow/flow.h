@@ -44,6 +44,8 @@ public:
   [[nodiscard]] virtual bool has_jacobian() const { return false; }
   /// Number n of unknowns that jacobian() knows to be integrals:  dy_i/dt = y_(n+i)  for i < n.
   [[nodiscard]] virtual std::size_t integrals() const { return 0; }
+  /// True as long as the rates are constant but for those of the integrals, which are all there is to change.
+  [[nodiscard]] virtual bool is_ballistic() const { return false; }
   /// Appends the derivative of the rates, in any order; the same order again and again spares the analysis of
   /// its pattern. Integrals have neither rows nor columns. Nor need unknowns have rows whose rates may be
   /// taken as constant because no other depends on them (works): Newton's method finds them all the same.
@@ -125,9 +127,10 @@ public:
   [[nodiscard]] virtual const FlowCounts& counts() const = 0;
 };
 
-/// Makes a flow. The estimated error of a step is at most relative_tolerance |y_i| + absolute tolerance, in
-/// each unknown. `problem` must outlive the flow's use of it. ModelError: a tolerance that is not finite and
-/// > 0, no unknowns. \param relative_tolerance > 0
+/// Makes a flow; of a ballistic problem a BallisticFlow, whatever the method. The estimated error of a step
+/// is at most relative_tolerance |y_i| + absolute tolerance, in each unknown. `problem` must outlive the
+/// flow's use of it. ModelError: a tolerance that is not finite and > 0, no unknowns. \param
+/// relative_tolerance > 0
 [[nodiscard]] CAROM_API std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem,
                                                         double relative_tolerance);
 

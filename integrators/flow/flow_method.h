@@ -7,7 +7,8 @@
 
 namespace carom {
 
-/// Methods of integration.
+/// Methods of integration. Free flight under constant fields needs none: whatever the method, it is the exact
+/// parabola (BallisticFlow).
 enum class FlowMethod : std::uint8_t {
   explicit_runge_kutta,  ///< SUNDIALS' ARKODE, order 5: cheap restarts, for motion that is not stiff
   adams,                 ///< SUNDIALS' CVODE, Adams-Moulton with fixed point: long smooth phases

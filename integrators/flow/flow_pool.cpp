@@ -7,7 +7,7 @@ namespace carom {
 void FlowPool::Return::operator()(Flow* flow) const noexcept { shelf_->free.push_back(flow); }
 
 FlowPool::Loan FlowPool::borrow(FlowProblem& problem) {
-  Shelf& shelf = shelves_[{problem.size(), problem.integrals()}];
+  Shelf& shelf = shelves_[{problem.size(), problem.integrals(), problem.is_ballistic()}];
   if (shelf.free.empty()) {
     // Giving back must not fail.
     if (shelf.free.capacity() == shelf.flows.size()) shelf.free.reserve(2 * shelf.flows.size() + 1);

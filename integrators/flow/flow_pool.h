@@ -9,14 +9,14 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace carom {
 
-/// Flows of one method and tolerance, by the numbers of unknowns and of integrals of what they serve. What a
-/// flow computes does not depend on whom it served before; bdf analyses its matrix anew where the pattern is
-/// another one. The pool must outlive its loans.
+/// Flows of one method and tolerance, by the numbers of unknowns and of integrals of what they serve,
+/// ballistic ones apart. What a flow computes does not depend on whom it served before; bdf analyses its
+/// matrix anew where the pattern is another one. The pool must outlive its loans.
 class CAROM_API FlowPool {
 private:
   // All flows for problems of one size, and those that nobody has.
@@ -60,7 +60,7 @@ public:
 private:
   FlowMethod method_;
   double relative_tolerance_;
-  std::map<std::pair<std::size_t, std::size_t>, Shelf> shelves_;
+  std::map<std::tuple<std::size_t, std::size_t, bool>, Shelf> shelves_;
 };
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 // Problem: steps of an integrator as a sequence that somebody watches: where each began and ended, what was
 // there, and in plain words why there is no next one.
 
+#include <carom/integrators/flow/ballistic_flow.h>
 #include <carom/integrators/flow/flow_checks.h>
 #include <carom/integrators/flow/one_step_flow.h>
 #include <carom/integrators/flow/sundials_flow.h>
@@ -150,6 +151,7 @@ double SundialsFlow::horizon(double longest) const {
 }
 
 std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem, double relative_tolerance) {
+  if (problem.is_ballistic()) return std::make_unique<BallisticFlow>(problem, relative_tolerance);
   if (method == FlowMethod::one_step) return std::make_unique<OneStepFlow>(problem, relative_tolerance);
   if (method == FlowMethod::explicit_runge_kutta) return make_runge_kutta_flow(problem, relative_tolerance);
   if (method > FlowMethod::one_step) {

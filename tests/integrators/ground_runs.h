@@ -76,9 +76,9 @@ inline void add_ground(System& system, Ground ground, const Surface& law, const 
           "ground");
       break;
     case Ground::block:
-      system.add(Block{.vertices = {{-2.0, 0.0}, {2.0, 0.0}, {1.5, -1.0}, {-1.5, -1.0}},
-                       .pivot = pivot,
-                       .motion = motion},
+      system.add(planar::Block{.vertices = {{-2.0, 0.0}, {2.0, 0.0}, {1.5, -1.0}, {-1.5, -1.0}},
+                               .pivot = pivot,
+                               .motion = motion},
                  law, "ground");
       break;
     case Ground::peg:

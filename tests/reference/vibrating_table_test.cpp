@@ -37,7 +37,7 @@ constexpr std::array<Table, 5> tables{{
      }},
     {"block",
      [](System& system, const PrescribedMotion& motion, const Surface& law) {
-       system.add(Block{.vertices = {{-1, -0.2}, {1, -0.2}, {1, 0}, {-1, 0}}, .motion = motion}, law);
+       system.add(planar::Block{.vertices = {{-1, -0.2}, {1, -0.2}, {1, 0}, {-1, 0}}, .motion = motion}, law);
      }},
     {"inside of a box",
      [](System& system, const PrescribedMotion& motion, const Surface& law) {

@@ -39,9 +39,9 @@ TEST(EventCorners, ClosingsBesideACornerThatIsPassedAreFound) {
   const double half = std::sqrt(0.5);
   const Vec<2> normal(-half, half);
   system.add(HalfPlane{.normal = normal});
-  system.add(Block{.vertices = {{0.0089812731490516648, 0.0094959047419975184},
-                                {0.16652362866793002, 0.16652362866793002},
-                                {0.017439484472083128, 0.23645524828516346}}});
+  system.add(planar::Block{.vertices = {{0.0089812731490516648, 0.0094959047419975184},
+                                        {0.16652362866793002, 0.16652362866793002},
+                                        {0.017439484472083128, 0.23645524828516346}}});
   const double width = 0.21593500890969016, height = 0.0947863246924509;
   const BodyId body = system.add(RigidBody{.mass = box(1.1657, width, height),
                                            .position = {0.10447353440590382, 0.2667986202782795},

@@ -121,6 +121,9 @@ System balls(int count) {
   return system;
 }
 
+// Air: what flies through it is not ballistic.
+void slow_down(System& system, BodyId body) { system.add(Drag{.on = body, .linear = 0.01}); }
+
 // A driver with all that it advances.
 struct Journey {
   Journey(const System& system, const EventDriven& options)
@@ -140,7 +143,7 @@ struct Journey {
   std::vector<EventRecord> events;
 };
 
-TEST(SharedFlows, AThousandBallsNeedOne) {
+TEST(SharedFlows, AThousandBallsNeedTwo) {
   constexpr int count = 1000;
   for (const FlowMethod method : {FlowMethod::explicit_runge_kutta, FlowMethod::one_step}) {
     Journey run(balls(count), {.method = method});
@@ -149,7 +152,7 @@ TEST(SharedFlows, AThousandBallsNeedOne) {
       run.to(0.04 * i);
       EXPECT_EQ(run.flows().lent(), 0U);
     }
-    EXPECT_EQ(run.flows().made(), 1U);
+    EXPECT_EQ(run.flows().made(), 2U);  // for flight and for contact
     EXPECT_GE(run.companion.statistics.impacts, count);
   }
 }
@@ -233,7 +236,9 @@ TEST(SharedFlows, NoEvaluationIsMadeTwice) {
 TEST(SharedFlows, MethodsOfManyStepsKeepTheirsThroughAPhase) {
   constexpr std::size_t count = 40;
   for (const FlowMethod method : {FlowMethod::adams, FlowMethod::bdf}) {
-    Journey run(balls(count), {.method = method});
+    System system = balls(count);
+    for (const BodyId ball : system.bodies()) slow_down(system, ball);
+    Journey run(system, {.method = method});
     run.to(0.01);
     EXPECT_EQ(run.flows().made(), count);
     run.to(0.1);
@@ -249,6 +254,7 @@ TEST(SharedFlows, AtRestThereIsNone) {
       const BodyId brick = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = 0.01},
                                                 .position = {1.0 * i, radius + (i == 4 ? 0.01 : 0.0)}});
       system.add(Polygon{.body = brick, .vertices = {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}});
+      if (i == 4) slow_down(system, brick);
     }
     Journey run(system, {.method = method});
     run.to(0.01);

@@ -51,8 +51,7 @@ TEST(UnseenRun, IsOneStepOfTheSameMotion) {
   EXPECT_EQ(event_bits(unseen.events()), event_bits(seen.events()));
   EXPECT_EQ(unseen.statistics().impacts, seen.statistics().impacts);
   EXPECT_GT(unseen.statistics().impacts, 10);
-  // Outputs cost evaluations.
-  EXPECT_LT(2 * unseen.statistics().flow_evaluations, seen.statistics().flow_evaluations);
+  EXPECT_EQ(unseen.statistics().flow_evaluations, seen.statistics().flow_evaluations);  // a flight is known
   // Works of 200 steps or of one are added in another order.
   EXPECT_NEAR(unseen.energy().lost(), seen.energy().lost(), 1e-13 * seen.energy().scale());
 }
