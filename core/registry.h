@@ -9,12 +9,37 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <string_view>
 #include <typeindex>
 #include <typeinfo>
 #include <utility>
 #include <vector>
 
 namespace carom {
+
+class PartCheck;
+
+/// The type of a part as its role sees it: what a registry needs of it, without templates that every program
+/// would compile anew. `K` is the interface of the role.
+template <class K>
+struct PartType {
+  const std::type_info* kind;  ///< of the parts
+  std::string_view label;      ///< of a part
+  int dimension;               ///< of a part, 0: any
+  std::unique_ptr<K> (*make_kind)();
+  /// Stores a part of this type in its kind. Throws ModelError.
+  void (*store)(K& kind, const void* part, const PartCheck& check);
+
+  /// That of a part whose kind is `Concrete`.
+  template <class Concrete, class Description>
+  [[nodiscard]] static PartType of() {
+    return {&typeid(Concrete), Concrete::part_label(), Concrete::part_dimension(),
+            []() -> std::unique_ptr<K> { return std::make_unique<Concrete>(); },
+            [](K& kind, const void* part, const PartCheck& check) {
+              static_cast<Concrete&>(kind).add(*static_cast<const Description*>(part), check);
+            }};
+  }
+};
 
 /// Kinds of one role and the places of their parts. `K` is the interface of the role (BodyKind, ...).
 template <class K>
@@ -48,19 +73,18 @@ public:
   }
   ~Registry() = default;
 
-  /// Adds a part to the kind of the given type, which is made if it is new. A part that the kind refuses
-  /// changes nothing.
-  template <class Concrete, class Description, class Check>
-  void add(const Description& part, const Check& check) {
-    const std::type_index type = typeid(Concrete);
+  /// Adds a part to the kind of its type, which is made if it is new. A part that the kind refuses changes
+  /// nothing.
+  void add(const PartType<K>& type, const void* part, const PartCheck& check) {
+    const std::type_index kind_type = *type.kind;
     Index at = 0;
-    while (at < entries_.size() && entries_[at].type != type) ++at;
+    while (at < entries_.size() && entries_[at].type != kind_type) ++at;
     if (at < entries_.size()) {
-      static_cast<Concrete&>(*entries_[at].kind).add(part, check);
+      type.store(*entries_[at].kind, part, check);
     } else {
-      auto kind = std::make_unique<Concrete>();
-      kind->add(part, check);
-      entries_.push_back({type, std::move(kind), {}, {}});
+      std::unique_ptr<K> kind = type.make_kind();
+      type.store(*kind, part, check);
+      entries_.push_back({kind_type, std::move(kind), {}, {}});
     }
     entries_[at].serials.push_back(next_serial_);
     entries_[at].given.push_back(next_serial_++);

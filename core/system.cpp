@@ -55,6 +55,33 @@ void System::check_name(Role role, const std::string& name, std::string_view lab
                    "': name is taken; allowed: a name no other part of its role has");
 }
 
+template <class K>
+Index System::add_to(Registry<K>& registry, Role role, const PartType<K>& type, const void* part,
+                     std::string name) {
+  const Index serial = registry.next_serial();
+  take_dimension(type.dimension, type.label);
+  check_name(role, name, type.label);
+  registry.add(type, part, PartCheck(describe(type.label, name, serial), *this));
+  added(role, type.dimension, serial, std::move(name));
+  return serial;
+}
+
+// Here, so that programs do not compile them for every part.
+template CAROM_API Index System::add_to(Registry<BodyKind>&, Role, const PartType<BodyKind>&, const void*,
+                                        std::string);
+template CAROM_API Index System::add_to(Registry<ForceKind>&, Role, const PartType<ForceKind>&, const void*,
+                                        std::string);
+template CAROM_API Index System::add_to(Registry<JointKind>&, Role, const PartType<JointKind>&, const void*,
+                                        std::string);
+template CAROM_API Index System::add_to(Registry<ShapeKind>&, Role, const PartType<ShapeKind>&, const void*,
+                                        std::string);
+template CAROM_API Index System::add_to(Registry<GroundShapeKind>&, Role, const PartType<GroundShapeKind>&,
+                                        const void*, std::string);
+
+void System::check_surface(const Surface& surface, std::string_view label, const std::string& name) const {
+  PartCheck(describe(label, name, ground_shapes_.next_serial()), *this).surface(surface);
+}
+
 void System::added(Role role, int dimension, Index serial, std::string name) {
   if (dimension_ == 0) dimension_ = dimension;
   if (name.empty()) return;

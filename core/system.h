@@ -40,14 +40,8 @@ public:
   /// Throws ModelError (naming the part, the value and what is allowed) if the part is invalid.
   template <Part P>
   IdOf<P> add(const P& part, std::string name = {}) {
-    using Kind = typename KindOf<P>::type;
     auto& registry = registry_of<P::role>();
-    const Index serial = registry.next_serial();
-    take_dimension(Kind::part_dimension(), Kind::part_label());
-    check_name(P::role, name, Kind::part_label());
-    registry.template add<Kind>(part, PartCheck(describe(Kind::part_label(), name, serial), *this));
-    added(P::role, Kind::part_dimension(), serial, std::move(name));
-    return {serial, token_};
+    return {add_to(registry, P::role, type_of<P>(registry), &part, std::move(name)), token_};
   }
 
   /// Adds a shape on ground with its contact law. Short for a material of its own that has this law with
@@ -55,9 +49,7 @@ public:
   template <Part P>
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
-    using Kind = typename KindOf<P>::type;
-    const Index serial = ground_shapes_.next_serial();
-    PartCheck(describe(Kind::part_label(), name, serial), *this).surface(surface);
+    check_surface(surface, type_of<P>(ground_shapes_).label, name);
     const ObstacleId id = add(part, std::move(name));
     surfaces_.set_own(id.serial, surface);
     return id;
@@ -177,6 +169,13 @@ private:
       return ground_shapes_;
     }
   }
+  template <Part P, class K>
+  [[nodiscard]] static PartType<K> type_of(const Registry<K>&) {
+    return PartType<K>::template of<typename KindOf<P>::type, P>();
+  }
+  template <class K>
+  Index add_to(Registry<K>& registry, Role role, const PartType<K>& type, const void* part, std::string name);
+  void check_surface(const Surface& surface, std::string_view label, const std::string& name) const;
   template <class Identity, class K>
   [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const;
 
