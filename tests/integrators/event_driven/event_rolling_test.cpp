@@ -103,7 +103,8 @@ TEST(EventRolling, DiscOnAnInclineStaysBelowTheAngleOfRolling) {
                 1e-12)
         << share;
     EXPECT_LE(std::abs(simulation.energy().residual()), 1e-12) << share;
-    if (share < 1.0) EXPECT_EQ(simulation.state().position(scene.body), place) << share;
+    if (share > 1.0) continue;
+    EXPECT_EQ(simulation.state().position(scene.body), place) << share;
   }
 }
 
