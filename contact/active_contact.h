@@ -12,7 +12,8 @@
 
 namespace carom {
 
-/// A contact in a smooth phase.
+/// A contact in a smooth phase; or friction in a joint; or the rolling resistance of the contact before it in
+/// a list, which sticks where the relative spin is held and slips where it rolls.
 struct ActiveContact {
   ContactPair pair;                       ///< what touches
   Index place = none;                     ///< of the pair in a list of all, where there is one
@@ -23,13 +24,20 @@ struct ActiveContact {
   bool frictionless = false;  ///< without friction: neither sticks nor cares which way it slips
   Constraint at;              ///< at the present configuration
   double friction = 0.0;      ///< coefficient: sliding where it slips, static where it sticks
-  double normal = 0.0;        ///< force; of friction in a joint Constraint::friction_bound [N]
-  double tangential = 0.0;    ///< force; of friction in a joint along its coordinate [N, N m]
+  /// Force; of friction in a joint Constraint::friction_bound; of rolling resistance that of its contact [N].
+  double normal = 0.0;
+  /// Force; of friction in a joint along its coordinate [N, N m]; of rolling resistance the moment [N m].
+  double tangential = 0.0;
   /// False where forces were shared out and it is at its end by chance: others set the margin.
   bool sets_margin = true;
 
   /// True if the tangent is a constraint.
   [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
+  /// True of rolling resistance.
+  [[nodiscard]] bool rolls() const { return at.type == ConstraintType::rolling; }
+  /// Factor that makes a force of distances from the edge of friction: of moments against rolling too [1,
+  /// 1/m].
+  [[nodiscard]] double margin_scale() const { return rolls() ? 1.0 / friction : 1.0; }
   /// Sign of the sliding velocity, 0 if it sticks.
   [[nodiscard]] double slip_sign() const {
     return mode == ContactMode::slip_positive ? 1.0 : mode == ContactMode::slip_negative ? -1.0 : 0.0;

@@ -1,6 +1,7 @@
 // Problem: forces and corrections of contacts that are constraints.
 
 #include <carom/contact/active_set.h>
+#include <carom/contact/detection/rolling_resistance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ constexpr double dependent = 1e-11;
 }  // namespace
 
 double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
+  if (where.type == ConstraintType::rolling) return where.law.rolling_resistance;
   if (frictionless) return 0.0;
   if (sticks()) return where.law.sticking_friction();
   if (!where.law.falls_with_speed()) return where.law.friction;
@@ -28,13 +30,17 @@ void ActiveSet::bind(const Assembly& assembly, ComponentsResponse& response) {
 
 void ActiveSet::update(const Detector& detector, const StateView& state, const Evaluation& evaluation,
                        const GroundPlaces& places) {
+  const Constraint* last = nullptr;
   for (ActiveContact& contact : contacts_) {
-    if (contact.feature != none) {
+    if (contact.pair.rolling) {
+      contact.at = rolling_resistance(*last, motion_of(detector, contact.pair, places));
+    } else if (contact.feature != none) {
       follow(detector, contact.pair, contact.feature, state, evaluation, places, contact.at);
     } else {
       detector.contact(contact.pair, state, evaluation, places, contact.at);
     }
     contact.friction = contact.friction_at(contact.at, state.v);
+    last = &contact.at;
   }
 }
 
@@ -100,6 +106,13 @@ bool ActiveSet::answers_with_joints(std::size_t first, std::size_t last) const {
 
 int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent ? at.tangent_row() : 0; }
 
+/// Moment of the rolling resistance of a contact by its normal force: 0 where the spin is held, or none is.
+double ActiveSet::lever(std::size_t contact) const {
+  if (contact + 1 >= contacts_.size() || !contacts_[contact + 1].rolls()) return 0.0;
+  const ActiveContact& rolling = contacts_[contact + 1];
+  return -rolling.slip_sign() * rolling.friction;
+}
+
 /// Rows of one group, and the products of these with what forces along their columns do.
 /// \param slips whether forces of contacts that slip are turned into the cone of friction
 void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips) {
@@ -115,8 +128,9 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
   directions.reserve(rows.size());
   for (const Row& row : rows) {
     const ActiveContact& contact = contacts_[row.contact];
-    const double ratio = row.tangent || !slips ? 0.0 : -contact.slip_sign() * contact.friction;
-    directions.push_back({&contact.at, row_of(row, contact.at), ratio});
+    const bool turned = !row.tangent && slips;
+    const double ratio = turned ? -contact.slip_sign() * contact.friction : 0.0;
+    directions.push_back({&contact.at, row_of(row, contact.at), ratio, turned ? lever(row.contact) : 0.0});
   }
   if (answers_with_joints(first, last)) {
     memory_->delassus.build(directions, *response_);
@@ -137,7 +151,7 @@ bool ActiveSet::solve() {
 void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* acceleration) {
   for (std::size_t i = first; i < last; ++i) {
     ActiveContact& contact = contacts_[i];
-    if (!contact.at.has_dry_friction()) continue;
+    if (!contact.at.has_dry_friction() || contact.rolls()) continue;
     contact.normal = contact.at.friction_bound;
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
@@ -178,6 +192,12 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
       contact.normal = unknown[i];
       if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
     }
+  }
+  for (std::size_t i = first; i < last; ++i) {
+    ActiveContact& contact = contacts_[i];
+    if (!contact.rolls()) continue;
+    contact.normal = contacts_[i - 1].normal;
+    if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
   }
   memory_->delassus.add_response(unknown, acceleration);
   if (factors.rank() < n) memory_->margins.add(contacts_, first, last, rows, factors);

@@ -90,6 +90,7 @@ private:
   [[nodiscard]] bool find_islands();
   [[nodiscard]] Index mechanism(Index body) const;
   [[nodiscard]] bool answers_with_joints(std::size_t first, std::size_t last) const;
+  [[nodiscard]] double lever(std::size_t contact) const;
   [[nodiscard]] static int row_of(const Row& row, const Constraint& at);
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
   [[nodiscard]] bool solve();

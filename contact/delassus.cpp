@@ -11,6 +11,8 @@ namespace carom {
 
 namespace {
 
+constexpr std::size_t of_planar_body = 3;  // velocities, the last of them its spin
+
 /// Numbers of a row of a constraint of one body of S velocities.
 template <std::size_t S>
 const double* row_of_one(const Constraint& at, int row) {
@@ -32,6 +34,9 @@ void answer_alone(std::span<const ImpulseDirection> directions, const double* ma
     if (direction.ratio != 0.0) {
       const double* const tangent = row_of_one<S>(at, at.tangent_row());
       for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratio * tangent[c];
+    }
+    if constexpr (S == of_planar_body) {
+      if (direction.lever != 0.0) column[S - 1] += direction.lever;
     }
     for (std::size_t c = 0; c < S; ++c) x[c] = column[c] / masses[c];
     x += S;
@@ -233,6 +238,8 @@ void Delassus::write_column(std::size_t j) {
     if (direction.ratio != 0.0) {
       for (int c = 0; c < block->columns; ++c) x[c] += direction.ratio * tangent[c];
     }
+    if (direction.lever != 0.0 && block->columns == static_cast<int>(of_planar_body))
+      x[of_planar_body - 1] += b == 0 ? direction.lever : -direction.lever;
     number += block->columns;
     tangent += block->columns;
   }

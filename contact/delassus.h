@@ -16,12 +16,14 @@
 
 namespace carom {
 
-/// A row of a constraint, and the column along which its impulse acts: that row, and a multiple of the first
-/// tangential one (of a contact that slips: the edge of its cone of friction).
+/// A row of a constraint, and the column along which its impulse acts: that row, a multiple of the first
+/// tangential one (of a contact that slips: the edge of its cone of friction), and a moment about the contact
+/// (of one that rolls: the bound of its rolling resistance).
 struct ImpulseDirection {
   const Constraint* constraint = nullptr;  ///< must outlive the matrix
   int row = 0;                             ///< of the constraint
   double ratio = 0.0;                      ///< of the first tangential row in the column
+  double lever = 0.0;  ///< moment on the first body, and against the second, by the impulse [m]
 };
 
 /// W with the responses that it is made of, row by row: dense where all columns reach the same bodies (one
@@ -40,8 +42,8 @@ public:
 
   /// Leaves W as its factors H and M^-1, where all bodies are those of the plane and answer for themselves;
   /// else false, and nothing is made. Slots are bodies in the order in which the constraints name them. Call
-  /// group() afterwards. Without ratios only. \param directions must outlive it \param problem in factors, of
-  /// as many rows
+  /// group() afterwards. Without ratios and levers only. \param directions must outlive it \param problem in
+  /// factors, of as many rows
   [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
                                    ContactProblem& problem);
   /// Slots of the factors; none where W is made in full.
@@ -52,7 +54,7 @@ public:
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
   /// Writes W, symmetric, row-major: the lower triangle, mirrored; rows and columns of what is held are zero.
-  /// Without ratios only. \param matrix size() * size() numbers
+  /// Without ratios and levers only. \param matrix size() * size() numbers
   void write_symmetric(double* matrix) const;
   /// Writes W with its columns as they are. \param matrix likewise
   void write(double* matrix) const;

@@ -16,7 +16,7 @@ constexpr double unbounded_margin = 1.0;
 // Of a multiplier of the margin, all of which sum to 1: rounding.
 constexpr double no_part = 1e-9;
 
-/// Lines of a contact: normal force, and both edges of friction where it sticks.
+/// Lines of a contact: normal force, and both edges of friction, or of the moment, where it sticks.
 std::size_t lines_of(const ActiveContact& contact) {
   return (contact.at.has_dry_friction() ? 0U : 1U) + (contact.sticks() ? 2U : 0U);
 }
@@ -45,6 +45,13 @@ void ForceMargins::add(std::span<const ActiveContact> contacts, std::size_t firs
         if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * work_[i];
       }
     }
+    for (std::size_t i = first; i < last; ++i) {
+      const ActiveContact& contact = contacts[i];
+      if (!contact.rolls()) continue;
+      double* const of_contact = vector + 2 * (i - first);
+      of_contact[0] = of_contact[-2];
+      if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * of_contact[0];
+    }
   }
 }
 
@@ -57,8 +64,9 @@ void ForceMargins::collect(std::span<const ActiveContact> contacts, const double
     const double dt = vector ? vector[2 * i + 1] : 0.0;
     if (!c.at.has_dry_friction()) lines_.push_back({c.normal, dn});
     if (!c.sticks()) continue;
-    lines_.push_back({c.friction * c.normal - c.tangential, c.friction * dn - dt});
-    lines_.push_back({c.friction * c.normal + c.tangential, c.friction * dn + dt});
+    const double scale = c.margin_scale();
+    lines_.push_back({scale * (c.friction * c.normal - c.tangential), scale * (c.friction * dn - dt)});
+    lines_.push_back({scale * (c.friction * c.normal + c.tangential), scale * (c.friction * dn + dt)});
   }
 }
 
@@ -150,9 +158,10 @@ void ForceMargins::state_program(std::span<const ActiveContact> contacts, std::s
     const std::size_t at = 2 * i;
     if (!c.at.has_dry_friction()) line(c.normal, [&](const double* vector) { return vector[at]; });
     if (!c.sticks()) continue;
+    const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {
-      line(c.friction * c.normal + side * c.tangential,
-           [&](const double* vector) { return c.friction * vector[at] + side * vector[at + 1]; });
+      line(scale * (c.friction * c.normal + side * c.tangential),
+           [&](const double* vector) { return scale * (c.friction * vector[at] + side * vector[at + 1]); });
     }
   }
   line(bound, [](const double*) { return 0.0; });
@@ -172,7 +181,8 @@ bool ForceMargins::follow_all(std::span<ActiveContact> contacts, std::size_t fro
   for (const ActiveContact& c : contacts) {
     size += std::abs(c.normal) + std::abs(c.tangential);
     if (!c.at.has_dry_friction()) least = std::min(least, c.normal);
-    if (c.sticks()) least = std::min(least, c.friction * c.normal - std::abs(c.tangential));
+    if (c.sticks())
+      least = std::min(least, c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)));
   }
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   state_program(contacts, from, vectors, least, size);

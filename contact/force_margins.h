@@ -18,7 +18,8 @@ namespace carom {
 /// Margin of the contacts of one body, or of bodies that joints bind.
 struct ForceMargin {
   std::size_t first = 0, last = 0;  ///< contacts
-  double margin = 0.0;              ///< the least normal force or distance from the edge of a cone [N]
+  double margin = 0.0;  ///< the least normal force or distance from the edge of a cone [N]; a moment
+                        ///< against rolling counts by its lever
 };
 
 /// Changes of forces that move nothing, by group, and the margins that they leave room for. Keeps its memory.

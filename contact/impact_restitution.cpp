@@ -21,7 +21,8 @@ void share_impact_restitution(std::span<Constraint> contacts, const double* velo
     restitution = contact.law.normal_restitution;
   }
   for (Constraint& contact : contacts) {
-    if (contact.has_dry_friction()) contact.law.tangential_restitution = chooses_rate_after * restitution;
+    if (contact.has_dry_friction() && contact.type != ConstraintType::rolling)
+      contact.law.tangential_restitution = chooses_rate_after * restitution;
   }
 }
 

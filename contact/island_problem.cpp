@@ -217,11 +217,12 @@ void IslandProblem::update_bound(std::size_t constraint) {
 }
 
 void IslandProblem::slide(std::size_t constraint, double ratio) {
-  if (constraints_[constraint].has_dry_friction()) {
+  const Constraint& at = constraints_[constraint];
+  if (at.has_dry_friction() && at.type != ConstraintType::rolling) {
     slides_[constraint] = ratio;
     update_bound(constraint);
   } else {
-    RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + 1)];
+    RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + at.tangent_row())];
     set.kind = SetKind::proportional;
     set.coefficient = ratio;
   }

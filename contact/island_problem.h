@@ -54,6 +54,7 @@ public:
   /// Takes note of another Constraint::friction_bound of friction in a joint.
   void update_bound(std::size_t constraint);
   /// Makes a planar contact, or friction in a joint, slip whatever its tangential velocity: P_t = ratio P_n.
+  /// Likewise rolling resistance, of whose contact P_n is.
   void slide(std::size_t constraint, double ratio);
   /// Solves by a law of impact other than Newton's from now on: b is that of an impact. Null: by Newton's.
   void use(ImpactSolver* solver, ImpactLaw law) { impact_ = {solver, law}; }

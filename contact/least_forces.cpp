@@ -68,13 +68,13 @@ void LeastForces::collect_lines(std::span<const ActiveContact> group, const std:
     }
     if (!contact.sticks()) continue;
     const std::size_t tangent = row++;
-    const double bound = has_dry_friction ? contact.at.friction_bound : forces[normal];
+    const bool has_own_bound = has_dry_friction && !contact.rolls();
+    const double bound = has_own_bound ? contact.at.friction_bound : forces[normal];
     for (const double side : {-1.0, 1.0}) {
       lines_at_.push_back(contact.friction * bound + side * forces[tangent]);
       for (std::size_t k = 0; k < vectors; ++k) {
         const double* const vector = orthonormal_.data() + k * n;
-        slopes_.push_back((has_dry_friction ? 0.0 : contact.friction * vector[normal]) +
-                          side * vector[tangent]);
+        slopes_.push_back((has_own_bound ? 0.0 : contact.friction * vector[normal]) + side * vector[tangent]);
       }
       slopes_.push_back(yield);
     }

@@ -1,5 +1,6 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
+#include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/joint_closure.h>
@@ -70,6 +71,9 @@ EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std:
   event.outcome = island.report().outcome;
   event.residual = island.report().residual;
   event.solver = island.report().solver;
+  const bool resists =
+      c + 1 < island.constraints().size() && island.constraints()[c + 1].type == ConstraintType::rolling;
+  if (resists) event.rolling_moment = island.map().impulse(c + 1, 0);
   return event;
 }
 
@@ -82,8 +86,24 @@ void apply_and_record(const Assembly& assembly, const IslandProblem& island, Sta
   }
   island.map().add_velocities(trial.v.data());
   for (std::size_t c = 0; c < before.size(); ++c) {
+    if (island.constraints()[c].type == ConstraintType::rolling) continue;
     recorded.push_back(event_of(assembly, island, c, trial.time, before[c], trial.v.data()));
   }
+}
+
+/// Lists the closed contacts of a component, behind each its rolling resistance.
+void find_closed(const Detector& detector, const GroundPlaces& places, Index component, const State& state,
+                 const Evaluation& evaluation, std::vector<Constraint>& contacts) {
+  contacts.clear();
+  detector.find(component, state.view(), evaluation, places, nullptr, 0.0, contacts);
+  if (!resists_rolling(detector)) return;
+  std::vector<Constraint> with_rolling;
+  for (const Constraint& contact : contacts) {
+    with_rolling.push_back(contact);
+    if (contact.type != ConstraintType::contact || !contact.law.resists_rolling()) continue;
+    with_rolling.push_back(rolling_resistance(contact, ground_motion_of(detector, contact, places)));
+  }
+  contacts.swap(with_rolling);
 }
 
 /// Appends contacts of a component that a displacement has opened: they are closed no more, though they were
@@ -135,8 +155,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
-    contacts.clear();
-    detector.find(component, trial.view(), evaluation, places, nullptr, 0.0, contacts);
+    find_closed(detector, places, component, trial, evaluation, contacts);
     JointConstraints joints(assembly, component);
     joints.update_and_factor({trial.view(), evaluation.rotation.data()});
     MassResponse masses(assembly);

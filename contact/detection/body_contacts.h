@@ -73,6 +73,10 @@ public:
                                                          BodyContactSearch& memory) const;
   /// Writes the contact of such outlines. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
+  /// Law of such a pair.
+  [[nodiscard]] const Surface& law(const ContactPair& pair) const {
+    return *law(outlines_.list()[outlines_.outline_of(pair.feature)], outlines_.list()[pair.outline]);
+  }
   /// Writes the contact of such a pair, whatever its gap.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;

@@ -9,6 +9,7 @@ namespace carom {
 
 /// A feature of a body and a shape on ground; a vertex of a body and an outline of another one or of a shape
 /// on ground; a vertex of such a shape and an outline of a body; or a limit of a joint, or friction in one.
+/// Likewise the rolling resistance of such a contact, which follows it in every list.
 /// Numbers are those of one Detector.
 struct ContactPair {
   Index body = none;            ///< in the order of assembly; of a joint the first one that it binds
@@ -21,9 +22,11 @@ struct ContactPair {
                                 ///< BodyOutlines::vertices()
   Index ground_outline = none;  ///< in GroundPieces, which the vertex touches
   Index ground_vertex = none;   ///< in GroundPieces, which touches the `outline` of the body
+  bool rolling = false;         ///< rolling resistance of the contact that the rest names
 
-  /// True if one side is an outline, of a body or on ground.
+  /// True of a contact if one side is an outline, of a body or on ground.
   [[nodiscard]] bool has_outline() const {
+    if (rolling) return false;
     return other != none || ground_outline != none || ground_vertex != none;
   }
   /// True if the body touches a piece of a shape on ground.

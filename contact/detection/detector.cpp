@@ -1,5 +1,6 @@
 #include <carom/contact/detection/contact_name.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/rolling_resistance.h>
 
 #include <algorithm>
 #include <cassert>
@@ -84,6 +85,11 @@ std::vector<ContactPair> Detector::joint_friction(Index component) const {
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        Constraint& out) const {
+  if (pair.rolling) {
+    GroundPlaces places;
+    place(state.time, places);
+    return contact(pair, state, evaluation, places, out);
+  }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
   GroundMotion now;
@@ -96,6 +102,13 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        const GroundPlaces& places, Constraint& out) const {
   assert(!has_moving_ground() || places.time() == state.time);
+  if (pair.rolling) {
+    ContactPair resisted = pair;
+    resisted.rolling = false;
+    contact(resisted, state, evaluation, places, out);
+    out = rolling_resistance(out, motion_of(*this, pair, places));
+    return;
+  }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
   const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);

@@ -95,8 +95,8 @@ public:
   void update_friction_rows(const JointView& at, Constraint& contact) const {
     joints_.update_friction(at, contact);
   }
-  /// The contact of a pair, whatever its gap. The position group of `evaluation` must be up to date. Places
-  /// its shape on ground by itself.
+  /// The contact of a pair, or its rolling resistance, whatever its gap. The position group of `evaluation`
+  /// must be up to date. Places its shape on ground by itself.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;
   /// Likewise with the ground at `places`, which must be of the state's time.
@@ -110,6 +110,12 @@ public:
   /// True if some law has rolling resistance.
   friend bool resists_rolling(const Detector& of) {
     return of.ground_.resists_rolling() || of.bodies_.resists_rolling();
+  }
+  /// True if the law of a pair of shapes has; not of the pair of such a resistance.
+  friend bool resists_rolling(const Detector& of, const ContactPair& pair) {
+    if (pair.joint_row != none || pair.rolling) return false;
+    if (pair.other != none) return of.bodies_.law(pair).resists_rolling();
+    return (pair.is_of_pieces() ? of.pieces_.law(pair) : of.ground_.law(pair)).resists_rolling();
   }
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {

@@ -41,6 +41,10 @@ public:
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
+  /// Law of a pair.
+  [[nodiscard]] const Surface& law(const ContactPair& pair) const {
+    return laws_.law(pair.material, pair.ground_shape);
+  }
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundMotion* motion, Constraint& out) const;

@@ -255,6 +255,12 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
   return in_space(at.outline_frame, gap).swapped();
 }
 
+const Surface& PieceContacts::law(const ContactPair& pair) const {
+  const bool of_body = pair.ground_outline != none;
+  const BodyOutline& outline = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
+  return laws_[outline.material * shapes_.size() + pair.ground_shape];
+}
+
 void PieceContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             const GroundMotion* motion, Constraint& out) const {
   const bool of_body = pair.ground_outline != none;

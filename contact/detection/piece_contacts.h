@@ -45,6 +45,8 @@ public:
   /// Appends all pairs of one component that may touch, ordered by body.
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
 
+  /// Law of a pair.
+  [[nodiscard]] const Surface& law(const ContactPair& pair) const;
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundMotion* motion, Constraint& out) const;

@@ -15,34 +15,57 @@ bool ModeFaces::build(const ContactProblem& problem) {
     auto& faces = faces_[g];
     faces.clear();
     const RowSet& own = problem.sets()[static_cast<std::size_t>(group.first)];
-    if (group.size > 2) return false;
-    if (group.size == 2) {
-      const RowSet& friction = problem.sets()[static_cast<std::size_t>(group.first) + 1];
-      const bool slides = friction.kind == SetKind::proportional;
-      if (own.kind != SetKind::half_line) return false;
-      if (!slides && friction.kind != SetKind::bounded_interval) return false;
-      const double mu = friction.coefficient;
-      faces.push_back({});  // open
-      if (mu > 0.0 && !slides) {
-        faces.push_back({0.0, 2, 0.0, 2, true});   // stick
-        faces.push_back({0.0, 1, -mu, 1, true});   // slip+
-        faces.push_back({0.0, 1, mu, 1, true});    // slip-
-        faces.push_back({0.0, 1, -mu, 2, false});  // friction exhausted without slip
-        faces.push_back({0.0, 1, mu, 2, false});
-      } else {
-        faces.push_back({0.0, 1, mu, 1, true});  // slides, or has no friction
-      }
-      faces.push_back({0.0, 0, 0.0, 1, false});  // touching without impulse
+    if (group.size > 1) {
+      if (!add_contact(problem, group, faces)) return false;
       continue;
     }
     const bool half_line = own.kind == SetKind::half_line;
-    faces.push_back({0.0, 1, 0.0, 1, true});  // no velocity
+    faces.push_back({.carries = true, .vanishes = {true}});  // no velocity
     for (const double bound : {half_line ? 0.0 : own.lower, half_line ? own.lower : own.upper}) {
       if (!std::isfinite(bound) || (half_line && faces.size() > 1)) continue;
-      faces.push_back({bound, 0, 0.0, 0, true});   // at a bound, moving
-      faces.push_back({bound, 0, 0.0, 1, false});  // at a bound without velocity
+      faces.push_back({.offset = bound});                                     // at a bound, moving
+      faces.push_back({.offset = bound, .vanishes = {true}, .pure = false});  // at a bound without velocity
     }
   }
+  return true;
+}
+
+/// Faces of a contact: open; closed, in every mode of its friction rows; touching without impulse. False
+/// where it cannot be enumerated.
+bool ModeFaces::add_contact(const ContactProblem& problem, const RowGroup& group,
+                            std::vector<Face>& faces) const {
+  const auto first = static_cast<std::size_t>(group.first);
+  const std::size_t rows = static_cast<std::size_t>(group.size) - 1;
+  if (problem.sets()[first].kind != SetKind::half_line || rows > Face::most_rows) return false;
+  faces.push_back({});  // open
+  std::vector<Face> closed{{.carries = true, .vanishes = {true}}};
+  for (std::size_t k = 0; k < rows; ++k) {
+    const RowSet& friction = problem.sets()[first + 1 + k];
+    const bool slides = friction.kind == SetKind::proportional;
+    if (!slides && friction.kind != SetKind::bounded_interval) return false;
+    const double mu = friction.coefficient;
+    if (slides || !(mu > 0.0)) {  // slides, or has no friction
+      for (Face& face : closed) face.slope[k] = mu;
+      continue;
+    }
+    const std::vector<Face> before = closed;
+    closed.clear();
+    for (const Face& face : before) {
+      Face sticks = face;
+      sticks.free[k] = sticks.vanishes[1 + k] = true;
+      closed.push_back(sticks);
+      for (const bool exhausted : {false, true}) {  // slip+ and slip-; friction exhausted without slip
+        for (const double slope : {-mu, mu}) {
+          Face& moves = closed.emplace_back(face);
+          moves.slope[k] = slope;
+          moves.vanishes[1 + k] = exhausted;
+          moves.pure = face.pure && !exhausted;
+        }
+      }
+    }
+  }
+  faces.insert(faces.end(), closed.begin(), closed.end());
+  faces.push_back({.vanishes = {true}, .pure = false});  // touching without impulse
   return true;
 }
 
@@ -50,8 +73,9 @@ ModeFaces::Size ModeFaces::size(std::span<const std::size_t> choice) const {
   Size size;
   for (std::size_t g = 0; g < choice.size(); ++g) {
     const Face& face = faces_[g][choice[g]];
-    size.unknowns += static_cast<std::size_t>(face.unknowns);
-    size.equations += static_cast<std::size_t>(face.equations);
+    if (face.carries) ++size.unknowns;
+    for (const bool free : face.free) size.unknowns += free ? 1 : 0;
+    for (const bool vanishes : face.vanishes) size.equations += vanishes ? 1 : 0;
     size.pure = size.pure && face.pure;
   }
   return size;
@@ -66,25 +90,26 @@ void ModeFaces::write_equations(const ContactProblem& problem, std::span<const s
   rhs.assign(shape.equations, 0.0);
   std::size_t equation = 0;
   for (std::size_t g = 0; g < n; ++g) {
-    for (int e = 0; e < faces_[g][choice[g]].equations; ++e, ++equation) {
-      const auto row = static_cast<std::size_t>(groups_[g].first + e);
+    for (std::size_t e = 0; e < 1 + Face::most_rows; ++e) {
+      if (!faces_[g][choice[g]].vanishes[e]) continue;
+      const std::size_t row = static_cast<std::size_t>(groups_[g].first) + e;
       const double weight = std::sqrt(rho[row]);
       double sum = problem.vector()[row];
-      std::size_t k = 0;
+      std::size_t k = equation * shape.unknowns;
       for (std::size_t h = 0; h < n; ++h) {
         const Face& face = faces_[h][choice[h]];
-        const auto column = static_cast<std::size_t>(groups_[h].first);
-        const double* w = problem.matrix().data() + row * rows;
-        sum += w[column] * face.offset;
-        if (face.unknowns == 1) {
-          const double tangential = groups_[h].size == 2 ? face.slope * w[column + 1] : 0.0;
-          system[equation * shape.unknowns + k++] = weight * (w[column] + tangential);
-        } else if (face.unknowns == 2) {
-          system[equation * shape.unknowns + k++] = weight * w[column];
-          system[equation * shape.unknowns + k++] = weight * w[column + 1];
+        const double* w = problem.matrix().data() + row * rows + static_cast<std::size_t>(groups_[h].first);
+        const std::size_t friction = static_cast<std::size_t>(groups_[h].size) - 1;
+        sum += w[0] * face.offset;
+        if (!face.carries) continue;
+        double along = 0.0;
+        for (std::size_t i = 0; i < friction; ++i) along += face.slope[i] * w[1 + i];
+        system[k++] = weight * (w[0] + along);
+        for (std::size_t i = 0; i < friction; ++i) {
+          if (face.free[i]) system[k++] = weight * w[1 + i];
         }
       }
-      rhs[equation] = -weight * sum;
+      rhs[equation++] = -weight * sum;
     }
   }
 }
@@ -95,10 +120,10 @@ void ModeFaces::place(std::span<const std::size_t> choice, std::span<const doubl
   for (std::size_t g = 0; g < choice.size(); ++g) {
     const Face& face = faces_[g][choice[g]];
     const auto row = static_cast<std::size_t>(groups_[g].first);
-    impulses[row] = face.unknowns > 0 ? x[k++] : 0.0;
-    if (groups_[g].size == 2) {
-      impulses[row + 1] = face.unknowns == 2 ? x[k++] : face.slope * impulses[row];
-    }
+    const std::size_t friction = static_cast<std::size_t>(groups_[g].size) - 1;
+    impulses[row] = face.carries ? x[k++] : 0.0;
+    for (std::size_t i = 0; i < friction; ++i)
+      impulses[row + 1 + i] = face.free[i] ? x[k++] : face.slope[i] * impulses[row];
   }
 }
 

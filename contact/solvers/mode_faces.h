@@ -7,6 +7,7 @@
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/export.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -43,12 +44,15 @@ public:
 private:
   // One mode of one group, or a boundary of one: unknowns, equations, and the given impulse.
   struct Face {
-    double offset = 0.0;  // given impulse of the first row
-    int unknowns = 0;     // 0: none, 1: normal with P_t = slope P_n, 2: both
-    double slope = 0.0;
-    int equations = 0;  // 0: none, 1: xi of the first row, 2: of both rows
-    bool pure = true;   // a mode, not a boundary
+    static constexpr std::size_t most_rows = 2;  // of friction: tangential, and against rolling
+    double offset = 0.0;                         // given impulse of the first row
+    bool carries = false;                        // that impulse is unknown
+    std::array<bool, most_rows> free{};          // so are those of friction rows; else
+    std::array<double, most_rows> slope{};       // they are as many times that of the first row
+    std::array<bool, 1 + most_rows> vanishes{};  // rows whose xi vanishes
+    bool pure = true;                            // a mode, not a boundary
   };
+  bool add_contact(const ContactProblem& problem, const RowGroup& group, std::vector<Face>& faces) const;
 
   std::vector<RowGroup> groups_;
   std::vector<std::vector<Face>> faces_;

@@ -28,8 +28,9 @@ inline constexpr double listed_distance = 1e-9;
 /// Without any candidate of a residual up to this, "no solution" is taken as proved.
 inline constexpr double refuted_residual = 1e-7;
 
-/// Lists the solutions of a problem with up to three groups of at most one friction row each: contacts that
-/// may stick or slip, contacts that slip in a known direction (proportional rows), lone rows, in any mixture.
+/// Lists the solutions of a problem with up to three groups of at most two friction rows each, none a disc:
+/// contacts that may stick or slip, with rolling resistance or without, contacts that slip or roll in a known
+/// direction (proportional rows), lone rows, in any mixture.
 ///
 /// Every combination of modes (open, stick, slip+, slip- for a contact; open or sliding for one that slips in
 /// a known direction; at a bound or moving for a lone row) is one linear system; where it is regular it gives

@@ -2,8 +2,10 @@
 
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/group_stages.h>
+#include <carom/integrators/event_driven/slip_directions.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 
@@ -71,6 +73,7 @@ void ClockGroup::demand_start(const State& state) {
   Constraint contact;
   const double tolerance = parts_.motion.model().options->gap_tolerance;
   for (std::size_t i = 0; i < parts_.motion.model().pairs.size(); ++i) {
+    if (parts_.motion.model().pairs[i].rolling) continue;
     parts_.motion.contact(i, now, contact);
     if (contact.gap >= -tolerance) continue;
     throw ModelError("event-driven mode: gap of " + parts_.failure.name(contact) + " is " +
@@ -113,13 +116,19 @@ void ClockGroup::close_known_contacts(const ContactModes& present) {
     closed.place = static_cast<Index>(i);
     closed.mode = known->second;
     closed.at = contact;
+    closed.friction = contact.friction;
+    if (!closed.pair.rolling) continue;
+    // Its mode is not written down: it follows from the relative spin.
+    const double spin = contact.tangential_velocity(now.state.v.data());
+    const double noise = event_scales(parts_.motion, now, {&contact, 1}).noise_of(parts_.motion, contact);
+    closed.mode = mode_by_sign(std::abs(spin) <= noise ? 0.0 : spin);
   }
 }
 
 void ClockGroup::write(State& state, ContactModes& modes) const {
   parts_.motion.model().unknowns.scatter(parts_.output.y(), state);
   for (const ActiveContact& contact : parts_.motion.active().list()) {
-    modes.emplace_back(contact.at.key, contact.mode);
+    if (!contact.rolls()) modes.emplace_back(contact.at.key, contact.mode);
   }
 }
 
@@ -131,7 +140,7 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
   if (kind.has_dry_friction()) {
     const auto has_dry_friction =
         std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
-          return contact.at.has_dry_friction() && contact.at.key.a.serial == joint.serial;
+          return contact.at.has_dry_friction() && !contact.rolls() && contact.at.key.a.serial == joint.serial;
         });
     const double force = has_dry_friction == closed.end() ? 0.0 : has_dry_friction->tangential;
     return kind.reaction(at.joint_view(), slot, &force);

@@ -18,6 +18,10 @@ EnergyFlow line_of(EventKind kind, int row) {
   return row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential;
 }
 
+EnergyFlow line_of_rolling(EventKind kind) {
+  return kind == EventKind::impact ? EnergyFlow::rolling : line_of(kind, 0);
+}
+
 /// True of a contact that was closed in an impact without taking part in it.
 bool took_no_impulse(const EventRecord& event) {
   const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
@@ -138,9 +142,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     if (contact.has_dry_friction()) {
-      const auto place = static_cast<std::size_t>(problem.first_row(c));
-      const double before = problem.before()[place], after = contact.tangential_velocity(impact.velocity);
-      flows[EnergyFlow::joint_friction] -= work.add(problem.impulses()[place], before, after);
+      book_without_normal(impact, c, work);
       continue;
     }
     EventRecord& event = record(impact.kind, impact.time, contact, assembly);
@@ -182,6 +184,24 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
   return work.gain;
 }
 
+/// Friction in a joint, or rolling resistance, which is in the record of the contact before it.
+void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c, ImpulseWork& sum) {
+  const Constraint& at = impact.problem.constraints()[c];
+  const auto place = static_cast<std::size_t>(impact.problem.first_row(c));
+  const double impulse = impact.problem.impulses()[place];
+  const double work =
+      sum.add(impulse, impact.problem.before()[place], at.tangential_velocity(impact.velocity));
+  if (at.type != ConstraintType::rolling) {
+    flows[EnergyFlow::joint_friction] -= work;
+    return;
+  }
+  EventRecord& event = events.back();
+  event.rolling_moment = impulse;
+  event.contact_work += work;
+  flows[line_of_rolling(impact.kind)] -= work;
+  flows[EnergyFlow::external] += impulse * at.surface_velocity[0];
+}
+
 void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& model, JointReactions& joints,
                                const MotionSample& at) {
   if (joints.rows().empty()) return;
@@ -194,7 +214,7 @@ void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& mod
   const IslandProblem& problem = impact.problem;
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
-    if (!contact.has_dry_friction()) continue;
+    if (!contact.has_dry_friction() || contact.type == ConstraintType::rolling) continue;
     JointReaction reaction;
     reaction.moment = problem.impulses()[static_cast<std::size_t>(problem.first_row(c))];
     const JointId friction{contact.key.a.serial, model.assembly->system().token()};

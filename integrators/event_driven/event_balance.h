@@ -3,6 +3,7 @@
 /// \file
 /// Books of an advance of clock groups: the energy that left them, and the events that happened.
 
+#include <carom/contact/impulse_map.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/constraint.h>
 #include <carom/core/energy_term.h>
@@ -92,6 +93,7 @@ struct CAROM_API EventBalance {
 
 private:
   void keep_latest();
+  void book_without_normal(const SolvedImpact& impact, std::size_t c, ImpulseWork& sum);
 
   std::size_t settled_ = 0;                            // of the events
   std::int64_t instant_ = 0;                           // being recorded

@@ -40,6 +40,10 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   scales_ = scales;
   is_active_.assign(motion_->model().pairs.size(), 0);
   for (const ActiveContact& contact : motion_->active().list()) is_active_[contact.place] = 1;
+  // Rolling resistance has no gap of its own.
+  for (std::size_t i = 0; i < is_active_.size(); ++i) {
+    if (motion_->model().pairs[i].rolling) is_active_[i] = 1;
+  }
   take_features(time, y);
   if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start())) {
     failure_->fail_loads(memory_->within);

@@ -54,12 +54,6 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
                 .zero_impulses = options.record_events.choice() == EventRecords::all}) {
-  if (resists_rolling(detector_)) {
-    throw ModelError(
-        "event-driven mode: rolling_resistance of a contact is > 0; allowed: 0 in all laws of contact, or "
-        "the "
-        "time-stepping mode");
-  }
   constexpr std::size_t few = 8;
   modes_.reserve(few);
   if (!detector_.bodies_touch()) return;

@@ -1,5 +1,6 @@
 // Problem: all stages of an event see the same state.
 
+#include <carom/contact/detection/rolling_resistance.h>
 #include <carom/integrators/event_driven/event_instant.h>
 
 #include <algorithm>
@@ -26,6 +27,11 @@ void EventInstant::update() {
   // Whatever touches or is captured is nearer.
   const double near = 16.0 * model.options->gap_tolerance;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (model.pairs[i].rolling) {
+      contacts[i] =
+          rolling_resistance(contacts[i - 1], motion_of(*model.detector, model.pairs[i], now.places));
+      continue;
+    }
     motion.contact_if_near(i, now, near, contacts[i]);
     const Index bound = model.bound_of[i];
     if (bound == none || contacts[i].gap > near || model.bounds[bound].rounding > 0.0) continue;

@@ -13,6 +13,10 @@ void EventIslands::find(const GroupModel& model, FunctionRef<bool(std::size_t)> 
   pairs_.reserve(model.pairs.size());
   sets_.start(static_cast<Index>(assembly.layout()->bodies().size()));
   for (Index i = 0; i < model.pairs.size(); ++i) {
+    if (model.pairs[i].rolling) {
+      if (!pairs_.empty() && pairs_.back() + 1 == i) pairs_.push_back(i);
+      continue;
+    }
     if (model.pairs[i].has_outline()) {
       if (!is_near(i)) continue;
     }

@@ -68,8 +68,8 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
     const ActiveContact& closed = motion.active().list()[predicted.which];
     const double sign = closed.slip_sign();
     return {sign * closed.at.tangential_velocity(velocity) - step.ends.slip_level(predicted.which),
-            sign * closed.at.tangential_acceleration(at.acceleration.data()), step.scales.speed_noise / 16.0,
-            true};
+            sign * closed.at.tangential_acceleration(at.acceleration.data()),
+            step.scales.noise_of(motion, closed.at) / 16.0, true};
   }
   if (predicted.guard == Guard::feature) {
     const ActiveContact& closed = motion.active().list()[predicted.which];

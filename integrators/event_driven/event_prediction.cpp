@@ -66,8 +66,8 @@ void predict_slips(SearchedStep& step, GuardSampler& sampler, Event& found) {
     if (closed[i].sticks() || closed[i].frictionless) continue;
     FallRule rule;
     rule.derivatives = 1;
-    rule.fine = step.scales.speed_noise;
-    rule.raise = step.scales.speed_noise - step.ends.slip_level(i);
+    rule.fine = step.scales.noise_of(step.motion, closed[i].at);
+    rule.raise = rule.fine - step.ends.slip_level(i);
     rule.deepest = deepest;
     const auto read = [i](const GuardSample& at) -> QuantityLook { return {at.time, at.slips[i], 0.0}; };
     search(step, sampler, rule, read, {never, Guard::slip, i}, found);

@@ -19,6 +19,17 @@ constexpr double speed_rounding = 1e-12;
 
 }  // namespace
 
+double EventScales::noise_of(const SmoothMotion& motion, const Constraint& contact) const {
+  if (contact.type != ConstraintType::rolling) return speed_noise;
+  const std::vector<double>& lengths = motion.memory().lengths;
+  double length = std::numeric_limits<double>::infinity();
+  for (int b = 0; b < contact.bodies; ++b) {
+    const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
+    length = std::min(length, lengths[block.v + static_cast<Index>(block.columns) - 1]);
+  }
+  return speed_noise / length;
+}
+
 EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
   const std::vector<double>& lengths = motion.memory().lengths;
@@ -34,6 +45,7 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
   }
   scales.gap_noise = gap_rounding * size;
   for (const Constraint& contact : contacts) {
+    if (contact.type == ConstraintType::rolling) continue;  // a spin, as fast as its contact
     velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));
     velocity = std::max(velocity, std::abs(contact.surface_velocity[1]));
   }

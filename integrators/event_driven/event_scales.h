@@ -18,6 +18,9 @@ struct EventScales {
   double gap_noise = 0.0;    ///< rounding of gaps [m]
   double speed_noise = 0.0;  ///< velocities that count as zero [m/s]
   double guard_noise = 0.0;  ///< guards nearer to zero than this have not passed it
+
+  /// Tangential velocities of a contact that count as zero [m/s]; of rolling resistance spins [rad/s].
+  [[nodiscard]] double noise_of(const SmoothMotion& motion, const Constraint& contact) const;
 };
 
 /// Scales at a state. \param contacts of all pairs there

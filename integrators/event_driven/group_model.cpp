@@ -11,6 +11,20 @@ namespace carom {
 
 namespace {
 
+/// The rolling resistance of pairs that have some, behind each.
+void add_rolling(const Detector& detector, std::vector<ContactPair>& pairs) {
+  if (!resists_rolling(detector)) return;
+  std::vector<ContactPair> with_rolling;
+  with_rolling.reserve(2 * pairs.size());
+  for (const ContactPair& pair : pairs) {
+    with_rolling.push_back(pair);
+    if (!resists_rolling(detector, pair)) continue;
+    with_rolling.push_back(pair);
+    with_rolling.back().rolling = true;
+  }
+  pairs.swap(with_rolling);
+}
+
 /// Pairs that may touch, those of one mechanism together, then those of two bodies.
 std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& detector,
                                   const GroupComponents& group, const GroupJoints& joints) {
@@ -27,6 +41,7 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
     all.insert(all.end(), pairs.begin(), pairs.end());
   }
   all.insert(all.end(), group.body_pairs.begin(), group.body_pairs.end());
+  add_rolling(detector, all);
   return all;
 }
 
@@ -44,6 +59,13 @@ std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& d
 bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
   return std::any_of(group.components.begin(), group.components.end(),
                      [&](Index component) { return detector.has_dry_friction(component); });
+}
+
+/// Works that are integrated along in the motion of a group.
+Index works_of(const Detector& detector, const GroupComponents& group) {
+  if (resists_rolling(detector)) return work_lines;
+  const auto in_joints = static_cast<Index>(WorkLine::joint_friction);
+  return has_dry_friction(detector, group) ? in_joints + 1 : in_joints;
 }
 
 void add_load_traits(const Assembly& assembly, Index component, LoadTraits& traits) {
@@ -129,8 +151,7 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
     : assembly(&assembly_in),
       detector(&detector_in),
       options(&options_in),
-      unknowns(assembly_in, group.components,
-               has_dry_friction(detector_in, group) ? work_lines : work_lines - 1),
+      unknowns(assembly_in, group.components, works_of(detector_in, group)),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
       bounds(bounds_of(assembly_in, detector_in, pairs)),
       bound_of(pairs.size(), none),

@@ -50,7 +50,8 @@ struct CAROM_API GroupModel {
   MotionUnknowns unknowns;  ///< of its motion; has the components
   LoadTraits loads;         ///< on them
   /// Everything that might touch, and friction in joints, which always does. First what touches the ground
-  /// and what belongs to joints, that of one mechanism together; then pairs of two bodies.
+  /// and what belongs to joints, that of one mechanism together; then pairs of two bodies. Behind each
+  /// contact that resists rolling its resistance.
   std::vector<ContactPair> pairs;
   std::vector<BodyPairBound> bounds;  ///< of the pairs with an outline, in their order
   std::vector<Index> bound_of;        ///< by pair: its place in `bounds`; `none`: a point and a flat boundary

@@ -16,7 +16,8 @@ void GroupOutput::book(double projected, EventBalance& balance) {
   for (Index line = 0; line < unknowns_->work_count(); ++line) {
     const double value = y_[unknowns_->work_place(static_cast<WorkLine>(line))];
     constexpr std::array<EnergyFlow, work_lines> flows{EnergyFlow::dashpot, EnergyFlow::sliding,
-                                                       EnergyFlow::external, EnergyFlow::joint_friction};
+                                                       EnergyFlow::external, EnergyFlow::joint_friction,
+                                                       EnergyFlow::rolling};
     balance.flows[flows[line]] += value - booked_[line];
     booked_[line] = value;
   }

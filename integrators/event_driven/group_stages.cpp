@@ -36,7 +36,7 @@ bool is_at_rest(GroupParts& group, MotionSample& now) {
   if (model.loads.depends_on_time || model.unknowns.z_size() != 0) return false;
   // The surface of a conveyor does work on what stands.
   for (const ActiveContact& contact : group.motion.active().list()) {
-    if (contact.at.surface_velocity[1] != 0.0) return false;
+    if (contact.at.surface_velocity[static_cast<std::size_t>(contact.at.tangent_row())] != 0.0) return false;
   }
   const auto largest = [&](const std::vector<double>& numbers) {
     double size = 0.0;

@@ -123,13 +123,16 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
   memory_->places.clear();
   for (const Index i : pairs) {
     if (!at.touches(i)) continue;
+    const bool rolling = at.contacts[i].type == ConstraintType::rolling;
     // Friction in a joint that is bound by a constant has no impulse.
-    if (at.contacts[i].has_dry_friction() && !at.motion.joints().depends_on_joint_force(at.contacts[i]))
+    if (!rolling && at.contacts[i].has_dry_friction() &&
+        !at.motion.joints().depends_on_joint_force(at.contacts[i])) {
       continue;
+    }
     Constraint& contact = touching.emplace_back(at.contacts[i]);
     memory_->places.push_back(i);
     contact.friction_bound = 0.0;
-    contact.friction = contact.law.friction_at(contact.sliding_speed(at.velocities()));
+    if (!rolling) contact.friction = contact.law.friction_at(contact.sliding_speed(at.velocities()));
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (at.rate_jumps && at.before_at[i] != none) {
       contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
@@ -194,6 +197,9 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
     if (!(fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit)) continue;
     memory_->touching.push_back(contact);
     memory_->places.push_back(i);
+    if (i + 1 == at.contacts.size() || !at.motion.model().pairs[i + 1].rolling) continue;
+    memory_->touching.push_back(at.contacts[i + 1]);
+    memory_->places.push_back(i + 1);
   }
 }
 

@@ -36,10 +36,11 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
   }
   const std::size_t first = at.balance.events.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
-  for (std::size_t i = first; i < at.balance.events.size(); ++i) {
-    const Candidate& candidate = candidates[taking_part_[i - first]];
-    at.balance.events[i].stiffness = candidate.stiffness;
-    at.balance.events[i].free_acceleration = candidate.free_acceleration;
+  std::size_t event = first;
+  for (const std::size_t i : taking_part_) {
+    if (candidates[i].rolls() || event == at.balance.events.size()) continue;  // in the record of its contact
+    at.balance.events[event].stiffness = candidates[i].stiffness;
+    at.balance.events[event++].free_acceleration = candidates[i].free_acceleration;
   }
   at.update();
   // It may throw the body against something else.
@@ -49,7 +50,10 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
 /// Of the answers that are listed the most dissipative one. With unequal restitution there may be none, with
 /// an equal one there is: e_n means nothing without speed.
 bool ImpactWithoutCollision::find_listed(SolverChain& chain, EventInstant& at) {
-  if (touching_.size() > static_cast<std::size_t>(enumeration_groups)) return false;
+  const auto groups = std::count_if(touching_.begin(), touching_.end(), [](const Constraint& row) {
+    return row.type != ConstraintType::rolling;
+  });
+  if (groups > enumeration_groups) return false;
   bool solved = false;
   do {
     solved = solve(chain, at);
@@ -64,7 +68,7 @@ void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates
   taking_part_.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     // Friction in joints bounds no contact force.
-    if (candidates[i].at.has_dry_friction()) continue;
+    if (candidates[i].at.has_dry_friction() && !candidates[i].rolls()) continue;
     taking_part_.push_back(i);
     Constraint& contact = touching_.emplace_back(candidates[i].at);
     // At no speed: the rest is rounding, which the certificate of P = 0 would refuse.
@@ -94,6 +98,7 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     for (int row = 0; row < contact.rows; ++row)
       pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
+    if (contact.type == ConstraintType::rolling) continue;
     const double slip = std::abs(candidates[taking_part_[c]].slip);
     fastest = std::max(fastest, slip);
     if (slip > 0.0) slowest = std::min(slowest, slip);

@@ -2,6 +2,7 @@
 
 #include <carom/integrators/event_driven/mode_decision.h>
 #include <carom/integrators/event_driven/modes_by_motion.h>
+#include <carom/integrators/event_driven/rolling_modes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@ namespace carom {
 namespace {
 
 constexpr double no_force = 1e-11;  // against those around it
-
 // Contacts that start slipping or open change the problem of the others; more rounds than this do not end it.
 constexpr int most_rounds = 20;
 
@@ -24,7 +24,7 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
   acceleration_.resize(now.acceleration.size());
   const Decision decision = repeat(&ModeDecision::solve, motion, now, candidates, chain);
   // Few contacts are enumerated: what is neither solved nor refuted there is for the caller to decide.
-  const bool enumerated = candidates.size() <= static_cast<std::size_t>(enumeration_groups);
+  const bool enumerated = groups_of(candidates) <= static_cast<std::size_t>(enumeration_groups);
   if (decision != Decision::failed || enumerated) return decision;
   return repeat(&ModeDecision::solve_as_limit, motion, now, candidates, chain);
 }
@@ -57,7 +57,8 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
   taking_part_.reserve(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
-    if (slips_[i].open) continue;
+    const bool rolling = candidates[i].rolls();
+    if (rolling ? taking_part_.empty() || taking_part_.back() + 1 != i : slips_[i].open) continue;
     Constraint& contact = contacts_.emplace_back(candidates[i].at);
     taking_part_.push_back(i);
     // In accelerations minus the drift stands for the velocity of the shape on ground.
@@ -65,8 +66,9 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    contact.friction = slips_[i].sign == 0.0 ? contact.law.sticking_friction()
-                                             : contact.law.sliding_friction(std::abs(candidates[i].slip));
+    if (!rolling) contact.friction = contact.law.sticking_friction();
+    if (rolling || slips_[i].sign == 0.0) continue;
+    contact.friction = contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
 }
 
@@ -99,13 +101,13 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
       follow ? converge_friction_bounds(motion, now, candidates, chain) : problem_.solve(chain).usable();
   const ContactReport& report = problem_.report();
   if (!solved || report.outcome == Outcome::no_solution) {
-    name_cause(candidates);
+    name_cause(problem_, taking_part_, slips_, candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
   Decision decision = Decision::made;
   if (!follow) read_modes(candidates, problem_.impulses());
-  if (report.outcome == Outcome::several_solutions) {
-    name_cause(candidates);
+  if (report.outcome == Outcome::several_solutions || finds_several(candidates)) {
+    name_cause(problem_, taking_part_, slips_, candidates);
     take_present(candidates);
     decision = Decision::several;
   }
@@ -113,6 +115,15 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   problem_.map().add_velocities(acceleration_.data());
   if (!follow && decision == Decision::made) settle_modes(motion, now, candidates);
   return decision;
+}
+
+/// True if a problem with rolling resistance has several answers, which its solvers do not count (Painleve).
+bool ModeDecision::finds_several(std::span<Candidate> candidates) {
+  if (groups_of(candidates) == contacts_.size()) return false;
+  name_cause(problem_, taking_part_, slips_, candidates);
+  const auto closes_more = [](const Candidate& at) { return at.stiffness < 0.0; };
+  return std::any_of(candidates.begin(), candidates.end(), closes_more) &&
+         solutions_.enumerate(problem_.problem()) == Outcome::several_solutions;
 }
 
 /// The limit of impacts of vanishing time eps, b = gamma + eps a and e = 0, divided by eps: its matrix is
@@ -137,7 +148,7 @@ Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
   motion.joints().build(problem_, contacts_, zero_.data());
   problem_.set_free_velocity(now.acceleration.data());
   const bool solved = problem_.solve(chain).usable();
-  name_cause(candidates);
+  name_cause(problem_, taking_part_, slips_, candidates);
   if (!solved) return Decision::failed;
   take_accelerations(motion, now);
   problem_.map().add_velocities(acceleration_.data());
@@ -160,6 +171,10 @@ Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
+    if (candidates[i].rolls()) {
+      candidates[i].mode = mode_of_rolling(problem_, c, candidates[i - 1].mode, slips_[i].sign, force);
+      continue;
+    }
     const ContactMode found = problem_.modes()[c];
     // Friction in a joint never opens.
     const bool has_dry_friction = contacts_[c].has_dry_friction();
@@ -169,25 +184,10 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
     }
     const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
     if (slips_[i].sign != 0.0) {
-      candidates[i].mode = !(normal > 0.0)        ? ContactMode::open
-                           : slips_[i].sign > 0.0 ? ContactMode::slip_positive
-                                                  : ContactMode::slip_negative;
+      candidates[i].mode = normal > 0.0 ? mode_by_sign(slips_[i].sign) : ContactMode::open;
     } else {
       candidates[i].mode = found;
     }
-  }
-}
-
-void ModeDecision::name_cause(std::span<Candidate> candidates) {
-  const ContactProblem& problem = problem_.problem();
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const std::size_t i = taking_part_[c];
-    if (contacts_[c].has_dry_friction()) continue;
-    const int row = problem_.first_row(c);
-    const double ratio = -slips_[i].sign * contacts_[c].friction;
-    candidates[i].stiffness = problem.w(row, row);
-    if (contacts_[c].rows > 1) candidates[i].stiffness += ratio * problem.w(row, row + 1);
-    candidates[i].free_acceleration = problem.vector()[static_cast<std::size_t>(row)];
   }
 }
 
@@ -224,6 +224,7 @@ void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::sp
                                 SlipDirections::no_acceleration * size_};
   const auto take_forces = [&] { take_modes(by_forces_, candidates); };
   open_where_parting(decided, candidates);
+  follow_contacts(slips_, candidates);
   by_forces_.clear();
   by_forces_.reserve(candidates.size());
   for (const Candidate& candidate : candidates) by_forces_.push_back(candidate.mode);
@@ -273,14 +274,15 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Constraint& contact = contacts_[c];
     const std::size_t i = taking_part_[c];
-    if (contact.has_dry_friction() && candidates[i].slip == 0.0 && !candidates[i].starts_slipping) {
+    const bool rests = candidates[i].rolls() && candidates[i - 1].mode == ContactMode::open;
+    if (contact.has_dry_friction() && !rests && candidates[i].slip == 0.0 && !candidates[i].starts_slipping) {
       // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
       // bound is zero the force does not determine the mode.
       const double along = contact.tangential_acceleration(acceleration_.data());
       if (std::abs(along) <= SlipDirections::no_acceleration * size_) {
         candidates[i].mode = ContactMode::stick;
       } else if (slips_[i].sign == 0.0) {
-        candidates[i].mode = along > 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
+        candidates[i].mode = mode_by_sign(along);
       }
     }
     if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
@@ -292,11 +294,10 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
     if (sign == 0.0 && std::abs(along) > SlipDirections::no_acceleration * size_) sign = along;
     // Where forces are not unique its friction would change the motion that was decided.
     if (sign != 0.0 && contact.friction != 0.0 && !bounds_follow(motion)) continue;
-    candidates[i].mode = sign == 0.0  ? ContactMode::stick
-                         : sign > 0.0 ? ContactMode::slip_positive
-                                      : ContactMode::slip_negative;
+    candidates[i].mode = mode_by_sign(sign);
     added.push_back(i);
   }
+  follow_contacts(slips_, candidates);
   if (added.empty()) return;
   list_closed(candidates);
   double change = 0.0;
@@ -312,6 +313,7 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
     while (closed->place != candidates[i].place) ++closed;
     if (!found || !(closed->normal > no_force * largest)) candidates[i].mode = ContactMode::open;
   }
+  follow_contacts(slips_, candidates);
 }
 
 /// Bounds of friction in joints follow from forces that may not be unique: the decision needs those that the

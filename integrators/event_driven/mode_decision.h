@@ -48,9 +48,9 @@ private:
                  SolverChain& chain);
   Decision solve_as_limit(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                           SolverChain& chain);
-  void name_cause(std::span<Candidate> candidates);
   bool take_present(std::span<Candidate> candidates);
   void take(std::span<Candidate> candidates, std::size_t solution);
+  [[nodiscard]] bool finds_several(std::span<Candidate> candidates);
   void read_modes(std::span<Candidate> candidates, std::span<const double> force);
   bool converge_friction_bounds(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                                 SolverChain& chain);

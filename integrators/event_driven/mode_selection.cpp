@@ -36,7 +36,8 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
     if (!c.sets_margin) continue;
     if (!c.at.has_dry_friction() && c.normal <= at.margin + noise && c.normal <= noise) {
       releasing_.push_back(c.pair);
-    } else if (c.sticks() && c.friction * c.normal - std::abs(c.tangential) <= at.margin + noise) {
+    } else if (c.sticks() &&
+               c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)) <= at.margin + noise) {
       exhausted_.push_back({c.pair, c.tangential, noise});
     }
   }
@@ -95,6 +96,8 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
   const double* const velocity = at.velocities();
   for (const Index i : pairs) {
     const Constraint& contact = at.contacts[i];
+    const bool rolling = at.motion.model().pairs[i].rolling;
+    if (rolling && (candidates.empty() || candidates.back().place + 1 != i)) continue;
     if (!at.touches(i) || contact.normal_velocity(velocity) > speed_noise) continue;
     Candidate& candidate = candidates.emplace_back();
     candidate.pair = at.motion.model().pairs[i];
@@ -103,8 +106,9 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     take_coming_feature(at, candidate);
     if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
     const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
-    candidate.slip = std::abs(slip) > speed_noise && candidate.pair != stopped_ ? slip : 0.0;
-    candidate.frictionless = contact.law.sticking_friction() == 0.0;
+    const double noise = at.scales.noise_of(at.motion, contact);
+    candidate.slip = std::abs(slip) > noise && candidate.pair != stopped_ ? slip : 0.0;
+    candidate.frictionless = !rolling && contact.law.sticking_friction() == 0.0;
     const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
     if (at.before_at[i] != none) candidate.present = at.before[at.before_at[i]].mode;
     const auto exhausted = std::find_if(exhausted_.begin(), exhausted_.end(), same);
@@ -161,7 +165,7 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
     return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
   });
   // Of more contacts not all modes are enumerated.
-  const bool enumerated = candidates.size() <= static_cast<std::size_t>(enumeration_groups);
+  const bool enumerated = groups_of(candidates) <= static_cast<std::size_t>(enumeration_groups);
   const Decision decision = decide(at);
   return decision == Decision::failed && slides && enumerated ? Decision::impossible : decision;
 }
@@ -244,7 +248,8 @@ void ModeSelection::record_changes(EventInstant& at) const {
   is_active.assign(model.pairs.size(), 0);
   for (const ActiveContact& contact : active) is_active[contact.place] = 1;
   for (const ActiveContact& contact : at.before) {
-    if (is_active[contact.place] == 0) change(EventKind::lift_off, contact.at, ContactMode::open);
+    if (is_active[contact.place] == 0 && !contact.rolls())
+      change(EventKind::lift_off, contact.at, ContactMode::open);
   }
   for (const ActiveContact& contact : active) {
     const Index before = at.before_at[contact.place];
@@ -252,7 +257,9 @@ void ModeSelection::record_changes(EventInstant& at) const {
       if (contact.at.has_dry_friction()) continue;  // it was there all the time
       change(EventKind::closing, contact.at, contact.mode);
     } else if (at.before[before].mode != contact.mode && !contact.frictionless) {
-      change(contact.sticks() ? EventKind::stick : EventKind::slip, contact.at, contact.mode);
+      const EventKind stops = contact.rolls() ? EventKind::hold : EventKind::stick;
+      const EventKind starts = contact.rolls() ? EventKind::roll : EventKind::slip;
+      change(contact.sticks() ? stops : starts, contact.at, contact.mode);
     }
   }
 }

@@ -22,7 +22,9 @@ namespace {
 /// to.
 bool is_still(const DecidedContacts& decided, std::size_t c, const Candidate& candidate) {
   const Constraint& contact = decided.contacts[c];
-  if (candidate.mode == ContactMode::open || contact.rows < 2 || contact.friction == 0.0) return false;
+  const bool rolling = contact.type == ConstraintType::rolling;
+  if (candidate.mode == ContactMode::open || contact.friction == 0.0) return false;
+  if (contact.rows < 2 && !rolling) return false;
   if (candidate.slip != 0.0 || candidate.starts_slipping || candidate.frictionless) return false;
   return std::abs(contact.tangential_acceleration(decided.acceleration)) <= decided.small;
 }
@@ -43,16 +45,19 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
     Candidate& candidate = candidates[decided.taking_part[c]];
     const Constraint& contact = decided.contacts[c];
     // Static friction larger than sliding friction would change the force.
-    if (!is_still(decided, c, candidate) || contact.has_dry_friction() || contact.law.has_static_friction())
-      continue;
-    const auto row = static_cast<std::size_t>(problem.first_row(c));
-    const double normal = problem.impulses()[row], tangential = problem.impulses()[row + 1];
+    const bool rolling = contact.type == ConstraintType::rolling;
+    if (!is_still(decided, c, candidate)) continue;
+    if (!rolling && (contact.has_dry_friction() || contact.law.has_static_friction())) continue;
+    const auto row = static_cast<std::size_t>(problem.first_row(rolling ? c - 1 : c));
+    const auto along = static_cast<std::size_t>(problem.first_row(c) + contact.tangent_row());
+    const double normal = problem.impulses()[row], tangential = problem.impulses()[along];
     if (!(normal > 0.0)) continue;
     const double bound = contact.friction * normal, size = std::abs(tangential);
     if (size > rounding * bound && size < (1.0 - rounding) * bound) {
       candidate.mode = ContactMode::stick;
       continue;
     }
+    if (rolling && size <= rounding * bound) continue;  // held without a moment
     candidate.mode = tangential < 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
     candidate.frictionless = size <= rounding * bound;
   }
@@ -65,7 +70,7 @@ bool forces_may_move(std::span<const Constraint> contacts, std::span<const std::
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Candidate& candidate = candidates[taking_part[c]];
     if (candidate.mode == ContactMode::open) continue;
-    ++closed;
+    if (contacts[c].type != ConstraintType::rolling) ++closed;
     const bool rubs = !candidate.frictionless && contacts[c].friction != 0.0;
     slides = slides || (rubs && candidate.mode != ContactMode::stick);
   }

@@ -19,14 +19,21 @@ namespace {
 constexpr std::size_t most_columns = Constraint::max_columns;
 using OfContact = std::array<double, most_columns>;
 
-/// Row of a contact along which a force acts.
-OfContact direction(const ActiveContact& contact, bool tangent) {
+/// Row of a contact along which a force acts: a normal one with what follows from it, friction and the moment
+/// against rolling.
+OfContact direction(std::span<const ActiveContact> contacts, const ContactPivot::Row& force) {
+  const ActiveContact& contact = contacts[force.contact];
+  const bool tangent = force.tangent;
   OfContact result{};
   const double ratio = tangent ? 0.0 : -contact.slip_sign() * contact.friction;
   for (std::size_t i = 0; i < most_columns; ++i) {
     result[i] = contact.at.row(tangent ? contact.at.tangent_row() : 0)[i];
     if (ratio != 0.0) result[i] += ratio * contact.at.row(1)[i];
   }
+  if (tangent || force.contact + 1 == contacts.size() || !contacts[force.contact + 1].rolls()) return result;
+  const ActiveContact& rolling = contacts[force.contact + 1];
+  for (std::size_t i = 0; i < most_columns; ++i)
+    result[i] -= rolling.slip_sign() * rolling.friction * rolling.at.row(0)[i];
   return result;
 }
 
@@ -283,7 +290,7 @@ void MotionJacobian::differentiate_contacts(MotionSample& sample, std::vector<Ra
                      -fixed.row_by_velocity[j][row], -fixed.row_by_position[j][row]});
     }
     const ContactChange& loaded = contact_changes_[force.contact];
-    const OfContact along = direction(contacts[force.contact], force.tangent);
+    const OfContact along = direction(contacts, force);
     for (std::size_t i = 0; i < loaded.count; ++i) {
       out.push_back({.row = loaded.columns[i], .column = multiplier, .of_state = along[i]});
     }

@@ -16,9 +16,10 @@
 namespace carom {
 
 /// Works that are integrated along.
-enum class WorkLine : std::uint8_t { dashpot, sliding, external, joint_friction };
-/// Number of them; the last is integrated where joints have dry friction only.
-inline constexpr Index work_lines = 4;
+enum class WorkLine : std::uint8_t { dashpot, sliding, external, joint_friction, rolling };
+/// Number of them. Behind those of all motions, friction is integrated where joints have dry friction, and
+/// both where contacts resist rolling.
+inline constexpr Index work_lines = 5;
 
 /// Places of the unknowns of one clock group.
 class CAROM_API MotionUnknowns {
@@ -45,6 +46,8 @@ public:
   [[nodiscard]] std::size_t z_begin() const { return q_size_ + v_size_; }  ///< place of the first of z
   [[nodiscard]] std::size_t z_size() const { return z_size_; }             ///< number of internal variables
   [[nodiscard]] Index work_count() const { return works_; }                ///< number of works
+  /// True if a work is integrated.
+  [[nodiscard]] bool has_work(WorkLine line) const { return static_cast<Index>(line) < works_; }
   /// Place of a work.
   [[nodiscard]] std::size_t work_place(WorkLine line) const {
     return q_size_ + v_size_ + z_size_ + static_cast<std::size_t>(line);

@@ -52,10 +52,14 @@ void ProjectionStage::apply_to_known_contacts(EventInstant& at) {
   constexpr double left_by_tolerances = 1e3;
   std::vector<ActiveContact>& list = motion_->active().list();
   const std::vector<ActiveContact> known = list;
+  bool erased = false;  // the contact that rolling resistance belongs to
   std::erase_if(list, [&](ActiveContact& closed) {
     closed.at = at.contacts[closed.place];
-    return closed.at.gap > motion_->model().options->gap_tolerance ||
-           std::abs(closed.at.normal_velocity(at.velocities())) > left_by_tolerances * at.scales.speed_noise;
+    if (closed.rolls()) return erased;
+    erased =
+        closed.at.gap > motion_->model().options->gap_tolerance ||
+        std::abs(closed.at.normal_velocity(at.velocities())) > left_by_tolerances * at.scales.speed_noise;
+    return erased;
   });
   if (!list.empty()) {
     motion_->sample(at.time, at.y.data(), Forces::all, at.now);

@@ -7,6 +7,11 @@
 
 namespace carom {
 
+std::size_t groups_of(std::span<const Candidate> candidates) {
+  return static_cast<std::size_t>(
+      std::count_if(candidates.begin(), candidates.end(), [](const Candidate& at) { return !at.rolls(); }));
+}
+
 void SlipDirections::start(std::span<const Candidate> candidates) {
   slips_.assign(candidates.size(), {});
   for (std::size_t i = 0; i < candidates.size(); ++i) {

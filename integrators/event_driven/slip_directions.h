@@ -16,12 +16,12 @@
 
 namespace carom {
 
-/// A contact that touches without normal speed.
+/// A contact that touches without normal speed; or the rolling resistance of the candidate before it.
 struct Candidate {
   ContactPair pair;
   Index place = none;  ///< of the pair among those of the motion
   Constraint at;
-  double slip = 0.0;                        ///< tangential velocity, 0 if it may stick [m/s]
+  double slip = 0.0;  ///< tangential velocity, 0 if it may stick [m/s]; or relative spin [rad/s]
   ContactMode present = ContactMode::open;  ///< before the decision
   ContactMode mode = ContactMode::open;     ///< decided
   bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
@@ -32,7 +32,20 @@ struct Candidate {
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
+
+  /// True of rolling resistance.
+  [[nodiscard]] bool rolls() const { return at.type == ConstraintType::rolling; }
 };
+
+/// Mode of a contact that slips, or of one that rolls, by the sign of the velocity; sticking where it is 0.
+[[nodiscard]] inline ContactMode mode_by_sign(double velocity) {
+  return velocity > 0.0   ? ContactMode::slip_positive
+         : velocity < 0.0 ? ContactMode::slip_negative
+                          : ContactMode::stick;
+}
+
+/// Number of candidates without rolling resistances: groups of rows of their problem.
+[[nodiscard]] CAROM_API std::size_t groups_of(std::span<const Candidate> candidates);
 
 /// Mode that a candidate is taken to have.
 struct SlipDirection {

@@ -112,7 +112,7 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   const MotionUnknowns& unknowns = model_.unknowns;
   const LoadTraits traits = model_.loads;
   const StateView state = at.view();
-  double dashpot = lost_inside, external = 0.0, sliding = 0.0, in_joints = 0.0;
+  double dashpot = lost_inside, external = 0.0, sliding = 0.0, in_joints = 0.0, rolling = 0.0;
   const auto work_of = [&](const std::vector<double>& loads) {
     double work = 0.0;
     for (const auto& part : unknowns.parts()) {
@@ -123,10 +123,11 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   if (traits.books_dissipative) dashpot -= work_of(at.dissipative);
   if (traits.books_external) external += work_of(at.external);
   for (const ActiveContact& contact : active_.list()) {
-    double& lost = contact.at.has_dry_friction() ? in_joints : sliding;
+    double& lost = contact.rolls() ? rolling : contact.at.has_dry_friction() ? in_joints : sliding;
     lost -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
     external +=
-        contact.normal * contact.at.surface_velocity[0] + contact.tangential * contact.at.surface_velocity[1];
+        contact.tangential * contact.at.surface_velocity[static_cast<std::size_t>(contact.at.tangent_row())];
+    if (!contact.rolls()) external += contact.normal * contact.at.surface_velocity[0];
   }
   if (joints_.rows().depends_on_time()) {
     // Reactions do the work of what is prescribed: G v = -rate.
@@ -136,7 +137,9 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   rates[unknowns.work_place(WorkLine::dashpot)] = dashpot;
   rates[unknowns.work_place(WorkLine::sliding)] = sliding;
   rates[unknowns.work_place(WorkLine::external)] = external;
-  if (unknowns.work_count() == work_lines) rates[unknowns.work_place(WorkLine::joint_friction)] = in_joints;
+  if (unknowns.has_work(WorkLine::joint_friction))
+    rates[unknowns.work_place(WorkLine::joint_friction)] = in_joints;
+  if (unknowns.has_work(WorkLine::rolling)) rates[unknowns.work_place(WorkLine::rolling)] = rolling;
 }
 
 void SmoothMotion::jacobian(double time, const double* y, std::vector<RateDerivative>& out) {

@@ -21,7 +21,9 @@ std::string_view to_string(EventKind kind) {
                                                                  "several accelerations",
                                                                  "switching point",
                                                                  "discontinuity",
-                                                                 "mode switch"};
+                                                                 "mode switch",
+                                                                 "roll",
+                                                                 "hold"};
   return enum_name(names, kind);
 }
 

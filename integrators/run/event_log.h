@@ -34,10 +34,12 @@ enum class EventKind : std::uint8_t {
   several_accelerations,     ///< several accelerations are possible (Painleve): one was chosen by rule
   switching_point,           ///< loads of an element change their form
   discontinuity,             ///< of a law of time: it jumps or has a kink, as its part says
-  mode_switch                ///< a contact was opened when the simulation changed to the event-driven mode
+  mode_switch,               ///< a contact was opened when the simulation changed to the event-driven mode
+  roll,  ///< a contact whose rolling resistance held it begins to roll, or rolls the other way
+  hold   ///< the relative spin of a contact that rolls has stopped: rolling resistance holds it
 };
 /// Number of kinds.
-inline constexpr std::size_t event_kind_count = 11;
+inline constexpr std::size_t event_kind_count = 13;
 
 /// Name of a kind: "impact", "lift-off", ...
 [[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);

@@ -1,7 +1,7 @@
 // Problem: which constraints take part in a step, and which components they join.
 
+#include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/impact_restitution.h>
-#include <carom/contact/rolling_resistance.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -84,24 +84,16 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   if (resists_rolling(detector_)) add_rolling(first, out);
 }
 
-/// The ground that a body rolls on may turn.
-void StepConstraints::take_spin(Constraint& rolling) const {
-  if (rolling.key.b.owner != FeatureKey::Owner::obstacle) return;
-  const GroundShapes& shapes = detector_.pieces().shapes();
-  const Index shape = shapes.find(rolling.key.b.serial);
-  if (shape == none || !shapes.moves(shape)) return;
-  rolling.surface_velocity[0] = shapes.motion(shape, places_)->spin;
-  rolling.surface_velocity_after[0] = shapes.motion(shape, places_after_)->spin;
-}
-
 /// Rolling resistance behind each contact that has some, of the constraints from `first` on.
 void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& out) {
   with_rolling_.assign(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first));
   for (std::size_t i = first; i < out.size(); ++i) {
     with_rolling_.push_back(out[i]);
     if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
-      with_rolling_.push_back(rolling_resistance(out[i]));
-      take_spin(with_rolling_.back());
+      with_rolling_.push_back(rolling_resistance(out[i], ground_motion_of(detector_, out[i], places_)));
+      with_rolling_.back().drift = {};  // steps take the spins at both ends
+      const GroundMotion* const after = ground_motion_of(detector_, out[i], places_after_);
+      if (after != nullptr) with_rolling_.back().surface_velocity_after[0] = after->spin;
     }
   }
   out.swap(with_rolling_);
@@ -148,7 +140,7 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       continue;
     }
     if (std::exchange(last, source) == source) {
-      constraints_.push_back(rolling_resistance(constraints_.back()));
+      constraints_.push_back(rolling_resistance(constraints_.back(), nullptr));
       continue;
     }
     bodies.write(touching[source], in.start.view(), constraints_.emplace_back());

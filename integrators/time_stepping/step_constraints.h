@@ -55,7 +55,6 @@ private:
   [[nodiscard]] bool is_left_out(const StepInput& in, const Constraint& constraint) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
-  void take_spin(Constraint& rolling) const;
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 

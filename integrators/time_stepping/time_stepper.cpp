@@ -20,6 +20,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       projection_(parts_),
       couplings_(assembly) {
   if (!impacts_->on()) impacts_.reset();
+  if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
@@ -90,12 +91,21 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   // gaps <= 0, joint limits, dry friction, at t_j
   const Parting parting = parts_.ends_at_closings() ? Parting::is_free : Parting::acts;
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parting);
-  if (impacts_ != nullptr) {
-    StepImpacts::remove_restitution(parts_.constraints.islands());
-    if (struck_) balance_.add(impacts_->result());
+  const std::span<const StepIsland> islands = parts_.constraints.islands();
+  if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
+  if (turning_ != nullptr) turning_->begin(islands, parts_.located.on());
+  advance_all(in);
+  while (turning_ != nullptr && turning_->turn(in, parts_.trial, islands)) {
+    balance_.begin(in);
+    memory_.iterations.clear();
+    advance_all(in);
   }
-  for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
   return balance_.finish(in);  // works of what acted, records
+}
+
+void TimeStepper::advance_all(const StepInput& in) {
+  if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
+  for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
 }
 
 /// Motions that are given, and rotations at the start.
@@ -256,6 +266,7 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
     const Index body = problem.constraints().front().body();
     if (!all && parts_.located.contains_any({body, body + 1})) continue;
     book_contact_problem(problem, after, in.end_time, in);
+    if (turning_ != nullptr) balance_.book_turning(turning_->work(problem));
   }
   for (const LocatedMotion& motion : parts_.located.motions()) {
     for (const MotionPhase& phase : motion.phases()) {

@@ -22,6 +22,7 @@
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/contact_turning.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
@@ -59,6 +60,7 @@ private:
   [[nodiscard]] bool strike(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);
+  void advance_all(const StepInput& in);
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
@@ -72,8 +74,10 @@ private:
 
   StepParts parts_;
   std::unique_ptr<StepImpacts> impacts_;  // null where all impacts are those of the step
-  bool struck_ = false;                   // there were impacts at the start of the step at hand
-  PresentLoads loads_before_;             // these
+  std::unique_ptr<ContactTurning>
+      turning_;                // null where contacts act along their rows at the start of a step
+  bool struck_ = false;        // there were impacts at the start of the step at hand
+  PresentLoads loads_before_;  // these
   PrescribedJoints prescribed_;
   IslandIteration iteration_;
   StepBalance balance_;

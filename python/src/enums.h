@@ -50,7 +50,7 @@ CAROM_PYTHON_ENUM(carom::FlowMethod, "FlowMethod", "explicit_runge_kutta", "adam
 CAROM_PYTHON_ENUM(carom::EventRecords::Choice, "EventRecords", "nothing", "with_impulse", "all")
 CAROM_PYTHON_ENUM(carom::EventKind, "EventKind", "impact", "accumulation", "closing", "lift_off", "stick",
                   "slip", "impact_without_collision", "several_accelerations", "switching_point",
-                  "discontinuity", "mode_switch")
+                  "discontinuity", "mode_switch", "roll", "hold")
 CAROM_PYTHON_ENUM(carom::ContactMode, "ContactMode", "open", "stick", "slip_positive", "slip_negative",
                   "slip")
 CAROM_PYTHON_ENUM(carom::Outcome, "Outcome", "solved", "several_solutions", "forces_not_unique",

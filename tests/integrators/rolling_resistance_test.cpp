@@ -3,7 +3,6 @@
 
 #include "tests/contact/random_problems.h"
 #include "tests/integrators/event_driven/body_scenes.h"
-#include "tests/integrators/throws.h"
 
 #include <carom/carom.h>
 
@@ -260,11 +259,6 @@ TEST(RollingResistance, ADiscRollsWhereItIsInADrumThatTurns) {
   const double moment = rho * mass * g * std::cos(angle);
   EXPECT_NEAR(simulation.energy().flow(EnergyFlow::rolling), moment * (rolls - spin) * time, 1e-2);
   EXPECT_NEAR(simulation.energy().flow(EnergyFlow::external), moment * (rolls - spin) * time, 1e-2);
-}
-
-TEST(RollingResistance, RefusedWhereItIsNotKnown) {
-  const DiscOnGround scene(0.0, 0.01, 1.0);
-  EXPECT_THROWS(ModelError, Simulation(scene.system, EventDriven{}), "rolling_resistance", "event-driven");
 }
 
 }  // namespace

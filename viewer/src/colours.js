@@ -14,7 +14,7 @@ export const IMPACT = "#b5237a";
 export const KINDS = {
   impact: IMPACT, accumulation: "#7a3e9d", closing: "#0072b2", lift_off: "#56b4e9", stick: "#009e73", slip: "#d55e00",
   impact_without_collision: "#b5237a", several_accelerations: "#8a6d00", switching_point: "#6b7280",
-  discontinuity: "#6b7280", mode_switch: "#6b7280",
+  discontinuity: "#6b7280", mode_switch: "#6b7280", roll: "#d55e00", hold: "#009e73",
 };
 export const SERIES = ["#0072b2", "#009e73", "#e69f00", "#cc79a7", "#56b4e9", "#d55e00", "#7a6a00", "#7a3e9d"];
 

@@ -28,7 +28,8 @@ TEST(MotionUnknowns, ComponentsTakeTheirPartOfTheState) {
   State copy = assembly.initial_state();
   for (Index number = 0; number < assembly.components().size(); ++number) {
     const Component& component = assembly.components()[number];
-    const MotionUnknowns unknowns(assembly, std::vector<Index>{number}, work_lines - 1);
+    const MotionUnknowns unknowns(assembly, std::vector<Index>{number},
+                                  static_cast<Index>(WorkLine::joint_friction));
     ASSERT_EQ(unknowns.size(), component.q.size() + component.v.size() + component.z.size() + 3U);
     EXPECT_EQ(unknowns.work_place(WorkLine::external), unknowns.size() - 1);
     std::vector<double> y(unknowns.size(), -1.0);
@@ -62,7 +63,8 @@ TEST(MotionUnknowns, ComponentsOfOneGroupNeedNotBeNeighbours) {
   std::iota(state.q.begin(), state.q.end(), 100.0);
   std::iota(state.v.begin(), state.v.end(), 200.0);
   std::iota(state.z.begin(), state.z.end(), 300.0);
-  const MotionUnknowns unknowns(assembly, std::vector<Index>{0, 2}, work_lines - 1);
+  const MotionUnknowns unknowns(assembly, std::vector<Index>{0, 2},
+                                static_cast<Index>(WorkLine::joint_friction));
   ASSERT_EQ(unknowns.q_size(), 12U);
   ASSERT_EQ(unknowns.v_size(), 12U);
   ASSERT_EQ(unknowns.z_size(), state.z.size());

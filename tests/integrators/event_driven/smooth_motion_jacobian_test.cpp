@@ -256,6 +256,24 @@ TEST(SmoothMotionJacobian, ContactsThatStickAndSlip) {
   }
 }
 
+TEST(SmoothMotionJacobian, RollingResistance) {
+  // Behind the contact its resistance, held or at its bound.
+  const auto stick = ContactMode::stick, slip = ContactMode::slip_positive, back = ContactMode::slip_negative;
+  for (const auto& [contact, rolling] : {std::pair(stick, stick), {stick, slip}, {slip, back}, {slip, stick}}) {
+    System system;
+    system.add(Gravity{{0.0, -9.81}});
+    const Surface law{.friction = 0.3, .normal_restitution = 0.0, .rolling_resistance = 0.05};
+    system.set_default_law(law);
+    system.add(HalfPlane{.normal = {0.1, 1.0}}, law);
+    const BodyId body = plate(system, {0.0, 0.5}, 0.2, {0.8, -0.1}, 0.3);
+    system.add(Disc{.body = body, .radius = 0.4, .centre = {0.1, 0.05}});
+    system.add(SpringDamper{.from = {ground, {0.0, 2.0}}, .to = {body, {0.4, 0.1}}, .stiffness = 30.0});
+    OneComponent component(std::move(system), {{0, contact}, {1, rolling}});
+    ASSERT_TRUE(component.motion().active().list()[1].pair.rolling);
+    expect_right(component);
+  }
+}
+
 TEST(SmoothMotionJacobian, ContactsOfWhatJointsBind) {
   for (const ContactMode mode : {ContactMode::stick, ContactMode::slip_positive}) {
     System system;

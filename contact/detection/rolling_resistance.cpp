@@ -1,10 +1,10 @@
 // Problem: the row of a moment against rolling.
 
-#include <carom/contact/rolling_resistance.h>
+#include <carom/contact/detection/rolling_resistance.h>
 
 namespace carom {
 
-Constraint rolling_resistance(const Constraint& contact) {
+Constraint rolling_resistance(const Constraint& contact, const GroundMotion* ground) {
   constexpr int of_planar_body = 3;
   Constraint row = contact;
   row.type = ConstraintType::rolling;
@@ -13,6 +13,10 @@ Constraint rolling_resistance(const Constraint& contact) {
   row.law.tangential_restitution = contact.law.rolling_restitution;
   row.allowed_approach = 0.0;
   row.surface_velocity = row.surface_velocity_after = row.drift = {};
+  if (ground != nullptr) {
+    row.surface_velocity[0] = row.surface_velocity_after[0] = ground->spin;
+    row.drift[0] = -ground->angular_acceleration;
+  }
   row.jacobian = {};
   double* number = row.jacobian.data();
   double sign = 1.0;
@@ -22,6 +26,14 @@ Constraint rolling_resistance(const Constraint& contact) {
     number += columns;
   }
   return row;
+}
+
+const GroundMotion* ground_motion_of(const Detector& detector, const Constraint& contact,
+                                     const GroundPlaces& places) {
+  if (contact.key.b.owner != FeatureKey::Owner::obstacle) return nullptr;
+  const GroundShapes& shapes = detector.pieces().shapes();
+  const Index shape = shapes.find(contact.key.b.serial);
+  return shape == none || !shapes.moves(shape) ? nullptr : shapes.motion(shape, places);
 }
 
 }  // namespace carom

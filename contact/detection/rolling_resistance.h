@@ -1,0 +1,22 @@
+#pragma once
+
+/// \file
+/// Rolling resistance of a planar contact: a moment |M| <= rho P_n against the relative spin of its bodies.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/core/ground_shape_kind.h>
+
+namespace carom {
+
+/// Row of the rolling resistance of a contact, which it follows in every list: the spin of its first body
+/// less that of the second. The ground stands still, or turns as `ground` does, null if it is at rest. Bodies
+/// without orientation have no spin.
+[[nodiscard]] CAROM_API Constraint rolling_resistance(const Constraint& contact, const GroundMotion* ground);
+/// Motion of the shape on ground that a contact touches; null if there is none or it is at rest.
+[[nodiscard]] CAROM_API const GroundMotion* ground_motion_of(const Detector& detector,
+                                                             const Constraint& contact,
+                                                             const GroundPlaces& places);
+
+}  // namespace carom

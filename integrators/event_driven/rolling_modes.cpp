@@ -1,0 +1,58 @@
+// Problem: does a moment hold what may roll, and does rolling take the forces from a contact?
+
+#include <carom/integrators/event_driven/rolling_modes.h>
+
+#include <cmath>
+
+namespace carom {
+
+ContactMode mode_of_rolling(const IslandProblem& problem, std::size_t c, ContactMode contact, double sign,
+                            std::span<const double> force) {
+  if (contact == ContactMode::open) return ContactMode::open;
+  if (sign != 0.0) return mode_by_sign(sign);
+  const ContactProblem& stated = problem.problem();
+  const int row = problem.first_row(c);
+  const double normal = force[static_cast<std::size_t>(problem.first_row(c - 1))];
+  const double bound = (1.0 - mode_threshold) * problem.constraints()[c].friction * normal;
+  if (std::abs(force[static_cast<std::size_t>(row)]) < bound) return ContactMode::stick;
+  double along = stated.vector()[static_cast<std::size_t>(row)], size = std::abs(along);
+  for (int i = 0; i < stated.rows(); ++i) {
+    const double part = stated.w(row, i) * force[static_cast<std::size_t>(i)];
+    along += part;
+    size += std::abs(part);
+  }
+  return mode_by_sign(std::abs(along) > mode_threshold * size ? along : 0.0);
+}
+
+void follow_contacts(const SlipDirections& slips, std::span<Candidate> candidates) {
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    Candidate& rolling = candidates[i];
+    if (!rolling.rolls()) continue;
+    if (candidates[i - 1].mode == ContactMode::open) {
+      rolling.mode = ContactMode::open;
+    } else if (rolling.mode == ContactMode::open) {
+      rolling.mode = mode_by_sign(slips[i].sign);
+    }
+  }
+}
+
+void name_cause(const IslandProblem& problem, std::span<const std::size_t> taking_part,
+                const SlipDirections& slips, std::span<Candidate> candidates) {
+  const ContactProblem& stated = problem.problem();
+  const std::span<const Constraint> contacts = problem.constraints();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::size_t i = taking_part[c];
+    if (contacts[c].has_dry_friction()) continue;
+    const int row = problem.first_row(c);
+    const double ratio = -slips[i].sign * contacts[c].friction;
+    candidates[i].stiffness = stated.w(row, row);
+    if (contacts[c].rows > 1) candidates[i].stiffness += ratio * stated.w(row, row + 1);
+    if (c + 1 < contacts.size() && contacts[c + 1].type == ConstraintType::rolling) {
+      const double lever = -slips[taking_part[c + 1]].sign * contacts[c + 1].friction;
+      candidates[i].stiffness += lever * stated.w(row, problem.first_row(c + 1));
+    }
+    candidates[i].free_acceleration = stated.vector()[static_cast<std::size_t>(row)];
+  }
+}
+
+}  // namespace carom
