@@ -44,8 +44,8 @@ for python in "${pythons[@]}"; do
   rm -rf "$folder/built"
   "$python" -m venv --clear "$folder/venv-$version"
   bin="$PWD/$folder/venv-$version/bin"
-  "$bin/pip" -q wheel --no-deps -w "$folder/built" ./python -C cmake.define.CMAKE_PREFIX_PATH="$library" \
-    -C "build-dir=$PWD/$folder/build-$version"
+  "$bin/pip" -q wheel --no-deps -w "$folder/built" ./python --config-settings cmake.define.CMAKE_PREFIX_PATH="$library" \
+    --config-settings "build-dir=$PWD/$folder/build-$version"
   PATH="$tools:$PATH" "$tools/auditwheel" -v repair -w "$folder/repaired" "$folder"/built/*.whl >"$folder/repair.log" 2>&1 || {
     cat "$folder/repair.log" >&2
     exit 1
