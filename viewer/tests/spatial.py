@@ -11,12 +11,12 @@ GRAVITY = 9.81
 RADIUS = 0.2
 BALLS = [(-1.5, 0.0), (-0.9, 0.5), (-0.3, 0.0)]
 HEIGHTS = [0.8, 1.1, 1.4]  # of their middles at first
-BOX = {"centre": (0.9, 0.0, 0.4), "sides": (0.6, 0.4, 0.2), "velocity": (0.3, 0.0, 4.0), "spin": (1.0, 2.0, 2.0)}
-UNTIL, SAMPLES = 0.8, 41
+BOX = {"centre": (0.9, 0.0, 0.4), "sides": (0.6, 0.4, 0.2), "velocity": (0.3, 0.0, 5.0), "spin": (1.0, 2.0, 2.0)}
+UNTIL, SAMPLES = 1.0, 51
 
 
 def turn(spin: numpy.ndarray, times: numpy.ndarray) -> numpy.ndarray:
-    """Orientations (n, 4) after a constant spin [rad/s]: the box is taken as one that has no gyroscopic moment."""
+    """Orientations (n, 4) after a constant spin [rad/s], as of a body whose three moments of inertia are equal."""
     rate = numpy.linalg.norm(spin)
     half = 0.5 * rate * times[:, None]
     return numpy.concatenate([numpy.cos(half), numpy.sin(half) * spin / rate], axis=1)

@@ -59,7 +59,7 @@ def drag(page: Page, across: int, down: int, *, shift: bool = False) -> None:
 
 
 def test_solids_are_where_the_recording_has_them(page):
-    for time in (0.1, 0.24, 0.4):
+    for time in (0.1, 0.2, 0.3):
         page.seek(time)
         picture = page.picture()
         for body, middle in enumerate(middles(time)):
@@ -95,11 +95,10 @@ def test_the_corners_of_a_tumbling_box_are_its_outline(page):
 
 def test_what_lies_before_hides_what_is_behind(page):
     """Seen along the line from one ball to another, the nearer one is seen."""
-    page.seek(0.0)
-    first, last = middles(0.0)[0], middles(0.0)[2]
-    direction = (last - first) / numpy.linalg.norm(last - first)
-    for sign, front in ((1.0, 2), (-1.0, 0)):
-        x, y, z = sign * direction
+    for time, front in ((0.0, 2), (0.6, 0)):  # from above: the floor hides nothing
+        page.seek(time)
+        near, far = middles(time)[[front, 2 - front]]
+        x, y, z = (near - far) / numpy.linalg.norm(near - far)
         page.script(
             "const camera = caromPage.camera; camera.azimuth = arguments[0]; camera.elevation = arguments[1];"
             "camera.orbit(0, 0)",
@@ -107,9 +106,9 @@ def test_what_lies_before_hides_what_is_behind(page):
             float(numpy.arcsin(z)),
         )
         picture = page.picture()
-        (a, b), (c, d) = page.pixel(*first), page.pixel(*last)
+        (a, b), (c, d) = page.pixel(*near), page.pixel(*far)
         assert abs(a - c) <= 1 and abs(b - d) <= 1
-        assert is_body(page, front, first, picture) and not is_body(page, 2 - front, first, picture)
+        assert is_body(page, front, near, picture) and not is_body(page, 2 - front, near, picture)
 
 
 def test_shadows_are_below_what_casts_them(page):
@@ -169,9 +168,7 @@ def test_events_are_jumped_to(page):
     row.click()
     assert page.time() == events["time"][1]
     ball = int(events["name"][1])
-    (x, y), column_row = spatial.BALLS[ball], None
-    flash = page.near(x, y, 12, page.picture(), z=0.0)
-    assert named("IMPACT") in flash  # a ring around the point
+    assert named("IMPACT") in page.near(*spatial.BALLS[ball], 12)  # a ring around the point
 
 
 def test_arrows_are_impulses_in_space(show):
@@ -215,7 +212,7 @@ def test_a_planar_run_may_be_seen_as_thick_bodies(show):
     flat = page.picture()
     page.element("space").click()
     thick = page.picture()
-    assert (flat != thick).any(axis=2).mean() > 0.2
+    assert (flat != thick).any(axis=2).mean() > 0.1  # of the window
     names = page.recording.body_names()
     half = 0.5 * page.script("return caromPage.scene.bodySize")
     body = names.index("rigid body 'brick'")
