@@ -12,11 +12,5 @@ for name in "$@"; do
 done
 
 scripts/viewer.sh --build
-scripts/setup.sh --python
-export CCACHE_SLOPPINESS=pch_defines,time_macros
-cmake --preset release >/dev/null
-cmake --build build/release --target carom --parallel "$(nproc)"
-venv=build/gallery-venv
-python3 -m venv --clear "$venv"
-"$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
-"$venv/bin/python" scripts/gallery.py build/gallery "$@"
+scripts/python_environment.sh
+build/python-test/bin/python scripts/gallery.py build/gallery "$@"

@@ -1,22 +1,17 @@
 #!/usr/bin/env bash
-# Builds the Python package over build/release, installs it in a virtual environment under build/, checks its types and
-# those of its examples and runs its tests; the last line is "N passed, M failed".
+# Builds the Python package over build/release, installs it in build/python-test, checks its types and those of its
+# examples and runs its tests; the last line is "N passed, M failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Without, ccache keeps nothing that is compiled with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
 
-scripts/setup.sh --python
-cmake --preset release >/dev/null
-cmake --build build/release --target carom all_examples reference_runs --parallel "$(nproc)"
-
+scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 venv="$PWD/build/python-test"
-python3 -m venv --clear "$venv"
-"$venv/bin/pip" -q install pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 # Reads what carom.vtk writes; there is not one for every Python.
 "$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2
-"$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
+cmake --build build/release --target all_examples reference_runs --parallel "$(nproc)"
 
 status=0
 (cd build && "$venv/bin/mypy" --strict --no-error-summary --cache-dir mypy -p carom) || status=1

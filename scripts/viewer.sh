@@ -20,14 +20,9 @@ command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --no
 (cd viewer && npm ci --silent --no-audit --no-fund && node build.mjs)
 if $only_build; then exit 0; fi
 
-scripts/setup.sh --python --browser
-export CCACHE_SLOPPINESS=pch_defines,time_macros
-cmake --preset release >/dev/null
-cmake --build build/release --target carom --parallel "$(nproc)"
-venv=build/viewer-test
-python3 -m venv --clear "$venv"
-"$venv/bin/pip" -q install pytest h5py selenium pillow
-"$venv/bin/pip" -q install ./python -C cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
+scripts/setup.sh --browser
+scripts/python_environment.sh pytest h5py selenium pillow
+venv=build/python-test
 
 status=0
 log=build/viewer-test.log

@@ -12,6 +12,7 @@ the frame of their pose [m].
     struts    [pose, x, y]                    from the centre of a body without outline to an end
     links     [kind, pose, x, y, pose, x, y]  springs and rods between two ends
     joints    [kind, pose, x, y, axis or null]
+    solids    none; of models in space, see carom.drawing_space
 """
 
 from __future__ import annotations
@@ -37,10 +38,12 @@ _ARC = 96  # straight pieces of a full circle
 
 
 class Drawing:
-    """Collects what there is to draw of a model that carom.model_data described.
+    """Collects what there is to draw of a model in the plane that carom.model_data described.
 
     reach: how far what has no end is drawn [m]
     """
+
+    dimension = 2  # numbers of a point
 
     def __init__(self, model: dict[str, Any], reach: float) -> None:
         self._reach = reach
@@ -57,6 +60,7 @@ class Drawing:
         self.struts: list[list[float]] = []
         self.links: list[list[Any]] = []
         self.joints: list[list[Any]] = []
+        self.solids: list[Part] = []
         self._next_pose = len(model["bodies"]) + 1
         shaped = {part["fields"]["body"] for part in model["parts"] if part["role"] == "shape"}
         rigid = {part["serial"] for part in model["parts"] if part["type"] == "RigidBody"}
@@ -66,7 +70,7 @@ class Drawing:
         self._add_centres()
 
     def _add_centres(self) -> None:
-        self.joints += [["centre", pose, 0.0, 0.0, None] for pose in sorted(self._bare)]
+        self.joints += [["centre", pose, *[0.0] * self.dimension, None] for pose in sorted(self._bare)]
 
     def data(self) -> dict[str, Any]:
         """All lists by name."""
@@ -87,10 +91,10 @@ class Drawing:
 
     def _end(self, end: dict[str, Any]) -> list[float]:
         pose = self._pose_of_body[end["body"]]
-        x, y = end["point"][:2]
-        if pose in self._bare and (x, y) != (0.0, 0.0):
-            self.struts.append([pose, x, y])
-        return [pose, x, y]
+        point = end["point"][: self.dimension]
+        if pose in self._bare and any(point):
+            self.struts.append([pose, *point])
+        return [pose, *point]
 
     def _add_joint(self, kind: str, fields: dict[str, Any]) -> None:
         if kind in ("slide", "slot"):
@@ -112,13 +116,18 @@ class Drawing:
         elif kind == "Point":
             self.joints.append(["point", pose, *fields["position"][:2], None])
 
+    def _begin_obstacle(self, part: Part, place: list[float]) -> int:
+        """The pose of a shape on ground: its place and angle, in space its place."""
+        pose, self._next_pose = self._next_pose, self._next_pose + 1
+        self.places += place
+        name = part["name"] or f"{part['type']} #{part['serial']}"
+        self.obstacles.append({"pose": pose, "serial": part["serial"], "name": name})
+        return pose
+
     def _add_obstacle(self, part: Part) -> None:
         kind, fields = part["type"], part["fields"]
-        pose, self._next_pose = self._next_pose, self._next_pose + 1
-        origin = fields["point"] if kind in ("HalfPlane", "HalfSpace") else fields["pivot"]
-        self.places += [origin[0], origin[1], 0.0]
-        name = part["name"] or f"{kind} #{part['serial']}"
-        self.obstacles.append({"pose": pose, "serial": part["serial"], "name": name})
+        origin = fields["point"] if kind == "HalfPlane" else fields["pivot"]
+        pose = self._begin_obstacle(part, [*origin[:2], 0.0])
 
         def local(point: list[float]) -> Point:
             return (point[0] - origin[0], point[1] - origin[1])

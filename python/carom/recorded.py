@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Optional, Union
 
 import numpy
 
@@ -17,6 +17,7 @@ UNITS = {
     "times": "s",
     "positions": "m, m, rad",
     "velocities": "m/s, m/s, rad/s",
+    "orientations": "1",
     "ground": "m, m, rad",
     "ledger": "J",
     "point": "m",
@@ -54,6 +55,7 @@ class Recording:
     times        (samples,) [s]
     positions    (samples, bodies, 3): x, y, angle (0 of particles); in space x, y, z [m, rad]
     velocities   likewise [m/s, rad/s]
+    orientations (samples, bodies, 4): unit quaternions w, x, y, z [1]
     ground       (samples, moved shapes, 3): place of the point about which each turns, and its angle [m, rad]
     moved        serial numbers of the moved shapes on ground
     ledger       (samples,), a field for each term of the energy ledger [J]
@@ -76,6 +78,7 @@ class Recording:
         self.times: numpy.ndarray = arrays["times"]
         self.positions: numpy.ndarray = arrays["positions"]
         self.velocities: numpy.ndarray = arrays["velocities"]
+        self._orientations: Optional[numpy.ndarray] = arrays.get("orientations")
         self.ground: numpy.ndarray = arrays["ground"]
         self.ledger: numpy.ndarray = arrays["ledger"]
         self.contacts: numpy.ndarray = arrays["contacts"]
@@ -94,6 +97,16 @@ class Recording:
             f"Recording({len(self)} samples, {span}, {self.positions.shape[1]} bodies, "
             f"{len(self.events)} events, {len(self.contacts)} contacts)"
         )
+
+    @property
+    def orientations(self) -> numpy.ndarray:
+        """Unit quaternions (samples, bodies, 4), w, x, y, z: in the plane, of turns about z; of particles in space, 1."""
+        if self._orientations is not None:
+            return self._orientations
+        made = numpy.zeros((*self.positions.shape[:2], 4))
+        half = 0.5 * self.positions[:, :, 2] if self.dimension == 2 else 0.0
+        made[:, :, 0], made[:, :, 3] = numpy.cos(half), numpy.sin(half)
+        return made
 
     def contacts_at(self, sample: int) -> numpy.ndarray:
         """Rows of `contacts` of one sample. Raises IndexError."""
@@ -163,6 +176,9 @@ class Recording:
         for array, labels in zip((self.positions, self.velocities), headers):
             for i, label in enumerate(labels):
                 columns[label] = array[:, :, i].reshape(-1)
+        if self._orientations is not None:
+            for i, letter in enumerate("wxyz"):
+                columns[f"orientation_{letter} [1]"] = self._orientations[:, :, i].reshape(-1)
         return columns
 
     def _row_columns(self, rows: numpy.ndarray) -> dict[str, numpy.ndarray]:

@@ -2,6 +2,7 @@
 
     /model                       JSON: every part with its fields (carom.model_data)
     /states/times, positions, velocities, ground            a row for each sample
+    /states/orientations                                    likewise, of models in space; without rows if none turns
     /states/contact_ends, event_ends                        rows of the tables up to and with each sample
     /ledger/rows, /contacts/rows, /events/rows              tables
     /names                       what `name` in the tables counts
@@ -94,9 +95,10 @@ class FileStore:
         shapes: dict[str, tuple[int, ...]] = {
             "positions": (bodies, 3),
             "velocities": (bodies, 3),
+            "orientations": (bodies, 4),
             "ground": (len(moved), 3),
         }
-        for name in _STATES:
+        for name in (*_STATES, *(("orientations",) if model["dimension"] == 3 else ())):
             kind = "i8" if name.endswith("_ends") else "f8"
             _rows(states, name, shapes.get(name, ()), kind, units.get(name, ""))
         _rows(file.create_group("ledger"), "rows", (), ledger_type(), "J")
@@ -134,6 +136,8 @@ class FileStore:
         lengths.update({"ledger/rows": kept, "contacts/rows": counts["contact_ends"]})
         lengths.update({"events/rows": counts["event_ends"], "names": len(names)})
         file["complete"][()] = kept
+        if "orientations" in file["states"]:
+            lengths["states/orientations"] = min(kept, len(file["states/orientations"]))
         for name, length in lengths.items():
             file[name].resize(length, axis=0)
         return cls(file, path, names, last, counts)
@@ -144,7 +148,7 @@ class FileStore:
             self._append("names", numpy.array([self._encoded(name) for name in block["names"]]))
             for table in (*_TABLES, "ledger"):
                 self._append(f"{table}/rows", block[table])
-            for name in _STATES:
+            for name in (*_STATES, *(("orientations",) if "orientations" in block else ())):
                 self._append(f"states/{name}", block[name])
             self._file.flush()
             self._frames += block["frames"]
@@ -255,6 +259,9 @@ def load(path: Path) -> Recording:
         try:
             frames = _complete(file)
             arrays: dict[str, Any] = {name: file[f"states/{name}"][:frames] for name in _STATES}
+            turned = file["states"].get("orientations")
+            if turned is not None and len(turned) >= frames > 0:
+                arrays["orientations"] = turned[:frames]
             arrays["ledger"] = file["ledger/rows"][:frames]
             for table, ends in (("contacts", "contact_ends"), ("events", "event_ends")):
                 arrays[table] = file[f"{table}/rows"][: _count(file, ends, frames)]

@@ -18,6 +18,7 @@ import numpy
 
 from . import _core
 from .drawing import Drawing
+from .drawing_space import SpatialDrawing
 from .recorded import Recording
 
 PAGE = "viewer.html"
@@ -95,9 +96,21 @@ def _add_table(arrays: _Arrays, prefix: str, rows: numpy.ndarray, codes: dict[st
         arrays.add(f"{prefix}_{field}", code, rows[field])
 
 
+def _orientations(recording: Recording, chosen: numpy.ndarray) -> numpy.ndarray:
+    """Orientations of samples. Raises ModelError naming a body whose orientation is no unit quaternion."""
+    turned = recording.orientations[chosen]
+    sizes = numpy.linalg.norm(turned, axis=2)
+    wrong = numpy.argwhere(~(numpy.abs(sizes - 1.0) < 1e-6))  # rounding of some steps, but no other quantity
+    if len(wrong):
+        sample, body = wrong[0]
+        raise _core.ModelError(
+            f"write_view: the orientation of {recording.body_names()[body]} at "
+            f"{recording.times[chosen[sample]]:g} s is {turned[sample, body].tolist()}; allowed: a unit quaternion"
+        )
+    return turned
+
+
 def _page(recording: Recording, title: str, every: int) -> str:
-    if recording.dimension != 2:
-        raise _core.ModelError("write_view: the model is in space; allowed: models in the plane")
     if len(recording) == 0:
         raise _core.ModelError("write_view: the recording has no samples; allowed: at least one")
     if every < 1:
@@ -106,12 +119,19 @@ def _page(recording: Recording, title: str, every: int) -> str:
     if chosen[-1] != len(recording) - 1:
         chosen = numpy.append(chosen, len(recording) - 1)
     positions = recording.positions[chosen]
-    size = 10.0 * float(numpy.nanmax(numpy.ptp(positions[:, :, :2], axis=(0, 1)), initial=1.0))
-    drawing = Drawing(recording.model, 4.0 * size)
-
     arrays = _Arrays()
     arrays.add("times", "f8", recording.times[chosen])
     arrays.add("positions", "f4", positions)
+    drawing: Drawing
+    if recording.dimension == 3:
+        turned = _orientations(recording, chosen)
+        arrays.add("orientations", "f4", turned)
+        drawing = spatial = SpatialDrawing(recording.model, 0.0)
+        bounds = spatial.bounds(positions, turned)
+    else:
+        size = 10.0 * float(numpy.nanmax(numpy.ptp(positions[:, :, :2], axis=(0, 1)), initial=1.0))
+        drawing = Drawing(recording.model, 4.0 * size)
+        bounds = _bounds(recording, drawing, size)
     arrays.add("ground", "f4", recording.ground[chosen])
     terms = list(recording.ledger.dtype.names or ())
     arrays.add("ledger", "f4", numpy.stack([recording.ledger[term][chosen] for term in terms], axis=1))
@@ -124,13 +144,14 @@ def _page(recording: Recording, title: str, every: int) -> str:
 
     description = {
         "title": title,
+        "dimension": recording.dimension,
         "bodies": recording.body_names(),
         "moved": recording.moved,
         "names": recording.names,
         "ledger_terms": terms,
         "modes": [mode.name for mode in _core.ContactMode],
         "kinds": [kind.name for kind in _core.EventKind],
-        "bounds": _bounds(recording, drawing, size),
+        "bounds": bounds,
         "arrays": arrays.places,
         **drawing.data(),
     }
@@ -149,7 +170,8 @@ def write_view(
 
     title: the heading; unless given, the name of the file. every: only each so many samples are taken, and
     the last. Places, contacts and energies are rounded to 24 bits (float32), times are not. Raises FileError
-    where the page cannot be written or was not built; ModelError for a recording that is empty or in space.
+    where the page cannot be written or was not built; ModelError for a recording that is empty, or whose
+    orientations are no unit quaternions.
     """
     target = Path(path)
     page = _page(recording, target.stem if title is None else title, every)

@@ -82,9 +82,11 @@ void for_items(nb::handle from, std::string_view where, std::string_view expecte
     PyErr_Clear();
     refuse(where, expected, from);
   }
-  const Py_ssize_t count = PySequence_Fast_GET_SIZE(items.ptr());
+  const Py_ssize_t count = PySequence_Size(items.ptr());
   for (Py_ssize_t i = 0; i < count; ++i) {
-    take(PySequence_Fast_GET_ITEM(items.ptr(), i), static_cast<std::size_t>(i));
+    const nb::object item = nb::steal(PySequence_GetItem(items.ptr(), i));
+    if (!item.is_valid()) throw nb::python_error();
+    take(item, static_cast<std::size_t>(i));
   }
 }
 

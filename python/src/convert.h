@@ -166,7 +166,7 @@ struct Convert<std::array<T, N>> {
   static nb::object cast(const std::array<T, N>& values) {
     nb::object tuple = nb::steal(PyTuple_New(static_cast<Py_ssize_t>(N)));
     for (std::size_t i = 0; i < N; ++i) {
-      PyTuple_SET_ITEM(tuple.ptr(), static_cast<Py_ssize_t>(i), Convert<T>::cast(values[i]).release().ptr());
+      PyTuple_SetItem(tuple.ptr(), static_cast<Py_ssize_t>(i), Convert<T>::cast(values[i]).release().ptr());
     }
     return tuple;
   }

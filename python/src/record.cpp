@@ -33,7 +33,7 @@ std::string literal(nb::handle value) {
     return nb::cast<std::string>(nb::repr(value));
   }
   if (PyFloat_Check(raw)) {
-    const double number = PyFloat_AS_DOUBLE(raw);
+    const double number = PyFloat_AsDouble(raw);
     if (number - number == 0.0) return nb::cast<std::string>(nb::repr(value));
   }
   return "...";
@@ -94,8 +94,7 @@ void Record::set(void* record, const nb::args& given, const nb::kwargs& named) c
     throw nb::type_error(text.c_str());
   }
   if (given.size() == 1)
-    fields.front().type->load(given[0], fields.front().of(record),
-                              name + ": argument '" + fields.front().name + "'");
+    fields.front().type->load(given[0], fields.front().of(record), fields.front().argument);
   std::size_t seen = given.size();
   for (const auto& [key, value] : named) {
     const auto word = nb::cast<std::string_view>(key);
@@ -106,14 +105,14 @@ void Record::set(void* record, const nb::args& given, const nb::kwargs& named) c
       for (const Field& each : fields) text += (&each == &fields.front() ? " " : ", ") + each.python();
       throw nb::type_error(text.c_str());
     }
-    field->type->load(value, field->of(record), name + ": argument '" + field->name + "'");
+    field->type->load(value, field->of(record), field->argument);
     ++seen;
   }
   for (const Field& field : fields) {
     const bool first = &field == &fields.front() && given.size() == 1;
     if (!field.required || first || named.contains(field.name.c_str())) continue;
     if (named.contains(field.python().c_str())) continue;
-    throw nb::type_error((name + ": argument '" + field.name + "' is missing: " + field.doc).c_str());
+    throw nb::type_error((field.argument + " is missing: " + field.doc).c_str());
   }
 }
 
@@ -181,6 +180,7 @@ void finish_record(Record& record, nb::handle type, const std::vector<std::strin
       if (!field.doc.empty()) break;
     }
     field.unit = unit_in(field.doc);
+    field.argument = record.name + ": argument '" + field.name + "'";
     field.default_value = field.type->cast(field.of(defaults)).release();
     add_property(type, record, field);
   }

@@ -51,6 +51,7 @@ struct Field {
   const FieldType* type = nullptr;
   bool required = false;
   std::string doc, unit;
+  std::string argument;      ///< as messages name it: "Particle: argument 'mass'"
   nb::handle default_value;  ///< shown in signatures; lives as long as the program
 
   /// Its name in Python, where `from` and `with` are words of the language.

@@ -115,6 +115,9 @@ nb::list events_from(Runner& self, std::size_t first) {
 }
 
 using Class = nb::class_<Runner>;
+constexpr const char* no_system =
+    "Simulation: arguments 'system' and 'mode' are missing; allowed: a System, and how to run it, for example "
+    "Simulation(system, TimeStepping(step=1e-3)) or Simulation(system, EventDriven())";
 constexpr const char* no_mode =
     "Simulation: argument 'mode' is missing; allowed: TimeStepping(step=...) takes steps of that length [s], "
     "EventDriven() integrates from event to event; for example Simulation(system, TimeStepping(step=1e-3))";
@@ -123,12 +126,18 @@ constexpr const char* array = "numpy.typing.NDArray[numpy.float64]";
 void bind_runs(Class& type) {
   type.def(
           "__init__",
-          [](Runner* self, Model& system, nb::handle mode) {
-            system.get();
+          [](Runner* self, nb::handle system, nb::handle mode) {
+            if (system.is_none() && mode.is_none()) throw nb::type_error(no_system);
+            Model* model = nullptr;
+            if (!nb::try_cast(system, model) || model == nullptr) {
+              refuse("Simulation: argument 'system'", "a System", system);
+            }
+            model->get();
             if (mode.is_none()) throw nb::type_error(no_mode);
-            new (self) Runner(system, mode_of(mode));
+            new (self) Runner(*model, mode_of(mode));
           },
-          nb::arg("system"), nb::arg("mode") = nb::none(),  // without: to say which there are
+          // Without: to say which there are.
+          nb::arg("system") = nb::none(), nb::arg("mode") = nb::none(),
           nb::sig("def __init__(self, system: System, mode: TimeStepping | EventDriven) -> None"),
           doc("Simulation.Simulation"))
       .def(

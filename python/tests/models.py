@@ -1,8 +1,10 @@
 """Models that several tests run."""
 
 import math
+import threading
+import time
 
-from carom import BodyId, ContactFilter, Surface, System, ground
+from carom import BodyId, ContactFilter, ModelError, Simulation, Surface, System, ground
 from carom.planar import (
     Block,
     BoxInside,
@@ -105,3 +107,33 @@ def everything() -> System:
     link = system.add(Particle(mass=0.5, position=(2.3, 1.0), contact=False), name="link")
     system.add(Rod(from_=slider, to=link))
     return system
+
+
+def is_running(simulation: Simulation) -> bool:
+    """Waits until another thread runs a simulation, half a minute at most. That thread must let this one work."""
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        try:
+            simulation.time()
+        except ModelError as error:
+            return "another thread" in str(error)
+    return False
+
+
+def is_lock_released(simulation: Simulation) -> bool:
+    """Whether a run lets other threads of Python work. It runs until that was seen: a busy machine may let a short
+    run end before it lets another thread work.
+    """
+    enough = threading.Event()
+
+    def run() -> None:
+        while not enough.is_set():
+            simulation.run_until(simulation.time() + 1.0)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        return is_running(simulation)
+    finally:
+        enough.set()
+        thread.join()

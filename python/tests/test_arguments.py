@@ -95,6 +95,17 @@ def test_a_simulation_without_a_mode_says_which_there_are(arguments):
         Simulation(System(), *arguments)
 
 
+def test_a_simulation_without_anything_says_what_it_needs():
+    with pytest.raises(TypeError, match="arguments 'system' and 'mode' are missing; .*Simulation\\(system, Time"):
+        Simulation()
+
+
+@pytest.mark.parametrize("system", [None, System, TimeStepping(), "ball"])
+def test_what_is_no_system_is_refused(system):
+    with pytest.raises(TypeError, match="Simulation: argument 'system' must be a System, not "):
+        Simulation(system, TimeStepping())
+
+
 @pytest.mark.parametrize("mode", [EventDriven, "event-driven", {"step": 1e-3}])
 def test_what_is_no_mode_is_refused(mode):
     with pytest.raises(TypeError, match="mode must be TimeStepping\\(...\\) or EventDriven\\(...\\), not"):

@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from importlib import resources
 
 import pytest
@@ -117,12 +116,29 @@ def test_run_records_and_shows(tmp_path, capsys):
 PROGRAM = (
     "import sys; from carom.command import main; print('started', flush=True); sys.exit(main(sys.argv[1:]))"
 )
+# Says it when the run is under way, not before.
+RUN = """
+import sys, threading
+sys.path.insert(0, sys.argv.pop(1))
+from carom import command
+from models import is_running
+
+make = command._simulation
+
+def watched(*arguments):
+    simulation = make(*arguments)
+    threading.Thread(target=lambda: is_running(simulation) and print("started", flush=True), daemon=True).start()
+    return simulation
+
+command._simulation = watched
+sys.exit(command.main(sys.argv[1:]))
+"""
 
 
-def process(*words):
+def process(program, *words):
     """The command in a process of its own, which Ctrl-C may end; it has begun."""
     child = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, *words],
+        [sys.executable, "-c", program, *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -208,9 +224,8 @@ def endless(tmp_path):
 
 
 def interrupted(*words):
-    """Ends a run by Ctrl-C a second after its start."""
-    with process("run", *words) as child:
-        time.sleep(1.0)
+    """Ends a run by Ctrl-C."""
+    with process(RUN, str(PYTHON / "tests"), "run", *words) as child:
         os.kill(child.pid, signal.SIGINT)
         out, errors = child.communicate(timeout=60)
     assert child.returncode == 130
@@ -232,7 +247,7 @@ def test_ctrl_c_leaves_a_record_that_can_be_read(endless, tmp_path):
 
 
 def test_a_reader_that_has_enough_is_no_error():
-    with process("schema") as child:
+    with process(PROGRAM, "schema") as child:
         child.stdout.close()
         errors = child.stderr.read()
     assert child.returncode == 0 and errors == ""

@@ -1,7 +1,6 @@
 """What calls return and keep alive: reports, callbacks, views after edits, foreign identities, errors."""
 
 import gc
-import threading
 import weakref
 from collections.abc import Callable
 
@@ -20,6 +19,8 @@ from carom.planar import (
     RigidBody,
     SpringDamper,
 )
+
+from models import is_lock_released
 
 
 def falling(step: float = 1e-2) -> tuple[Simulation, carom.BodyId]:
@@ -53,20 +54,6 @@ class Observer:
 
     def __call__(self, *_: object) -> None:
         self.calls += 1
-
-
-def is_lock_released(simulation: Simulation) -> bool:
-    """Whether a run lets other threads of Python work."""
-    thread = threading.Thread(target=lambda: simulation.run_until(simulation.time() + 1.0))
-    refused = 0
-    thread.start()
-    while thread.is_alive():
-        try:
-            simulation.time()
-        except ModelError:
-            refused += 1
-    thread.join()
-    return refused > 0
 
 
 @pytest.mark.parametrize("begin", [Simulation.observe, lambda simulation, f: simulation.every(1e-3, f)])

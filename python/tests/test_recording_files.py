@@ -24,14 +24,21 @@ CHILD = """
     from carom import Recorder, Simulation, TimeStepping
     from models import pile
     simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(simulation, sys.argv[1], interval=0.002, flush_every=0.02):
-        print("runs", flush=True)
+
+    def say(now):
+        if now.time() > 0.02:
+            recorder.flush()
+            print("runs", flush=True)
+            now.remove_callback(callback)
+
+    with Recorder(simulation, sys.argv[1], interval=0.002, flush_every=0.02) as recorder:
+        callback = simulation.observe(say)
         simulation.run_until(1e4)
 """
 
 
 def kill_a_recording(path: Path, after: float) -> None:
-    """Runs a program that records, and kills it some seconds after its recorder has begun."""
+    """Runs a program that records, and kills it some seconds after its first samples are in the file."""
     here = str(Path(__file__).parent)
     child = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(CHILD), str(path), here], stdout=subprocess.PIPE

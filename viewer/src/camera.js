@@ -1,19 +1,27 @@
-// The view of a planar scene: its middle and how many pixels a metre has. Dragging moves it, the wheel scales it.
+// The view: a parallel projection, so that lengths and arrows have one scale everywhere. It has a middle, a scale and a
+// direction. The plane is seen from in front, x to the right and y up; in space the direction may turn.
 
-import { OrthographicCamera } from "three";
+import { Matrix4, OrthographicCamera } from "three";
+import { dot } from "./vectors.js";
 
 const STEP = 1.0015;
+const TURN = 0.008; // radians a pixel
+const AT_FIRST = [-0.6, 0.42]; // azimuth and elevation of the view in space [rad]
 
-export class PlanarCamera {
-  constructor(canvas, bounds, changed) {
-    this.canvas = canvas;
-    this.bounds = bounds;
-    this.changed = changed;
+export class Camera {
+  /** Of a scene: bounds, [x, y, z, x, y, z] of what is seen at first; frame, directions right, up and to the viewer,
+   * seen from in front; depth, how far before and behind its middle anything is [m]. */
+  constructor(canvas, { bounds, frame, depth }, changed) {
+    Object.assign(this, { canvas, bounds, frame, depth, changed });
     this.three = new OrthographicCamera();
-    this.x = this.y = 0;
+    this.turn = new Matrix4();
+    this.middle = [0, 0, 0];
     this.scale = 1; // [pixels/m]
+    this.azimuth = this.elevation = 0;
+    this.turns = false; // dragging turns the view
     this.follows = () => null; // place of what is followed
     this.last = null;
+    this.aim();
     this.resize();
     this.fit();
     this.listen();
@@ -25,11 +33,33 @@ export class PlanarCamera {
     this.height = this.canvas.clientHeight;
   }
 
+  /** Seen from in front, or in space. */
+  show(inSpace) {
+    this.turns = inSpace;
+    [this.azimuth, this.elevation] = inSpace ? AT_FIRST : [0, 0];
+    this.aim();
+    this.fit();
+  }
+
+  /** Directions of the picture from the angles. */
+  aim() {
+    const [right, up, back] = this.frame;
+    const [c, s] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [d, e] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+    const level = right.map((_, i) => c * back[i] + s * right[i]); // to the viewer, without elevation
+    this.right = right.map((_, i) => c * right[i] - s * back[i]);
+    this.up = up.map((_, i) => d * up[i] - e * level[i]);
+    this.back = up.map((_, i) => d * level[i] + e * up[i]);
+  }
+
   fit() {
-    const [left, low, right, high] = this.bounds;
-    this.x = 0.5 * (left + right);
-    this.y = 0.5 * (low + high);
-    this.scale = 0.92 * Math.min(this.width / (right - left), this.height / (high - low));
+    const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((k) => this.bounds[(i >> k) & 1 ? k + 3 : k]));
+    const span = (axis) => {
+      const along = corners.map((corner) => dot(corner, axis));
+      return Math.max(...along) - Math.min(...along);
+    };
+    this.middle = [0, 1, 2].map((k) => 0.5 * (this.bounds[k] + this.bounds[k + 3]));
+    this.scale = 0.92 * Math.min(this.width / span(this.right), this.height / span(this.up));
     this.last = null;
     this.changed();
   }
@@ -38,49 +68,61 @@ export class PlanarCamera {
     const { canvas } = this;
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      const [x, y] = this.sceneAt(event.offsetX, event.offsetY);
-      const factor = STEP ** -event.deltaY;
+      const under = this.sceneAt(event.offsetX, event.offsetY), factor = STEP ** -event.deltaY;
       this.scale *= factor;
-      this.x = x - (x - this.x) / factor;
-      this.y = y - (y - this.y) / factor;
+      this.middle = this.middle.map((value, k) => under[k] - (under[k] - value) / factor);
       this.changed();
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    canvas.addEventListener("contextmenu", (event) => { if (this.turns) event.preventDefault(); });
     canvas.addEventListener("pointermove", (event) => {
-      if (!(event.buttons & 1)) return;
-      this.x -= event.movementX / this.scale;
-      this.y += event.movementY / this.scale;
-      this.changed();
+      const turns = this.turns && !event.shiftKey && event.buttons & 1;
+      if (turns) this.orbit(-TURN * event.movementX, TURN * event.movementY);
+      else if (event.buttons & (this.turns ? 3 : 1)) this.move(-event.movementX, event.movementY);
     });
+  }
+
+  orbit(azimuth, elevation) {
+    this.azimuth += azimuth;
+    this.elevation = Math.min(Math.max(this.elevation + elevation, -0.5 * Math.PI), 0.5 * Math.PI);
+    this.aim();
+    this.changed();
+  }
+
+  /** Moves the middle by pixels, to the right and up. */
+  move(right, up) {
+    this.middle = this.middle.map((value, k) => value + (right * this.right[k] + up * this.up[k]) / this.scale);
+    this.changed();
   }
 
   /** Moves along with what is followed. */
   follow() {
     const now = this.follows();
-    if (now && this.last) {
-      this.x += now[0] - this.last[0];
-      this.y += now[1] - this.last[1];
-    } else if (now) {
-      [this.x, this.y] = now;
-    }
+    if (now && this.last) this.middle = this.middle.map((value, k) => value + now[k] - this.last[k]);
+    else if (now) this.middle = [...now];
     this.last = now;
   }
 
-  /** Point of the scene [m] at a pixel of the canvas. */
+  /** Point of the scene [m] at a pixel of the canvas, as deep as the middle. */
   sceneAt(px, py) {
-    return [this.x + (px - 0.5 * this.width) / this.scale, this.y - (py - 0.5 * this.height) / this.scale];
+    const right = (px - 0.5 * this.width) / this.scale, up = (0.5 * this.height - py) / this.scale;
+    return this.middle.map((value, k) => value + right * this.right[k] + up * this.up[k]);
   }
 
   /** Pixel of the canvas at a point of the scene. */
-  pixelAt(x, y) {
-    return [0.5 * this.width + (x - this.x) * this.scale, 0.5 * this.height - (y - this.y) * this.scale];
+  pixelAt(x, y, z = 0) {
+    const from = [x - this.middle[0], y - this.middle[1], z - this.middle[2]];
+    return [0.5 * this.width + dot(from, this.right) * this.scale, 0.5 * this.height - dot(from, this.up) * this.scale];
   }
 
   update() {
     const wide = 0.5 * this.width / this.scale, high = 0.5 * this.height / this.scale;
-    const three = this.three;
-    Object.assign(three, { left: -wide, right: wide, top: high, bottom: -high, near: -1, far: 1 });
-    three.position.set(this.x, this.y, 0);
+    const { three, depth, right, up, back } = this;
+    // What is near is never cut off, however close the middle was moved to it.
+    Object.assign(three, { left: -wide, right: wide, top: high, bottom: -high, near: -depth, far: depth });
+    this.turn.set(right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0, 0, 0, 0, 1);
+    three.quaternion.setFromRotationMatrix(this.turn);
+    three.position.set(...this.middle);
     three.updateProjectionMatrix();
     three.updateMatrixWorld();
   }

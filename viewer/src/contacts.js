@@ -2,11 +2,13 @@
 // recording into textures, from which the shaders take those of an item: a frame costs no loop over contacts.
 
 import {
-  BufferAttribute, BufferGeometry, DataTexture, FloatType, NearestFilter, RedFormat, RGFormat, UnsignedByteType,
+  BufferAttribute, BufferGeometry, DataTexture, FloatType, NearestFilter, RedFormat, RGBFormat, RGFormat,
+  UnsignedByteType,
 } from "three";
 import { layer } from "./layers.js";
 
 const PER_ROW = 256;
+const FORMATS = { 1: RedFormat, 2: RGFormat, 3: RGBFormat };
 
 /** Numbers of the contacts that are shown, `width` of each. */
 class Column {
@@ -15,8 +17,9 @@ class Column {
     this.all = all;
     this.width = width;
     this.shown = new all.constructor(PER_ROW * height * width);
-    this.texture = new DataTexture(this.shown, PER_ROW, height, width === 2 ? RGFormat : RedFormat,
+    this.texture = new DataTexture(this.shown, PER_ROW, height, FORMATS[width],
       all instanceof Uint8Array ? UnsignedByteType : FloatType);
+    if (width === 3) this.texture.internalFormat = "RGB32F";
     this.texture.minFilter = this.texture.magFilter = NearestFilter;
     this.texture.needsUpdate = true;
   }
@@ -38,6 +41,18 @@ function repeated(corners, triangles, most) {
   return geometry;
 }
 
+// Impulses are along the normal and one or two tangents. In the plane the tangent is the normal turned clockwise; in
+// space the first lies along the axis least aligned with the normal, and (t1, t2, n) is right-handed.
+const IMPULSE = {
+  2: "vec3 impulseInScene(vec3 n, vec3 p) { return p.x * n + p.y * vec3(n.y, -n.x, 0.0); }",
+  3: `vec3 impulseInScene(vec3 n, vec3 p) {
+  vec3 size = abs(n);
+  vec3 axis = size.x <= size.y && size.x <= size.z ? vec3(1, 0, 0) : size.y <= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+  vec3 t = normalize(axis - dot(axis, n) * n);
+  return p.x * n + p.y * t + p.z * cross(n, t);
+}`,
+};
+
 const COLUMNS = (corners, colours) => `
 precision highp sampler2D;
 uniform sampler2D contactPoints, contactNormals, contactImpulses, contactModes, contactImpacts;
@@ -56,17 +71,17 @@ export class Contacts {
     const ends = recording.contact_ends;
     let most = 0;
     for (let i = 0; i < ends.length; ++i) most = Math.max(most, ends[i] - (i ? ends[i - 1] : 0));
-    const column = (name, width) => new Column(recording[name], width, most);
+    const column = (name, width) => new Column(recording[name], width, most), { dimension } = recording;
     this.columns = {
-      contactPoints: column("contact_point", 2), contactNormals: column("contact_normal", 2),
-      contactImpulses: column("contact_impulse", 2), contactModes: column("contact_mode", 1),
+      contactPoints: column("contact_point", dimension), contactNormals: column("contact_normal", dimension),
+      contactImpulses: column("contact_impulse", dimension), contactModes: column("contact_mode", 1),
       contactImpacts: column("contact_impact", 1),
     };
     this.dotSize = { value: 1 };
     const own = { ...uniforms, dotSize: this.dotSize, contactColours: { value: Float32Array.from(colours.flat()) } };
     for (const [name, { texture }] of Object.entries(this.columns)) own[name] = { value: texture };
     this.dots = dots(most, colours.length, own, order);
-    this.arrows = arrows(most, colours.length, own, order + 1);
+    this.arrows = arrows(most, colours.length, own, order + 1, dimension);
     this.show(0, 0);
   }
 
@@ -93,7 +108,7 @@ void main() {
   inside = colourOf(at);
   size = dotSize;
   place = corners[gl_VertexID % 4] * (size + 1.0);
-  gl_Position = projectionMatrix * viewMatrix * vec4(texelFetch(contactPoints, at, 0).xy + place * pixel, 0.0, 1.0);
+  gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, place);
 }`, `
 in vec3 inside; in vec2 place; in float size;
 void main() {
@@ -105,27 +120,27 @@ void main() {
 }
 
 /** Impulses on the body that the name of the contact has first, in the scene; none where it is zero. */
-function arrows(most, colours, uniforms, order) {
+function arrows(most, colours, uniforms, order, dimension) {
   // A corner: along the arrow (0: foot, 1: head), along the head (0: its base, 1: its tip), across [pixels].
   const triangles = [0, 1, 2, 0, 2, 3, 4, 5, 6];
   const mesh = layer(repeated(7, triangles, most), uniforms, `
 uniform float arrowScale;
 ${COLUMNS(7, colours)}
+${IMPULSE[dimension]}
 const vec3 corners[7] = vec3[7](vec3(0, 0, -0.9), vec3(1, 0, -0.9), vec3(1, 0, 0.9), vec3(0, 0, 0.9),
                                 vec3(1, 0, -4), vec3(1, 1, 0), vec3(1, 0, 4));
 void main() {
   ivec2 at = contact();
   vec3 corner = corners[gl_VertexID % 7];
-  vec2 n = texelFetch(contactNormals, at, 0).xy, impulse = texelFetch(contactImpulses, at, 0).xy;
-  vec2 arrow = (impulse.x * n + impulse.y * vec2(n.y, -n.x)) * arrowScale;
+  vec3 n = texelFetch(contactNormals, at, 0).xyz, impulse = texelFetch(contactImpulses, at, 0).xyz;
+  vec2 arrow = (viewMatrix * vec4(impulseInScene(n, impulse), 0.0)).xy * arrowScale;
   float span = length(arrow) / pixel;
   vec2 u = span > 0.0 ? arrow / (span * pixel) : vec2(0.0);
   float head = min(9.0, 0.6 * span);
   float along = corner.x * (span - head) + corner.y * head;
   float across = corner.z * (corner.x > 0.5 && abs(corner.z) > 1.0 ? head / 9.0 : 1.0);
   inside = colourOf(at);
-  vec2 place = texelFetch(contactPoints, at, 0).xy + pixel * (along * u + across * vec2(-u.y, u.x));
-  gl_Position = projectionMatrix * viewMatrix * vec4(place, 0.0, 1.0);
+  gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, along * u + across * vec2(-u.y, u.x));
 }`, `
 in vec3 inside;
 void main() { paint = vec4(inside, 1.0); }`, order);

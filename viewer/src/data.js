@@ -17,7 +17,17 @@ export function readRecording(document) {
   for (const [name, { type, offset, length }] of Object.entries(description.arrays)) {
     arrays[name] = new TYPES[type](bytes.buffer, offset, length);
   }
-  return { ...description, ...arrays };
+  return { ...description, ...arrays, ...withPoints(description) };
+}
+
+/** Links, joints and struts with their points, which have as many numbers as the model has dimensions. */
+function withPoints({ dimension: d, links, joints, struts }) {
+  return {
+    links: links.map(([kind, poseA, ...rest]) => (
+      { kind, poseA, a: rest.slice(0, d), poseB: rest[d], b: rest.slice(d + 1) })),
+    joints: joints.map(([kind, pose, ...rest]) => ({ kind, pose, at: rest.slice(0, d), axis: rest[d] })),
+    struts: struts.map(([pose, ...at]) => ({ pose, at })),
+  };
 }
 
 /** Place of the last entry of an ascending array that is not after `value`; -1 if there is none. */

@@ -101,7 +101,8 @@ export class EventList {
     };
     const dot = line("dot", "");
     dot.style.background = KINDS[kind];
-    const impulse = Math.hypot(recording.event_impulse[2 * number], recording.event_impulse[2 * number + 1]);
+    const { dimension: d, event_impulse: impulses } = recording;
+    const impulse = Math.hypot(...impulses.subarray(d * number, d * number + d));
     const details = impulse > 0 ? `${shown(impulse)} N s` : recording.modes[recording.event_mode[number]].replace("_", " ");
     row.append(dot, line("time", `${recording.event_time[number].toFixed(5)} s`), line("kind", kind.replaceAll("_", " ")),
       line("details", details), line("part", short(recording.names[recording.event_name[number]])));

@@ -14,13 +14,15 @@ uniform mat4 viewMatrix;
 uniform float pixel;
 uniform float picked;
 uniform vec3 pickedColour;
+// Where a point of the scene is seen from the camera, moved by pixels of the picture.
+vec4 eye(vec3 at, vec2 beside) { vec4 seen = viewMatrix * vec4(at, 1.0); seen.xy += pixel * beside; return seen; }
 `;
 const PAINT = `
 precision highp float;
 out vec4 paint;
 `;
 // A form that is drawn for each item: corners, `size` numbers each, and its triangles.
-const QUAD = { corners: [-1, -1, 1, -1, 1, 1, -1, 1], size: 2, triangles: [0, 1, 2, 0, 2, 3] };
+export const QUAD = { corners: [-1, -1, 1, -1, 1, 1, -1, 1], size: 2, triangles: [0, 1, 2, 0, 2, 3] };
 
 /** Numbers of each item, for all vertices of its form. */
 function spread(from, width, copies, to, count) {
@@ -33,7 +35,7 @@ function spread(from, width, copies, to, count) {
 
 /** A form drawn for each item, as one mesh with all vertices: drawing in software takes instances one by one, at a
  * hundred times the cost. Attributes by name: [numbers of all items, how many each has]. */
-class Repeated {
+export class Repeated {
   constructor(form, most, attributes) {
     this.attributes = attributes;
     this.copies = form.corners.length / form.size;
@@ -65,16 +67,17 @@ class Repeated {
   }
 }
 
-function repeated(form, count, attributes) {
+export function repeated(form, count, attributes) {
   const made = new Repeated(form, count, attributes);
   made.update(count);
   return made.geometry;
 }
 
-export function layer(geometry, uniforms, vertex, fragment, order) {
+/** One call of drawing, over what has a lower order. solid: hides what is behind it. isHidden: by solids. */
+export function layer(geometry, uniforms, vertex, fragment, order, solid = false, isHidden = solid) {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3, uniforms, vertexShader: HEAD + POSE_SHADER + vertex, fragmentShader: PAINT + fragment,
-    transparent: true, depthTest: false, depthWrite: false, side: DoubleSide, // triangles turn either way
+    transparent: !solid, depthTest: isHidden, depthWrite: solid, side: DoubleSide, // triangles turn either way
   });
   const mesh = new Mesh(geometry, material);
   mesh.frustumCulled = false;
@@ -160,62 +163,63 @@ in vec3 inside;
 void main() { paint = vec4(inside, 1.0); }`, order);
 }
 
-/** Straight lines between two ends, each in the frame of its own pose: [{poseA, ax, ay, poseB, bx, by, s0, t0, s1, t1,
- * width, colour}]. A line goes from s0 to s1 of the way between the ends, t0 and t1 pixels beside it: pieces of a
- * spring's zigzag. */
-export function lines(list, uniforms, order) {
-  const poses = new Float32Array(2 * list.length), ends = new Float32Array(4 * list.length);
+/** Straight lines between two ends, each in the frame of its own pose: [{poseA, a, poseB, b, s0, t0, s1, t1, width,
+ * colour}] with a and b of two numbers or three. A line goes from s0 to s1 of the way between the ends, t0 and t1 pixels beside it: pieces of a
+ * spring's zigzag. isHidden: behind solids. */
+export function lines(list, uniforms, order, isHidden = false) {
+  const poses = new Float32Array(2 * list.length);
+  const from = new Float32Array(3 * list.length), to = new Float32Array(3 * list.length);
   const piece = new Float32Array(4 * list.length), width = new Float32Array(list.length);
   const colour = new Float32Array(3 * list.length);
   list.forEach((item, i) => {
     poses.set([item.poseA, item.poseB], 2 * i);
-    ends.set([item.ax, item.ay, item.bx, item.by], 4 * i);
+    from.set(item.a, 3 * i);
+    to.set(item.b, 3 * i);
     piece.set([item.s0 ?? 0, item.t0 ?? 0, item.s1 ?? 1, item.t1 ?? 0], 4 * i);
     width[i] = item.width;
     colour.set(item.colour, 3 * i);
   });
   const geometry = repeated(QUAD, list.length, {
-    bases: [poses, 2], ends: [ends, 4], piece: [piece, 4], width: [width, 1], colour: [colour, 3] });
+    bases: [poses, 2], from: [from, 3], to: [to, 3], piece: [piece, 4], width: [width, 1], colour: [colour, 3] });
   return layer(geometry, uniforms, `
-in vec2 corner; in vec2 bases; in vec4 ends; in vec4 piece; in float width; in vec3 colour;
+in vec2 corner; in vec2 bases; in vec3 from; in vec3 to; in vec4 piece; in float width; in vec3 colour;
 out float beside; out float half_; out vec3 inside;
 void main() {
-  vec2 a = inScene(bases.x, ends.xy).xy, b = inScene(bases.y, ends.zw).xy;
-  vec2 ab = b - a;
-  float span = length(ab);
-  vec2 across = span > 0.0 ? vec2(-ab.y, ab.x) / span : vec2(0.0, 1.0);
-  vec2 p = a + piece.x * ab + piece.y * pixel * across, q = a + piece.z * ab + piece.w * pixel * across;
-  vec2 pq = q - p;
+  vec4 a = eye(inScene(bases.x, from), vec2(0.0)), b = eye(inScene(bases.y, to), vec2(0.0)), ab = b - a;
+  float span = length(ab.xy);
+  vec4 across = vec4(span > 0.0 ? vec2(-ab.y, ab.x) / span : vec2(0.0, 1.0), 0.0, 0.0);
+  vec4 p = a + piece.x * ab + piece.y * pixel * across, q = a + piece.z * ab + piece.w * pixel * across;
+  vec2 pq = q.xy - p.xy;
   vec2 u = dot(pq, pq) > 0.0 ? normalize(pq) : vec2(1.0, 0.0);
   half_ = 0.5 * width;
   beside = corner.y * (half_ + 0.7);
-  vec2 at = (corner.x < 0.0 ? p - 0.5 * half_ * pixel * u : q + 0.5 * half_ * pixel * u)
-            + beside * pixel * vec2(-u.y, u.x);
+  vec4 at = corner.x < 0.0 ? p : q;
+  at.xy += 0.5 * half_ * pixel * corner.x * u + beside * pixel * vec2(-u.y, u.x);
   inside = colour;
-  gl_Position = projectionMatrix * viewMatrix * vec4(at, 0.0, 1.0);
+  gl_Position = projectionMatrix * at;
 }`, `
 in float beside; in float half_; in vec3 inside;
-void main() { paint = vec4(inside, clamp(half_ + 0.5 - abs(beside), 0.0, 1.0)); }`, order);
+void main() { paint = vec4(inside, clamp(half_ + 0.5 - abs(beside), 0.0, 1.0)); }`, order, false, isHidden);
 }
 
 /** Marks of a size in pixels, whose number may change: discs (0), rings (1), squares (2), circles (3). */
 export class Marks {
-  constructor(most, uniforms, order) {
-    this.at = new Float32Array(2 * most);
+  constructor(most, uniforms, order, isHidden = false) {
+    this.at = new Float32Array(3 * most);
     this.pose = new Float32Array(most);
     this.look = new Float32Array(2 * most); // size, form
     this.colour = new Float32Array(4 * most);
     this.count = 0;
     this.all = new Repeated(QUAD, most, {
-      at: [this.at, 2], pose: [this.pose, 1], look: [this.look, 2], colour: [this.colour, 4] });
+      at: [this.at, 3], pose: [this.pose, 1], look: [this.look, 2], colour: [this.colour, 4] });
     this.mesh = layer(this.all.geometry, uniforms, `
-in vec2 corner; in vec2 at; in float pose; in vec2 look; in vec4 colour;
+in vec2 corner; in vec3 at; in float pose; in vec2 look; in vec4 colour;
 out vec2 place; out float size; out float form; out vec4 inside;
 void main() {
   size = look.x; form = look.y;
   inside = picked == pose && pose > 0.5 ? vec4(pickedColour, 1.0) : colour;
   place = corner * (size + 1.0);
-  gl_Position = projectionMatrix * viewMatrix * vec4(inScene(pose, at) + vec3(place * pixel, 0.0), 1.0);
+  gl_Position = projectionMatrix * eye(inScene(pose, at), place);
 }`, `
 in vec2 place; in float size; in float form; in vec4 inside;
 void main() {
@@ -225,15 +229,17 @@ void main() {
   if (form == 3.0) { paint = vec4(inside.rgb, inside.a * cover * isEdge); return; }
   vec3 colour = form == 1.0 ? mix(vec3(1.0), inside.rgb, isEdge) : mix(inside.rgb, inside.rgb * 0.55, isEdge);
   paint = vec4(colour, inside.a * cover);
-}`, order);
+}`, order, false, isHidden);
   }
 
   clear() { this.count = 0; }
 
-  add(pose, x, y, size, form, colour, opacity = 1) {
+  /** at: of two numbers, or three. */
+  add(pose, at, size, form, colour, opacity = 1) {
     const i = this.count++;
-    this.at[2 * i] = x;
-    this.at[2 * i + 1] = y;
+    this.at[3 * i] = at[0];
+    this.at[3 * i + 1] = at[1];
+    this.at[3 * i + 2] = at[2] ?? 0;
     this.pose[i] = pose;
     this.look[2 * i] = size;
     this.look[2 * i + 1] = form;

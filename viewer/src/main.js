@@ -1,6 +1,6 @@
 // The page: one state (time, what is followed), drawn whenever it changed.
 
-import { PlanarCamera } from "./camera.js";
+import { Camera } from "./camera.js";
 import { IMPACT, MODES } from "./colours.js";
 import { readRecording, shown } from "./data.js";
 import { EventList } from "./events.js";
@@ -8,6 +8,7 @@ import { contactAt, poseAt } from "./pick.js";
 import { Player } from "./player.js";
 import { LedgerPlot } from "./plot.js";
 import { RunScene } from "./scene.js";
+import { roundLength } from "./space.js";
 
 const element = (id) => document.getElementById(id);
 const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
@@ -19,7 +20,8 @@ class Page {
     const changed = () => { this.dirty = true; };
     this.player = new Player(this.recording.times, changed);
     this.scene = new RunScene(element("scene"), this.recording);
-    this.camera = new PlanarCamera(element("scene"), this.recording.bounds, changed);
+    this.camera = new Camera(element("scene"), this.scene, changed);
+    this.camera.show(this.scene.isSpatial);
     const seek = (time) => {
       this.player.play(false);
       this.player.seek(time);
@@ -94,6 +96,11 @@ class Page {
       this.scene.showsContacts = event.target.checked;
       this.dirty = true;
     });
+    element("space").checked = element("space").disabled = this.scene.isSpatial;
+    element("space").addEventListener("change", (event) => {
+      this.scene.showSpace(event.target.checked);
+      camera.show(event.target.checked);
+    });
     element("names").replaceChildren(...recording.bodies.slice(0, 2000).map((name) => new Option(name)));
     element("followed").addEventListener("change", (event) => (
       this.follow(recording.bodies.indexOf(event.target.value.trim()) + 1)));
@@ -117,16 +124,15 @@ class Page {
     const { camera, scene, recording } = this;
     const isBody = pose > 0 && pose <= recording.bodies.length;
     camera.last = null;
-    camera.follows = isBody ? () => [scene.poses.x(pose), scene.poses.y(pose)] : () => null;
+    camera.follows = isBody ? () => scene.poses.place(pose) : () => null;
     element("followed").value = isBody ? recording.bodies[pose - 1] : "";
     this.dirty = true;
   }
 
   addHover() {
     const canvas = element("scene"), label = element("label");
-    const at = (event) => this.camera.sceneAt(event.offsetX, event.offsetY);
     canvas.addEventListener("pointermove", (event) => {
-      const text = event.buttons ? "" : this.textAt(...at(event));
+      const text = event.buttons ? "" : this.textAt(event.offsetX, event.offsetY);
       label.hidden = text === "";
       label.innerText = text;
       const isRight = event.offsetX > 0.7 * canvas.clientWidth;
@@ -138,8 +144,16 @@ class Page {
       label.hidden = true;
       this.pick(-1);
     });
-    canvas.addEventListener("dblclick", (event) => (
-      this.follow(poseAt(this.recording, this.scene.poses, ...at(event), 1 / this.camera.scale))));
+    canvas.addEventListener("dblclick", (event) => this.follow(this.poseAt(event.offsetX, event.offsetY)));
+  }
+
+  /** Pose of what is seen at a pixel; -1: nothing. */
+  poseAt(px, py) {
+    const { recording, scene, camera } = this, at = camera.sceneAt(px, py);
+    const solid = scene.inSpace ? scene.space.poseAlong(scene.poses, at, camera.back) : -1;
+    if (solid > 0 && solid <= recording.bodies.length) return solid;
+    const flat = poseAt(recording, scene.poses, camera, px, py, !scene.inSpace);
+    return flat >= 0 ? flat : solid;
   }
 
   pick(pose) {
@@ -148,24 +162,24 @@ class Page {
     this.dirty = true;
   }
 
-  /** Text about what is at a point of the scene. */
-  textAt(x, y) {
-    const { recording, scene } = this;
-    const pixel = 1 / this.camera.scale, { sample } = this.player.place();
-    const contact = scene.showsContacts ? contactAt(recording, scene.contactRange(sample), x, y, pixel) : -1;
+  /** Text about what is at a pixel. */
+  textAt(px, py) {
+    const { recording, scene, camera } = this, { dimension: d } = recording, { sample } = this.player.place();
+    const contact = scene.showsContacts ? contactAt(recording, scene.contactRange(sample), camera, px, py) : -1;
     if (contact >= 0) {
       this.pick(-1);
       const mode = recording.contact_impact[contact] ? "impact" : recording.modes[recording.contact_mode[contact]];
+      const [normal, ...tangential] = recording.contact_impulse.subarray(d * contact, d * contact + d);
       return `${recording.names[recording.contact_name[contact]]}\n${mode.replace("_", " ")}, impulse ` +
-        `${shown(recording.contact_impulse[2 * contact])} N s normal, ` +
-        `${shown(recording.contact_impulse[2 * contact + 1])} N s tangential`;
+        `${shown(normal)} N s normal, ${shown(d === 2 ? tangential[0] : Math.hypot(...tangential))} N s tangential`;
     }
-    const pose = poseAt(recording, scene.poses, x, y, pixel);
+    const pose = this.poseAt(px, py);
     this.pick(pose);
     if (pose < 0) return "";
     if (pose > recording.bodies.length) return recording.obstacles[pose - recording.bodies.length - 1].name;
-    const turned = recording.particles.includes(pose) ? "" : `, ${shown(scene.poses.angle(pose))} rad`;
-    return `${recording.bodies[pose - 1]}\nat ${shown(scene.poses.x(pose))} m, ${shown(scene.poses.y(pose))} m${turned}`;
+    const turned = d === 3 || recording.particles.includes(pose) ? "" : `, ${shown(scene.poses.angle(pose))} rad`;
+    const place = scene.poses.place(pose).slice(0, d).map((value) => `${shown(value)} m`);
+    return `${recording.bodies[pose - 1]}\nat ${place.join(", ")}${turned}`;
   }
 
   draw() {
@@ -185,9 +199,8 @@ class Page {
 
   /** A round length that is about 100 pixels long. */
   drawScale() {
-    const rough = 100 / this.camera.scale, power = 10 ** Math.floor(Math.log10(rough));
+    const length = roundLength(100 / this.camera.scale);
     element("arrow").firstElementChild.style.width = `${this.scene.arrowLength(this.camera)}px`;
-    const length = power * [5, 2, 1].find((factor) => factor * power <= rough);
     element("scale").firstElementChild.style.width = `${length * this.camera.scale}px`;
     element("scale").lastElementChild.textContent = `${shown(length)} m`;
   }

@@ -48,8 +48,7 @@ export function along(pose, points, isClosed, width, colour) {
   const list = [], count = points.length / 2;
   for (let i = 0; i + 1 < count || (isClosed && i < count); ++i) {
     const k = (i + 1) % count;
-    list.push({ poseA: pose, ax: points[2 * i], ay: points[2 * i + 1], poseB: pose, bx: points[2 * k],
-      by: points[2 * k + 1], width, colour });
+    list.push({ poseA: pose, a: points.slice(2 * i, 2 * i + 2), poseB: pose, b: points.slice(2 * k, 2 * k + 2), width, colour });
   }
   return list;
 }
@@ -63,11 +62,11 @@ const FORMS = {
   rod: [[0, 0], [1, 0]],
 };
 
-/** Lines of a link [kind, pose, x, y, pose, x, y]. */
-export function link([kind, poseA, ax, ay, poseB, bx, by], width, colour) {
+/** Lines of a link: {kind, poseA, a, poseB, b}. */
+export function link({ kind, ...ends }, width, colour) {
   const form = FORMS[kind];
   return form.slice(1).map(([s1, t1], i) => {
     const [s0, t0] = form[i];
-    return { poseA, ax, ay, poseB, bx, by, s0, t0, s1, t1, width, colour };
+    return { ...ends, s0, t0, s1, t1, width, colour };
   });
 }

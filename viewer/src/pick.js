@@ -19,13 +19,17 @@ function toPolygon(x, y, points) {
   return inside ? 0 : distance;
 }
 
-/** Pose of the body, or of the shape on ground, at a point of the scene; -1 if there is none. */
-export function poseAt(recording, poses, x, y, pixel) {
+/** Pose of the body, or of the shape on ground, at a pixel; -1 if there is none. isFlat: planar outlines are looked at,
+ * and not only particles, which have a size in pixels. */
+export function poseAt(recording, poses, camera, px, py, isFlat) {
   let found = -1;
   const take = (pose) => { if (found < 0 || pose <= recording.bodies.length) found = pose; };
   for (const pose of recording.particles) {
-    if (Math.hypot(x - poses.x(pose), y - poses.y(pose)) < NEAR * pixel) take(pose);
+    const [column, row] = camera.pixelAt(...poses.place(pose));
+    if (Math.hypot(px - column, py - row) < NEAR) take(pose);
   }
+  if (!isFlat) return found;
+  const [x, y] = camera.sceneAt(px, py), pixel = 1 / camera.scale;
   for (const [pose, ax, ay, bx, by, radius] of recording.capsules) {
     const [u, v] = poses.local(pose, x, y);
     if (toSegment(u, v, ax, ay, bx, by) <= Math.max(radius, 2 * pixel)) take(pose);
@@ -44,11 +48,13 @@ export function poseAt(recording, poses, x, y, pixel) {
   return -1;
 }
 
-/** Number of the contact at a point of the scene among [first, end); -1 if there is none. */
-export function contactAt(recording, [first, end], x, y, pixel) {
-  let nearest = NEAR * pixel, found = -1;
+/** Number of the contact at a pixel among [first, end); -1 if there is none. */
+export function contactAt(recording, [first, end], camera, px, py) {
+  let nearest = NEAR, found = -1;
+  const { dimension: d, contact_point: points } = recording;
   for (let i = first; i < end; ++i) {
-    const distance = Math.hypot(x - recording.contact_point[2 * i], y - recording.contact_point[2 * i + 1]);
+    const [column, row] = camera.pixelAt(points[d * i], points[d * i + 1], d === 3 ? points[d * i + 2] : 0);
+    const distance = Math.hypot(px - column, py - row);
     if (distance < nearest) [nearest, found] = [distance, i];
   }
   return found;

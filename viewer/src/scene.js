@@ -7,6 +7,8 @@ import { lastNotAfter } from "./data.js";
 import { capsules, fills, lines, Marks } from "./layers.js";
 import { along, fan, link, widened } from "./outlines.js";
 import { Poses } from "./poses.js";
+import { around, plain, thickened } from "./solids.js";
+import { Space } from "./space.js";
 
 const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
 const MOST_FLASHES = 400;
@@ -15,6 +17,9 @@ const ARROW = [10, 60]; // least and most pixels of the arrow of a large impulse
 const DOT = [0.8, 2.2]; // least and most pixels of the radius of a contact's mark
 
 const within = ([least, most], value) => Math.min(Math.max(value, least), most);
+
+const PLANE = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const SPACE = [[1, 0, 0], [0, 0, 1], [0, -1, 0]];
 
 export class RunScene {
   constructor(canvas, recording) {
@@ -30,13 +35,42 @@ export class RunScene {
     };
     this.showsContacts = true;
     this.kindColours = recording.kinds.map((kind) => colours.rgb(colours.KINDS[kind]));
+    this.bodySize = bodySize(recording);
+    this.planar = []; // what is seen of the plane only
+    this.space = null; // made when it is seen
+    this.bounds = this.isSpatial ? recording.bounds : flatBounds(recording.bounds, this.bodySize);
     this.addGround();
     this.addBodies();
     this.addLinks();
     this.addContacts();
+    this.showSpace(this.isSpatial);
     this.renderer.compile(this.three, new OrthographicCamera()); // or the first impact would wait for it
-    this.largeImpulse = largeImpulse(recording.contact_impulse);
-    this.bodySize = bodySize(recording);
+    this.largeImpulse = largeImpulse(recording.contact_impulse, recording.dimension);
+  }
+
+  get isSpatial() { return this.recording.dimension === 3; }
+
+  /** Directions right, up and to the viewer, seen from in front. */
+  get frame() { return this.isSpatial ? SPACE : PLANE; }
+
+  /** Bodies as solids in space, or a planar run as the plane has it. */
+  showSpace(on) {
+    this.inSpace = on;
+    if (on && !this.space) {
+      const solids = this.isSpatial ? this.recording.solids : thickened(this.recording, this.bodySize);
+      this.space = new Space(this.three, solids, this.uniforms, (pose) => this.look(pose), this.bounds, this.frame);
+    }
+    if (this.space) this.space.visible = on;
+    for (const mesh of this.planar) mesh.visible = !on;
+    this.sample = undefined;
+  }
+
+  /** How far from the middle of the view anything is that is drawn [m]. */
+  get depth() { return 40 * Math.hypot(...[0, 1, 2].map((k) => this.bounds[k + 3] - this.bounds[k])); }
+
+  addPlanar(...meshes) {
+    this.planar.push(...meshes);
+    this.three.add(...meshes);
   }
 
   isGround(pose) { return pose === 0 || pose > this.recording.bodies.length; }
@@ -50,47 +84,49 @@ export class RunScene {
   }
 
   addGround() {
-    const { recording, uniforms, three } = this;
+    const { recording, uniforms } = this;
     const fill = colours.rgb(colours.GROUND), edge = colours.rgb(colours.GROUND_EDGE);
-    three.add(fills(recording.fills.map(([pose, points]) => ({ pose, points, colour: fill })), uniforms, 0));
-    three.add(lines(recording.lines.flatMap(([pose, points]) => along(pose, points, false, 1.6, edge)), uniforms, 1));
+    this.addPlanar(
+      fills(recording.fills.map(([pose, points]) => ({ pose, points, colour: fill })), uniforms, 0),
+      lines(recording.lines.flatMap(([pose, points]) => along(pose, points, false, 1.6, edge)), uniforms, 1));
   }
 
   addBodies() {
-    const { recording, uniforms, three } = this;
+    const { recording, uniforms } = this;
     const round = recording.capsules.map(([pose, ax, ay, bx, by, radius]) => (
       { pose, ax, ay, bx, by, radius, ...this.look(pose) }));
     const outlines = recording.polygons.map(([pose, radius, points]) => ({ pose, points: widened(points, radius) }));
-    three.add(capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2));
-    three.add(fills(outlines.map(({ pose, points }) => (
-      { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3));
-    three.add(lines(outlines.flatMap(({ pose, points }) => (
-      along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4));
-    three.add(capsules(round.filter((item) => !this.isGround(item.pose)), uniforms, 5));
+    this.addPlanar(
+      capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2),
+      fills(outlines.map(({ pose, points }) => (
+        { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3),
+      lines(outlines.flatMap(({ pose, points }) => (
+        along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4),
+      capsules(round.filter((item) => !this.isGround(item.pose)), uniforms, 5));
   }
 
   addLinks() {
-    const { recording, uniforms, three } = this;
+    const { recording, uniforms, three, bounds, isSpatial } = this;
     const dark = colours.rgb(colours.LINK), rod = colours.rgb(colours.ROD);
-    const axes = recording.joints.filter(([kind]) => kind === "axis");
     const list = recording.links.flatMap((item) => (
-      link(item, item[0] === "rod" ? 3.2 : 1.5, item[0] === "rod" ? rod : dark)));
-    const reach = 0.12 * Math.hypot(recording.bounds[2] - recording.bounds[0], recording.bounds[3] - recording.bounds[1]);
-    for (const [, pose, x, y, [ux, uy]] of axes) {
-      list.push({ poseA: pose, ax: x - reach * ux, ay: y - reach * uy, poseB: pose, bx: x + reach * ux,
-        by: y + reach * uy, width: 0.8, colour: dark });
+      link(item, item.kind === "rod" ? 3.2 : 1.5, item.kind === "rod" ? rod : dark)));
+    const reach = 0.12 * Math.hypot(bounds[3] - bounds[0], bounds[4] - bounds[1]);
+    for (const { kind, pose, at, axis } of recording.joints) {
+      if (kind !== "axis") continue;
+      const [a, b] = [-reach, reach].map((way) => at.map((value, k) => value + way * axis[k]));
+      list.push({ poseA: pose, a, poseB: pose, b, width: 0.8, colour: dark });
     }
-    for (const [pose, x, y] of recording.struts) {
-      list.push({ poseA: pose, ax: 0, ay: 0, poseB: pose, bx: x, by: y, width: 3.2, colour: rod });
+    for (const { pose, at } of recording.struts) {
+      list.push({ poseA: pose, a: at.map(() => 0), poseB: pose, b: at, width: 3.2, colour: rod });
     }
-    three.add(lines(list, uniforms, 6));
-    const ends = recording.links.flatMap(([, a, ax, ay, b, bx, by]) => [[a, ax, ay], [b, bx, by]]);
-    const rest = recording.joints.filter(([kind]) => kind !== "axis");
-    const marks = new Marks(recording.particles.length + ends.length + rest.length, uniforms, 7);
-    for (const [pose, x, y] of ends) marks.add(pose, x, y, 2.5, this.isGround(pose) ? 2 : 0, dark);
-    for (const pose of recording.particles) marks.add(pose, 0, 0, 6, 0, colours.rgb("#7d93ad"));
+    three.add(lines(list, uniforms, 6, isSpatial));
+    const ends = recording.links.flatMap(({ poseA, a, poseB, b }) => [[poseA, a], [poseB, b]]);
+    const rest = recording.joints.filter(({ kind }) => kind !== "axis");
+    const marks = new Marks(recording.particles.length + ends.length + rest.length, uniforms, 7, isSpatial);
+    for (const [pose, at] of ends) marks.add(pose, at, 2.5, this.isGround(pose) ? 2 : 0, dark);
+    for (const pose of recording.particles) marks.add(pose, [0, 0], 6, 0, colours.rgb("#7d93ad"));
     const forms = { pin: [4, 1], weld: [4, 2], slide: [5, 2], slot: [4, 1], point: [1.8, 0], centre: [3, 0] };
-    for (const [kind, pose, x, y] of rest) marks.add(pose, x, y, ...forms[kind], dark);
+    for (const { kind, pose, at } of rest) marks.add(pose, at, ...forms[kind], dark);
     marks.update();
     three.add(marks.mesh);
   }
@@ -108,14 +144,15 @@ export class RunScene {
   }
 
   fillFlashes(time, speed) {
-    const { event_time: times, event_point: point, event_kind: kind, event_normal: normal } = this.recording;
+    const { event_time: times, event_point: point, event_kind: kind, event_normal: normal, dimension: d } = this.recording;
     this.flashes.clear();
     const last = lastNotAfter(times, time), length = FLASH * speed;
     for (let i = last; i >= 0 && times[i] > time - length && this.flashes.count < MOST_FLASHES; --i) {
-      if (normal[2 * i] === 0 && normal[2 * i + 1] === 0) continue; // it is at no place
+      if (normal[d * i] === 0 && normal[d * i + 1] === 0 && (d === 2 || normal[d * i + 2] === 0)) continue; // at no place
       const age = (time - times[i]) / length;
       const clear = last - i < CLEAR_FLASHES ? 1 : CLEAR_FLASHES / (last - i);
-      this.flashes.add(0, point[2 * i], point[2 * i + 1], 4 + 7 * age, 3, this.kindColours[kind[i]], clear * (1 - age));
+      const at = point.subarray(d * i, d * i + d);
+      this.flashes.add(0, at, 4 + 7 * age, 3, this.kindColours[kind[i]], clear * (1 - age));
     }
     this.flashes.update();
   }
@@ -127,7 +164,8 @@ export class RunScene {
   arrowLength(camera) { return within(ARROW, 3 * this.bodySize * camera.scale); }
 
   draw(camera, { sample, fraction, time, speed }) {
-    if (sample !== this.sample || fraction !== this.fraction) this.poses.fill(sample, fraction);
+    const isMoved = sample !== this.sample || fraction !== this.fraction;
+    if (isMoved) this.poses.fill(sample, fraction);
     if (sample !== this.sample || this.contactsShown !== this.showsContacts) {
       const [first, end] = this.showsContacts ? this.contactRange(sample) : [0, 0];
       this.contacts.show(first, end);
@@ -135,8 +173,10 @@ export class RunScene {
     this.contacts.dotSize.value = within(DOT, 0.25 * this.bodySize * camera.scale);
     [this.sample, this.fraction, this.contactsShown] = [sample, fraction, this.showsContacts];
     this.fillFlashes(time, speed);
+    if (isMoved && this.inSpace) this.space.drawShadows(this.renderer, this.three);
     camera.follow();
     camera.update();
+    if (this.inSpace) this.uniforms.toScene.value = camera.three.matrixWorld;
     this.uniforms.pixel.value = 1 / camera.scale;
     this.uniforms.arrowScale.value =
       this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
@@ -150,20 +190,25 @@ export class RunScene {
   }
 }
 
+/** Bounds of a planar scene, as thick as a body is wide. */
+const flatBounds = ([left, low, right, high], width) => [left, low, -0.5 * width, right, high, 0.5 * width];
+
 /** Width of a body in the middle of all [m]. */
-function bodySize({ capsules: round, polygons, bounds }) {
+function bodySize({ capsules: round, polygons, solids, bounds }) {
   const sizes = [
     ...round.map(([, ax, ay, bx, by, radius]) => 2 * radius + Math.hypot(bx - ax, by - ay)),
     ...polygons.map(([, radius, points]) => 2 * radius + Math.max(...points) - Math.min(...points)),
+    ...plain(solids).filter(({ kind }) => kind !== "plane").map((solid) => 2 * around(solid)[1]),
   ].sort((a, b) => a - b);
-  return sizes.length ? sizes[sizes.length >> 1] : 0.05 * Math.max(bounds[2] - bounds[0], bounds[3] - bounds[1]);
+  const half = bounds.length / 2, spans = bounds.slice(half).map((value, k) => value - bounds[k]);
+  return sizes.length ? sizes[sizes.length >> 1] : 0.05 * Math.max(...spans);
 }
 
 /** An impulse that few exceed: of a sorted sample of all. */
-function largeImpulse(impulse) {
-  const sizes = [], count = impulse.length / 2, stride = Math.max(1, Math.floor(count / 20000));
+function largeImpulse(impulse, dimension) {
+  const sizes = [], count = impulse.length / dimension, stride = Math.max(1, Math.floor(count / 20000));
   for (let i = 0; i < count; i += stride) {
-    const size = Math.hypot(impulse[2 * i], impulse[2 * i + 1]);
+    const size = Math.hypot(...impulse.subarray(dimension * i, dimension * (i + 1)));
     if (size > 0) sizes.push(size);
   }
   sizes.sort((a, b) => a - b);

@@ -80,13 +80,14 @@ class Page:
         self.script("caromPage.player.seek(arguments[0])", time)
         self.settle()
 
-    def pixel(self, x: float, y: float) -> tuple[int, int]:
+    def pixel(self, x: float, y: float, z: float = 0.0) -> tuple[int, int]:
         """Column and row in the window of a point of the scene."""
         across, down, left, top = self.script(
             "const box = document.getElementById('scene').getBoundingClientRect();"
-            "return [...caromPage.camera.pixelAt(arguments[0], arguments[1]), box.left, box.top]",
+            "return [...caromPage.camera.pixelAt(...arguments), box.left, box.top]",
             float(x),
             float(y),
+            float(z),
         )
         return round(across + left), round(down + top)
 
@@ -98,17 +99,17 @@ class Page:
         values, counts = numpy.unique(patch, axis=0, return_counts=True)
         return "#" + "".join(f"{value:02x}" for value in values[counts.argmax()])
 
-    def near(self, x: float, y: float, reach: int, picture=None) -> set[str]:
+    def near(self, x: float, y: float, reach: int, picture=None, z: float = 0.0) -> set[str]:
         """All colours within some pixels of a point of the scene."""
-        column, row = self.pixel(x, y)
+        column, row = self.pixel(x, y, z)
         picture = self.picture() if picture is None else picture
         patch = picture[row - reach : row + reach + 1, column - reach : column + reach + 1].reshape(-1, 3)
         return {"#" + "".join(f"{value:02x}" for value in pixel) for pixel in numpy.unique(patch, axis=0)}
 
-    def point_at(self, x: float, y: float) -> None:
+    def point_at(self, x: float, y: float, z: float = 0.0) -> None:
         """Moves the pointer to a point of the scene."""
         canvas = self.element("scene")
-        column, row = self.pixel(x, y)
+        column, row = self.pixel(x, y, z)
         box = canvas.rect
         ActionChains(self.driver, duration=0).move_to_element_with_offset(
             canvas, round(column - box["x"] - box["width"] / 2), round(row - box["y"] - box["height"] / 2)

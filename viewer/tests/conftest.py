@@ -1,5 +1,6 @@
 """A browser without a window, and pages of recordings in it."""
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -9,10 +10,13 @@ from selenium import webdriver
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "python" / "tests"))
 
-from browser import Page, open_browser  # noqa: E402
+import spatial  # noqa: E402
+from browser import COLOURS, Page, open_browser  # noqa: E402
 from models import everything, falling_ball, pile  # noqa: E402
 
 from carom import EventDriven, Recorder, Simulation, TimeStepping, write_view  # noqa: E402
+
+COLOURS_OF_BODIES = re.findall(r"#\w{6}", re.search(r"BODIES = \[(.*?)\]", COLOURS).group(1))
 
 
 @pytest.fixture(scope="session")
@@ -37,6 +41,7 @@ def recordings():
         "everything": record(everything(), TimeStepping(step=1e-3), 2.0, 0.01),
         "ball": record(falling_ball(), EventDriven(), 2.0, 0.02),
         "pile": record(pile(8, 5), TimeStepping(step=1e-3), 1.5, 0.01),
+        "space": spatial.recording(),
     }
 
 

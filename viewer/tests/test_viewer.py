@@ -8,9 +8,9 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from browser import COLOURS, SOURCES, named
+from browser import SOURCES, named
+from conftest import COLOURS_OF_BODIES as BODIES
 
-BODIES = re.findall(r"#\w{6}", re.search(r"BODIES = \[(.*?)\]", COLOURS).group(1))
 AIR = "#fbfbf9"
 
 

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Makes build/python-test: a virtual environment with the Python package over build/release, which the scripts that
+# need one share. What is there already stays: the package is installed again only where a file changed of which it is
+# made, so that a script after another one waits for nothing.
+#   scripts/python_environment.sh <package>...    of these that are missing are installed too
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# Without, ccache keeps nothing that is compiled with precompiled headers.
+export CCACHE_SLOPPINESS=pch_defines,time_macros
+
+scripts/setup.sh --python
+cmake --preset release >/dev/null
+cmake --build build/release --target carom --parallel "$(nproc)"
+
+venv="$PWD/build/python-test"
+stamp="$venv/installed"
+which='import sys; print(sys.version, sys.base_prefix)'
+if [[ $("$venv/bin/python" -c "$which" 2>/dev/null || true) != "$(python3 -c "$which")" ]]; then
+  python3 -m venv --clear "$venv"
+fi
+if (($# > 0)); then "$venv/bin/pip" -q install "$@"; fi
+
+# Names and contents of sources, headers and the library.
+sources=(python/carom python/src python/tools python/CMakeLists.txt python/pyproject.toml python/README.md
+  analysis bodies cmake contact core integrators joints testing build/release/libcarom.so)
+made_of=$(find -L "${sources[@]}" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum | sha256sum)
+if [[ $(cat "$stamp" 2>/dev/null || true) != "$made_of" ]]; then
+  rm -f "$stamp"
+  "$venv/bin/pip" -q install ./python --config-settings cmake.define.CMAKE_PREFIX_PATH="$PWD/build/release"
+  echo "$made_of" >"$stamp"
+fi
