@@ -34,12 +34,12 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
     failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
                  &problem_);
   }
-  const std::size_t first = at.balance.events.size();
+  const std::size_t first = at.balance.fresh.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
-  for (std::size_t i = first; i < at.balance.events.size(); ++i) {
+  for (std::size_t i = first; i < at.balance.fresh.size(); ++i) {
     const Candidate& candidate = candidates[taking_part_[i - first]];
-    at.balance.events[i].stiffness = candidate.stiffness;
-    at.balance.events[i].free_acceleration = candidate.free_acceleration;
+    at.balance.fresh[i].stiffness = candidate.stiffness;
+    at.balance.fresh[i].free_acceleration = candidate.free_acceleration;
   }
   at.update();
   // It may throw the body against something else.
