@@ -139,7 +139,7 @@ void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size
 }  // namespace
 
 void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
-                        Companion& companion, StepReport& report, std::vector<EventRecord>& events) {
+                        Companion& companion, StepReport& report, RecordedEvents& events) {
   State trial = state;
   Evaluation evaluation = make_evaluation(assembly);
   SolverChain chain;
@@ -193,9 +193,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   report = {};
   report.time = state.time;
   report.projected = shift;
-  const std::int64_t instant = events.empty() ? 0 : events.back().instant + 1;
-  for (EventRecord& event : recorded) event.instant = instant;
-  events.insert(events.end(), recorded.begin(), recorded.end());
+  events.append(std::move(recorded));
 }
 
 }  // namespace carom

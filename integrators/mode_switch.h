@@ -9,7 +9,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/companion.h>
-#include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/recorded_events.h>
 #include <carom/integrators/run/step_report.h>
 
 #include <vector>
@@ -20,6 +20,6 @@ namespace carom {
 /// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError; nothing has
 /// changed then.
 CAROM_API void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
-                                  Companion& companion, StepReport& report, std::vector<EventRecord>& events);
+                                  Companion& companion, StepReport& report, RecordedEvents& events);
 
 }  // namespace carom

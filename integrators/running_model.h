@@ -23,7 +23,7 @@ struct Run {
   State& state;
   Companion& companion;
   StepReport& report;
-  std::vector<EventRecord>& events;
+  RecordedEvents& events;
 };
 
 /// Machines of a mode, over one assembly.

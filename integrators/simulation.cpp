@@ -69,7 +69,7 @@ struct Simulation::Impl {
   State state;
   Companion companion;
   StepReport report;
-  std::vector<EventRecord> events;
+  RecordedEvents events;
   Callbacks callbacks;
   Log log;
   bool findings_written = false;
@@ -143,8 +143,9 @@ void Simulation::Impl::write_to_log(std::int64_t told) {
   write_step_news(log, report, detector);
   const auto* const options = std::get_if<EventDriven>(&mode);
   if (options == nullptr || !options->record_events) return;
-  const auto fresh = std::min(events.size(), static_cast<std::size_t>(events_counted() - told));
-  write_event_news(log, std::span(events).last(fresh), detector);
+  const std::span<const EventRecord> records = events.records();
+  const auto fresh = std::min(records.size(), static_cast<std::size_t>(events_counted() - told));
+  write_event_news(log, records.last(fresh), detector);
 }
 
 Simulation::Simulation(System system, Mode mode)
@@ -309,7 +310,7 @@ const Statistics& Simulation::statistics() const { return impl_->companion.stati
 const ChainStatistics& Simulation::contact_statistics() const { return impl_->companion.contact_statistics; }
 const Companion& Simulation::companion() const { return impl_->companion; }
 const Mode& Simulation::mode() const { return impl_->mode; }
-const std::vector<EventRecord>& Simulation::events() const { return impl_->events; }
+const std::vector<EventRecord>& Simulation::events() const { return impl_->events.records(); }
 void Simulation::clear_events() {
   impl_->guard.demand("clear_events", CallGuard::Need::no_step);
   impl_->events.clear();

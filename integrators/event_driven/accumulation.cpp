@@ -8,37 +8,73 @@
 
 namespace carom {
 
+void Accumulation::clear() {
+  times_.clear();
+  of_.clear();
+  contacts_.clear();
+}
+
+/// The place of a contact among those of the impacts, where it is put if need be.
+std::uint8_t Accumulation::place(const ConstraintKey& contact) {
+  const auto known = std::find(contacts_.begin(), contacts_.end(), contact);
+  if (known != contacts_.end()) return static_cast<std::uint8_t>(known - contacts_.begin());
+  contacts_.push_back(contact);
+  return static_cast<std::uint8_t>(contacts_.size() - 1);
+}
+
+void Accumulation::insert(std::size_t before, double time, const ConstraintKey& contact) {
+  const auto at = static_cast<std::ptrdiff_t>(before);
+  of_.insert(of_.begin() + at, place(contact));
+  times_.insert(times_.begin() + at, time);
+}
+
+/// And contacts that no impact has any more.
+void Accumulation::forget_first(std::size_t count) {
+  const auto end = static_cast<std::ptrdiff_t>(count);
+  times_.erase(times_.begin(), times_.begin() + end);
+  of_.erase(of_.begin(), of_.begin() + end);
+  for (std::size_t place = contacts_.size(); place-- > 0;) {
+    if (std::find(of_.begin(), of_.end(), place) != of_.end()) continue;
+    contacts_.erase(contacts_.begin() + static_cast<std::ptrdiff_t>(place));
+    for (std::uint8_t& other : of_) {
+      if (other > place) --other;
+    }
+  }
+}
+
 void Accumulation::remember(double time, const ConstraintKey& contact) {
-  if (!impacts_.empty() && impacts_.back().time == time && impacts_.back().contact == contact) return;
-  if (impacts_.size() == remembered) impacts_.erase(impacts_.begin());
-  impacts_.push_back({time, contact});
+  if (!times_.empty() && times_.back() == time && this->contact(times_.size() - 1) == contact) return;
+  if (times_.size() == remembered) forget_first(1);
+  insert(times_.size(), time, contact);
 }
 
 void Accumulation::take(const Accumulation& other) {
-  if (impacts_.empty()) {
-    impacts_ = other.impacts_;
+  if (times_.empty()) {
+    *this = other;
     return;
   }
-  // Groups that part remember the same: no impact counts twice.
-  for (const Impact& impact : other.impacts_) {
-    if (std::find(impacts_.begin(), impacts_.end(), impact) == impacts_.end()) impacts_.push_back(impact);
+  // Groups that part remember the same: no impact counts twice. Of one time those that were here come first.
+  for (std::size_t i = 0; i < other.times_.size(); ++i) {
+    const double time = other.times_[i];
+    const auto [first, last] = std::equal_range(times_.begin(), times_.end(), time);
+    bool is_known = false;
+    for (auto at = first; at != last; ++at) {
+      is_known = is_known || contact(static_cast<std::size_t>(at - times_.begin())) == other.contact(i);
+    }
+    if (!is_known) insert(static_cast<std::size_t>(last - times_.begin()), time, other.contact(i));
   }
-  std::stable_sort(impacts_.begin(), impacts_.end(),
-                   [](const Impact& a, const Impact& b) { return a.time < b.time; });
-  if (impacts_.size() > remembered) {
-    impacts_.erase(impacts_.begin(), impacts_.end() - static_cast<std::ptrdiff_t>(remembered));
-  }
+  if (times_.size() > remembered) forget_first(times_.size() - remembered);
 }
 
 double Accumulation::end(double time, std::span<const Constraint> closing) const {
   const double of_all = end(time);
   if (!std::isnan(of_all)) return of_all;
   Accumulation related;
-  for (const Impact& impact : impacts_) {
+  for (std::size_t i = 0; i < times_.size(); ++i) {
     const bool closes = std::any_of(closing.begin(), closing.end(), [&](const Constraint& constraint) {
-      return constraint.key == impact.contact;
+      return constraint.key == contact(i);
     });
-    if (closes) related.impacts_.push_back(impact);
+    if (closes) related.insert(related.times_.size(), times_[i], contact(i));
   }
   return related.end(time);
 }
@@ -47,19 +83,19 @@ double Accumulation::end(double time, std::span<const Constraint> closing) const
 /// ratio r, the sum of all that would follow the last interval D is D r/(1 - r).
 double Accumulation::end(double time) const {
   constexpr double constant = 1e-3;
-  const std::size_t n = impacts_.size();
+  const std::size_t n = times_.size();
   for (std::size_t period = 1; period <= 4 && 3 * period + 1 <= n; ++period) {
     bool repeats = true;
     for (std::size_t i = 1; i <= 2 * period; ++i) {
-      repeats = repeats && impacts_[n - i].contact == impacts_[n - i - period].contact;
+      repeats = repeats && of_[n - i] == of_[n - i - period];
     }
     if (!repeats) continue;
-    const auto at = [&](std::size_t back) { return impacts_[n - 1 - back * period].time; };
+    const auto at = [&](std::size_t back) { return times_[n - 1 - back * period]; };
     const double last = at(0) - at(1), before = at(1) - at(2), earlier = at(2) - at(3);
     const double ratio = last / before;
     if (!(ratio < 1.0) || !(std::abs(ratio - before / earlier) <= constant)) continue;
     // The present impact ends an interval that began with its like, a pattern ago.
-    const double since = time - impacts_[n - period].time;
+    const double since = time - times_[n - period];
     return time + since * ratio / (1.0 - ratio);
   }
   return std::numeric_limits<double>::quiet_NaN();

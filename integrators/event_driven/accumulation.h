@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace carom {
 class CAROM_API Accumulation {
 public:
   /// Forgets all: a new motion.
-  void clear() { impacts_.clear(); }
+  void clear();
   /// Remembers an impact. \param time not before that of the last one [s]
   void remember(double time, const ConstraintKey& contact);
   /// Remembers the impacts of another group too.
@@ -29,13 +30,17 @@ public:
   [[nodiscard]] double end(double time, std::span<const Constraint> closing) const;
 
 private:
-  struct Impact {
-    double time;
-    ConstraintKey contact;
-    friend bool operator==(const Impact&, const Impact&) = default;
-  };
   static constexpr std::size_t remembered = 32;
-  std::vector<Impact> impacts_;  // in time
+
+  [[nodiscard]] const ConstraintKey& contact(std::size_t impact) const { return contacts_[of_[impact]]; }
+  [[nodiscard]] std::uint8_t place(const ConstraintKey& contact);
+  void insert(std::size_t before, double time, const ConstraintKey& contact);
+  void forget_first(std::size_t count);
+
+  // Hardly any group has more than one or two contacts, and there are many groups.
+  std::vector<double> times_;            // of the impacts, ascending
+  std::vector<std::uint8_t> of_;         // by impact: place of its contact
+  std::vector<ConstraintKey> contacts_;  // of impacts, each once
 };
 
 }  // namespace carom

@@ -28,7 +28,7 @@ PairGap gap_of(const GroupModel& model, std::size_t place) {
 /// The largest speed of a gap in a step.
 double fastest_in(const SearchedStep& step, std::size_t bound) {
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
-  const double speed = std::max(start.gap_speeds[bound], end.gap_speeds[bound]);
+  const double speed = std::max(start.body_gaps[bound].speed, end.body_gaps[bound].speed);
   const GroupModel& model = step.motion.model();
   // The flow does not know the motion of shapes on ground.
   if (step.motion.is_ballistic() && !moves(*model.detector, model.pairs[model.bounds[bound].pair]))
@@ -36,7 +36,7 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
   // Loads within the step are as at its ends, but for what steps may be wrong by.
   constexpr double unseen = 2.0;
   return speed + unseen * (step.end() - step.begin()) *
-                     std::max(start.gap_accelerations[bound], end.gap_accelerations[bound]);
+                     std::max(start.body_gaps[bound].acceleration, end.body_gaps[bound].acceleration);
 }
 
 }  // namespace
@@ -45,9 +45,7 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
                       StepEnd& out) {
   constexpr double soon = 0.1;  // bodies that may meet within this are looked at closely [s]
   const GroupModel& model = motion.model();
-  out.gap_speeds.resize(model.bounds.size());
-  out.gap_accelerations.resize(model.bounds.size());
-  out.gap_known.resize(model.bounds.size());
+  out.body_gaps.resize(model.bounds.size());
   bool finite = true;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
     const BodyPairBound& bound = model.bounds[place];
@@ -56,12 +54,11 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
     const GroundMotion* const of_ground = motion_of(*model.detector, model.pairs[pair], at.places);
     const double least = bound.least_gap(at.view(), of_ground),
                  speed = bound.most_speed(at.state.v.data(), of_ground);
-    out.gap_speeds[place] = speed;
-    out.gap_accelerations[place] = bound.most_acceleration(at.acceleration.data(), of_ground);
     const bool known = bound.central || least <= soon * speed;
-    out.gap_known[place] = known ? 1 : 0;
-    out.gaps[pair] = known ? gap_in(gap_of(model, place), at) : StepPolynomial::End{least, -speed, 0.0};
-    finite = finite && std::isfinite(out.gaps[pair].value) && std::isfinite(out.gap_accelerations[place]);
+    BodyGapEnd& gap = out.body_gaps[place];
+    gap = {speed, bound.most_acceleration(at.acceleration.data(), of_ground), known};
+    out.gaps[pair] = {known ? gap_in(gap_of(model, place), at) : StepPolynomial::End{least, -speed, 0.0}};
+    finite = finite && std::isfinite(out.gaps[pair].value) && std::isfinite(gap.acceleration);
   }
   return finite;
 }
@@ -83,10 +80,10 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     rule.flies_freely = step.motion.is_ballistic();
     rule.until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
     const PairGap gap = gap_of(model, place);
-    GapLook first{step.begin(), start.gap_known[place] != 0, start.gaps[pair]};
+    GapLook first{step.begin(), start.body_gaps[place].known, start.gaps[pair]};
     if (from[pair] > step.begin()) first = {from[pair], true, gap_in(gap, path.sample(from[pair]))};
     const double time =
-        first_closing(path, gap, rule, first, {step.end(), end.gap_known[place] != 0, end.gaps[pair]});
+        first_closing(path, gap, rule, first, {step.end(), end.body_gaps[place].known, end.gaps[pair]});
     if (time < rule.until) found = {time, Guard::gap, pair};
   }
   return found;

@@ -64,6 +64,7 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
 }
 
 void ClockGroup::demand_start(const State& state) {
+  if (parts_.motion.model().pairs.empty()) return;
   parts_.memory->motion.limit.restart();
   std::vector<double>& y = parts_.memory->detection.y;
   y.resize(parts_.motion.size());

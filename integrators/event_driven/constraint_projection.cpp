@@ -78,15 +78,15 @@ ConstraintProjection project_onto_constraints(SmoothMotion& motion, const Motion
     }
   }
   model.for_bodies([&](const BodyKind& kind, Range slots, Index q, Index v, const auto& part) {
-    kind.apply_mass(slots, of_velocity.data() + v, memory.impulse.data() + v);
+    kind.apply_mass(slots, of_velocity.data() + v, memory.held.data() + v);
     kind.advance(slots, at.state.q.data() + q, of_position.data() + v,
                  y.data() + part.q + (q - part.ranges.q.begin));
   });
   for (const auto& part : model.parts()) {
     const Range v = part.ranges.v;
     for (Index i = v.begin; i < v.end; ++i) {
-      result.lost -= (at.state.v[i] + 0.5 * of_velocity[i]) * memory.impulse[i];
-      result.velocity_energy += 0.5 * of_velocity[i] * memory.impulse[i];
+      result.lost -= (at.state.v[i] + 0.5 * of_velocity[i]) * memory.held[i];
+      result.velocity_energy += 0.5 * of_velocity[i] * memory.held[i];
       y[part.v + (i - v.begin)] += of_velocity[i];
     }
   }

@@ -5,7 +5,6 @@
 #include <carom/integrators/event_driven/event_balance.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace carom {
 
@@ -34,48 +33,40 @@ bool took_no_impulse(const EventRecord& event) {
 /// Records are large: the first few come without moving those before.
 EventBalance::EventBalance(const EventKeeping& kept) : keeping(kept) {
   constexpr std::size_t of_an_instant = 8;
-  events.reserve(of_an_instant);
+  fresh.reserve(of_an_instant);
 }
 
 void EventBalance::clear() {
   flows = {};
+  fresh.clear();
   events.clear();
   counts = {};
   tally = {};
-  settled_ = 0;
   instant_ = 0;
   joint_impulses.clear();
   energy_gain = shift = 0.0;
 }
 
 void EventBalance::settle() {
-  const auto fresh = static_cast<std::ptrdiff_t>(settled_);
-  for (; settled_ < events.size(); ++settled_) {
-    const EventRecord& event = events[settled_];
+  for (const EventRecord& event : fresh) {
     if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++tally.impacts;
     if (event.outcome == Outcome::several_solutions) ++tally.several_solutions;
     if (event.outcome == Outcome::forces_not_unique) ++tally.forces_not_unique;
     tally.worst_residual = std::max(tally.worst_residual, event.residual);
+    if (keeping.records && (keeping.zero_impulses || !took_no_impulse(event))) events.append(event);
   }
-  if (!keeping.zero_impulses) {
-    events.erase(std::remove_if(events.begin() + fresh, events.end(), took_no_impulse), events.end());
-  }
+  fresh.clear();
   ++instant_;
-  if (!keeping.records) {
-    events.clear();
-    joint_impulses.clear();
-  } else if (keeping.limit > 0 && events.size() >= 2 * keeping.limit) {
-    // Now and then, so that a record is moved a few times at most.
-    keep_latest();
-  }
-  settled_ = events.size();
+  if (!keeping.records) joint_impulses.clear();
+  // Now and then, so that what is kept is put in order a few times at most.
+  if (keeping.limit > 0 && events.size() >= 2 * keeping.limit) keep_latest();
 }
 
 /// Groups that come later may have earlier events: the latest are those by time.
 void EventBalance::keep_latest() {
   if (keeping.limit == 0 || events.size() <= keeping.limit) return;
   order_events();
-  events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(keeping.limit));
+  events.drop_first(events.size() - keeping.limit);
 }
 
 void EventBalance::finish() {
@@ -83,34 +74,20 @@ void EventBalance::finish() {
   order_events();
   keep_latest();
   std::int64_t last = 0, number = -1;
-  for (EventRecord& event : events) {
-    if (number < 0 || event.instant != last) ++number;
-    last = event.instant, event.instant = number;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::int64_t instant = events.instant(i);
+    if (number < 0 || instant != last) ++number;
+    last = instant;
+    events.set_instant(i, number);
   }
 }
 
-/// Records are large and many: their times are sorted apart, and each record is moved once.
-void EventBalance::order_events() {
-  const auto earlier = [](const EventRecord& a, const EventRecord& b) { return a.time < b.time; };
-  if (std::is_sorted(events.begin(), events.end(), earlier)) return;
-  order_.clear();
-  for (std::size_t i = 0; i < events.size(); ++i) order_.emplace_back(events[i].time, i);
-  std::sort(order_.begin(), order_.end());
-  for (std::size_t first = 0; first < order_.size(); ++first) {
-    if (order_[first].second == first) continue;
-    const EventRecord held = events[first];
-    std::size_t to = first;
-    for (std::size_t from; (from = std::exchange(order_[to].second, to)) != first; to = from) {
-      events[to] = events[from];
-    }
-    events[to] = held;
-  }
-}
+void EventBalance::order_events() { events.order(order_); }
 
 EventRecord& EventBalance::record(EventKind kind, double time, const Constraint& contact,
                                   const Assembly& assembly) {
   ++counts[static_cast<std::size_t>(kind)];
-  EventRecord& event = events.emplace_back();
+  EventRecord& event = fresh.emplace_back();
   event.time = time;
   event.kind = kind;
   event.instant = instant_;
@@ -138,7 +115,7 @@ void EventBalance::note_before(const IslandProblem& problem, const StateView& st
 double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) {
   const IslandProblem& problem = impact.problem;
   ImpulseWork work;
-  const std::size_t first = events.size();
+  const std::size_t first = fresh.size();
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     if (contact.has_dry_friction()) {
@@ -179,7 +156,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
   if (impact.note.cut_sequence) ++tally.cut_sequences;
   if (impact.note.restitution_factor < 1.0) ++tally.scaled_impacts;
   if (!work.is_gain()) return 0.0;
-  for (std::size_t i = first; i < events.size(); ++i) events[i].energy_gain = work.gain;
+  for (std::size_t i = first; i < fresh.size(); ++i) fresh[i].energy_gain = work.gain;
   energy_gain += work.gain;
   return work.gain;
 }

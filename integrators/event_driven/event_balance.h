@@ -13,6 +13,7 @@
 #include <carom/integrators/event_driven/joint_reactions.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/run/event_log.h>
+#include <carom/integrators/run/packed_events.h>
 #include <carom/integrators/run/step_report.h>
 
 #include <cstddef>
@@ -60,7 +61,8 @@ struct CAROM_API EventBalance {
 
   EventKeeping keeping;
   EnergyFlows flows;
-  std::vector<EventRecord> events;
+  std::vector<EventRecord> fresh;  ///< records of the instant at hand
+  PackedEvents events;             ///< records that are settled and kept
   EventCounts counts{};
   EventTally tally;                          ///< of all that is settled
   std::vector<JointImpulse> joint_impulses;  ///< of impacts
@@ -95,10 +97,9 @@ private:
   void keep_latest();
   void book_without_normal(const SolvedImpact& impact, std::size_t c, ImpulseWork& sum);
 
-  std::size_t settled_ = 0;                            // of the events
-  std::int64_t instant_ = 0;                           // being recorded
-  std::vector<EventMotions> motions_;                  // of note_before(), by constraint
-  std::vector<std::pair<double, std::size_t>> order_;  // time and place of each event
+  std::int64_t instant_ = 0;           // being recorded
+  std::vector<EventMotions> motions_;  // of note_before(), by constraint
+  PackedEvents::OrderMemory order_;
 };
 
 }  // namespace carom

@@ -38,17 +38,21 @@ void EventDetector::start() {
 
 void EventDetector::begin_phase(double time, const double* y, const EventScales& scales) {
   scales_ = scales;
-  is_active_.assign(motion_->model().pairs.size(), 0);
-  for (const ActiveContact& contact : motion_->active().list()) is_active_[contact.place] = 1;
-  // Rolling resistance has no gap of its own.
-  for (std::size_t i = 0; i < is_active_.size(); ++i) {
-    if (motion_->model().pairs[i].rolling) is_active_[i] = 1;
-  }
+  list_active();
   take_features(time, y);
-  if (!sample_step_end(*motion_, time, y, is_active_, scales_.force, *memory_, ends_.start())) {
+  if (!sample_step_end(*motion_, time, y, memory_->is_active, scales_.force, *memory_, start_)) {
     failure_->fail_loads(memory_->within);
   }
-  guards_.update(ends_.start().sample.guards, scales_.guard_noise);
+  guards_.update(start_.sample.guards, scales_.guard_noise);
+}
+
+void EventDetector::list_active() {
+  memory_->is_active.assign(motion_->model().pairs.size(), 0);
+  for (const ActiveContact& contact : motion_->active().list()) memory_->is_active[contact.place] = 1;
+  // Rolling resistance has no gap of its own.
+  for (std::size_t i = 0; i < memory_->is_active.size(); ++i) {
+    if (motion_->model().pairs[i].rolling) memory_->is_active[i] = 1;
+  }
 }
 
 /// Takes the features that vertices touch for those of the phase.
@@ -65,10 +69,21 @@ void EventDetector::take_features(double time, const double* y) {
   }
 }
 
+/// Between its steps a group has one end: where there is no event, that of the last step.
 Event EventDetector::step(Flow& flow, double time, std::span<const double> y, double longest) {
+  StepEnds& ends = memory_->ends;
+  std::swap(start_, ends.start());
+  list_active();
+  const Event event = search(flow, time, y, longest);
+  force_noise_ = event.guard == Guard::force ? ends.force_noise(event.which) : 0.0;
+  std::swap(start_, event.guard == Guard::nothing ? ends.end() : ends.start());
+  return event;
+}
+
+Event EventDetector::search(Flow& flow, double time, std::span<const double> y, double longest) {
   const double discontinuity = next_discontinuity(motion_->model().discontinuities, time);
   const double until = discontinuity < never ? discontinuity - time : never;
-  SearchedStep step{*motion_, flow, ends_, scales_, guards_, is_active_, *memory_};
+  SearchedStep step{*motion_, flow, memory_->ends, scales_, guards_, memory_->is_active, *memory_};
   for (;;) {
     try {
       flow.advance(std::min(longest, until));
@@ -76,8 +91,8 @@ Event EventDetector::step(Flow& flow, double time, std::span<const double> y, do
       if (!finds_unbounded_force(flow)) failure_->fail_flow(error, *motion_, y.data(), memory_->within);
       return unbounded_at(time, y, error.what());
     }
-    if (!sample_step_end(*motion_, flow.end(), flow.state().data(), is_active_, scales_.force, *memory_,
-                         ends_.end())) {
+    if (!sample_step_end(*motion_, flow.end(), flow.state().data(), memory_->is_active, scales_.force,
+                         *memory_, memory_->ends.end())) {
       failure_->fail_loads(memory_->within);
     }
     memory_->samples.forget();
@@ -124,10 +139,11 @@ bool EventDetector::finds_unbounded_force(const Flow& flow) {
 }
 
 Event EventDetector::first(SearchedStep& step) {
-  passed_over_.gaps.assign(ends_.end().gaps.size(), step.begin());
-  passed_over_.forces.assign(ends_.end().sample.margins.size(), 0);
+  FalseAlarms& passed_over = memory_->passed_over;
+  passed_over.gaps.assign(step.ends.end().gaps.size(), step.begin());
+  passed_over.forces.assign(step.ends.end().sample.margins.size(), 0);
   for (;;) {
-    const Event predicted = predict_event(step, passed_over_);
+    const Event predicted = predict_event(step, passed_over);
     if (step.has_guards() && misses_loads(step, predicted.time)) {
       return {predicted.time, Guard::missed_loads, 0};
     }
@@ -143,12 +159,12 @@ Event EventDetector::first(SearchedStep& step) {
 /// it may open and close again, within the step too.
 void EventDetector::pass_over(const SearchedStep& step, const Event& predicted) {
   if (predicted.guard == Guard::force) {
-    passed_over_.forces[predicted.which] = 1;
+    memory_->passed_over.forces[predicted.which] = 1;
     return;
   }
   constexpr double shortest = 1e-9, growth = 4.0;  // of the step
   const double length = step.end() - step.begin();
-  double& from = passed_over_.gaps[predicted.which];
+  double& from = memory_->passed_over.gaps[predicted.which];
   from = std::min(step.begin() + std::max(shortest * length, growth * (from - step.begin())), step.end());
 }
 
@@ -161,12 +177,12 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
   if (predicted.guard != Guard::gap) return false;
   // A gap with an outline may open and close again where the nearest feature changes.
   if (!(located.time > step.begin())) return true;
-  if (motion_->model().bound_of[predicted.which] != none) return false;
+  if (motion_->model().bound_of(predicted.which) != none) return false;
   // A gap that opens: in steps of low order there would be one after each restart.
-  const StepPolynomial::End &start = ends_.start().gaps[predicted.which],
-                            &end = ends_.end().gaps[predicted.which];
+  const StepPolynomial::End &start = step.ends.start().gaps[predicted.which],
+                            &end = step.ends.end().gaps[predicted.which];
   return start.first >= 0.0 && end.first >= 0.0 &&
-         end.value >= ends_.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
+         end.value >= step.ends.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
 }
 
 /// Gaps are predicted to rounding, other guards to a part of a step: an event that is located later than it
@@ -175,16 +191,13 @@ Event EventDetector::first_of(SearchedStep& step, const Event& predicted, const 
   constexpr double as_predicted = 1e-9;  // of the step
   const double length = step.end() - step.begin();
   if (predicted.guard == Guard::gap || located.time - predicted.time <= as_predicted * length) return located;
-  const Event gap = predict_gap(step, passed_over_, located);
+  const Event gap = predict_gap(step, memory_->passed_over, located);
   if (gap.guard != Guard::gap) return located;
   const Event closing = locate_event(step, gap, landing_);
   return closing.guard == Guard::gap && closing.time < located.time ? closing : located;
 }
 
-void EventDetector::accept() {
-  ends_.advance();
-  guards_.update(ends_.start().sample.guards, scales_.guard_noise);
-}
+void EventDetector::accept() { guards_.update(start_.sample.guards, scales_.guard_noise); }
 
 void EventDetector::land(Flow& flow, const Event& event, std::span<double> y) const {
   if (landing_.time == event.time) {
@@ -197,7 +210,7 @@ void EventDetector::land(Flow& flow, const Event& event, std::span<double> y) co
 void EventDetector::pass(const Event& event) { guards_.pass({event.time, event.which, event.sign}); }
 
 double EventDetector::force_noise(const Event& event) const {
-  return event.guard == Guard::force ? ends_.force_noise(event.which) : 0.0;
+  return event.guard == Guard::force ? force_noise_ : 0.0;
 }
 
 }  // namespace carom

@@ -17,6 +17,7 @@
 #include <carom/integrators/flow/flow.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -42,11 +43,13 @@ public:
   void land(Flow& flow, const Event& event, std::span<double> y) const;
   /// The guard of an element is on the other side from now on.
   void pass(const Event& event);
-  /// Rounding of the force of an event of the last step [N].
+  /// Rounding of the force of an event of the last step; 0 of another event [N].
   [[nodiscard]] double force_noise(const Event& event) const;
 
 private:
   void take_features(double time, const double* y);
+  [[nodiscard]] Event search(Flow& flow, double time, std::span<const double> y, double longest);
+  void list_active();
   [[nodiscard]] Event first(SearchedStep& step);
   void pass_over(const SearchedStep& step, const Event& predicted);
   [[nodiscard]] bool is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located);
@@ -60,12 +63,11 @@ private:
   const GroupFailure* failure_;
   UnboundedForces* unbounded_;
   DetectionMemory* memory_;
-  std::vector<char> is_active_;  // by pair
   EventScales scales_;
-  StepEnds ends_;
   GuardSearch guards_;
-  FalseAlarms passed_over_;
-  Landing landing_;
+  StepEnd start_;             // of the next step
+  double force_noise_ = 0.0;  // of the event of the last step, that of a force [N]
+  Landing landing_;           // on that event
 };
 
 }  // namespace carom

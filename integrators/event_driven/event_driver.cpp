@@ -49,7 +49,6 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       overlaps_(assembly, detector_, options_),
       memory_(assembly, options, stop),
       groups_(assembly, detector_, options_, memory_),
-      evaluation_(make_evaluation(assembly)),
       trial_(assembly.layout()),
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
@@ -95,14 +94,15 @@ void EventDriver::start(const State& state, const Companion& companion) {
 }
 
 void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
-                          std::vector<EventRecord>& events) {
+                          RecordedEvents& events) {
   laws_.demand(state.time, target, options_.interval);
   if (!started_) start(state, companion);
   advance_groups(target);
   trial_.time = target;
   modes_.clear();
   groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
-  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), evaluation_);
+  // No event is looked at any more.
+  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
   demand_apart(state.time);
   balance_.finish();
@@ -114,22 +114,7 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.v.swap(trial_.v);
   state.z.swap(trial_.z);
   state.time = target;
-  append(balance_.events, events);
-}
-
-/// Records go to those that there are, of which the latest are kept.
-void EventDriver::append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const {
-  if (fresh.empty()) return;
-  const std::int64_t next = events.empty() ? 0 : events.back().instant + 1;
-  for (EventRecord& event : fresh) event.instant += next;
-  if (events.empty()) {
-    events.swap(fresh);
-  } else {
-    events.insert(events.end(), fresh.begin(), fresh.end());
-  }
-  const std::size_t limit = balance_.keeping.limit;
-  if (limit == 0 || events.size() <= limit) return;
-  events.erase(events.begin(), events.end() - static_cast<std::ptrdiff_t>(limit));
+  events.append(balance_.events, balance_.keeping.limit);
 }
 
 /// Groups that may meet go on together, others each to the end.
@@ -174,7 +159,7 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
 
 void EventDriver::demand_apart(double from) {
   try {
-    overlaps_.demand_apart(trial_, evaluation_, from);
+    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, from);
   } catch (...) {
     abandon();
     throw;
@@ -193,9 +178,10 @@ void EventDriver::fail_energy(double from, double to) {
   failure.time = from;
   failure.step = to - from;
   std::string message = "event-driven at t = " + to_text(to) + " s: ";
+  Evaluation& evaluation = memory_.instant.now.evaluation;
   for (Index component = 0; component < assembly_->components().size(); ++component) {
-    evaluate_positions(*assembly_, component, trial_.view(), evaluation_);
-    const ElementId cause = find_non_finite_potential(*assembly_, component, trial_.view(), evaluation_);
+    evaluate_positions(*assembly_, component, trial_.view(), evaluation);
+    const ElementId cause = find_non_finite_potential(*assembly_, component, trial_.view(), evaluation);
     if (cause.valid()) failure.parts.push_back(assembly_->system().name(cause));
   }
   message += failure.parts.empty() ? "an energy is too large to be counted"
@@ -218,7 +204,13 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
 }
 
 void EventDriver::report_contacts(StepReport& report) const {
-  for (const EventRecord& event : balance_.events) {
+  const EventCounts& counts = balance_.counts;
+  const auto of_impacts = counts[static_cast<std::size_t>(EventKind::impact)] +
+                          counts[static_cast<std::size_t>(EventKind::accumulation)] +
+                          counts[static_cast<std::size_t>(EventKind::impact_without_collision)];
+  report.contacts.reserve(std::min(balance_.events.size(), static_cast<std::size_t>(of_impacts)));
+  for (std::size_t i = 0; i < balance_.events.size(); ++i) {
+    const EventRecord event = balance_.events.record(i);
     const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
                            event.kind == EventKind::impact_without_collision;
     if (!impulsive) continue;
@@ -237,8 +229,9 @@ void EventDriver::report_contacts(StepReport& report) const {
     entry.velocity_before = event.velocity_before;
     entry.velocity_after = event.velocity_after;
     entry.impulse = event.impulse;
-    for (std::size_t i = 0; i < 3; ++i) {
-      entry.work[i] = impulse_work(event.impulse[i], event.velocity_before[i], event.velocity_after[i]);
+    for (std::size_t row = 0; row < 3; ++row) {
+      entry.work[row] =
+          impulse_work(event.impulse[row], event.velocity_before[row], event.velocity_after[row]);
     }
     entry.mode = event.mode;
     entry.impact = true;

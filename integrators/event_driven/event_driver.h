@@ -16,6 +16,7 @@
 #include <carom/integrators/event_driven/overlap_check.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
+#include <carom/integrators/run/recorded_events.h>
 #include <carom/integrators/run/step_report.h>
 
 #include <memory>
@@ -38,8 +39,7 @@ public:
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
   /// ModelError where bodies are too deep in shapes on ground at a start, SolverError where anything is too
   /// deep in anything at the end (OverlapCheck).
-  void advance(State& state, Companion& companion, double target, StepReport& report,
-               std::vector<EventRecord>& events);
+  void advance(State& state, Companion& companion, double target, StepReport& report, RecordedEvents& events);
   /// Reaction of a joint at a state last advanced to, or changed to since.
   [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
   /// The state was changed from outside: start anew from it.
@@ -54,7 +54,6 @@ private:
   void start(const State& state, const Companion& companion);
   template <class F>
   auto within_limit(double time, F&& evaluate) const;
-  void append(std::vector<EventRecord>& fresh, std::vector<EventRecord>& events) const;
   void count(Companion& companion);
   void advance_groups(double to);
   void write_report(double from, double to, StepReport& out) const;
@@ -71,7 +70,6 @@ private:
   GroupMemory memory_;
   GroupSet groups_;
   std::unique_ptr<GroupMeetings> meetings_;  // null where no two bodies may touch
-  Evaluation evaluation_;
   State trial_;
   ContactModes modes_;
   EventBalance balance_;

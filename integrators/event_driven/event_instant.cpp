@@ -33,7 +33,7 @@ void EventInstant::update() {
       continue;
     }
     motion.contact_if_near(i, now, near, contacts[i]);
-    const Index bound = model.bound_of[i];
+    const Index bound = model.bound_of(i);
     if (bound == none || contacts[i].gap > near || model.bounds[bound].rounding > 0.0) continue;
     if (!motion.regions(model.pairs[i], now).may_touch()) {
       contacts[i].gap = std::numeric_limits<double>::infinity();

@@ -39,7 +39,7 @@ public:
     const std::size_t count = motion.model().unknowns.q_size();
     memory.y.resize(motion.size());
     memory.path_acceleration.resize(count);
-    follow_path(step_->ends.start().path, step_->ends.end().path, count, time, memory.y,
+    follow_path(*step_->ends.start().path, *step_->ends.end().path, count, time, memory.y,
                 memory.path_acceleration.data());
     motion.read_guards(time, memory.y.data(), memory.path_acceleration.data(), memory.within, out.guards);
   }
@@ -136,7 +136,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   Event found = before;
   for (std::size_t i = 0; i < step.motion.model().pairs.size(); ++i) {
-    if (step.is_active[i] != 0 || step.motion.model().bound_of[i] != none) continue;
+    if (step.is_active[i] != 0 || step.motion.model().bound_of(i) != none) continue;
     if (passed_over.gaps[i] >= step.end()) continue;
     // The flow does not know the motion of shapes on ground.
     const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
@@ -146,7 +146,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     rule.clear_falls = false;  // of several gaps the first is wanted
     rule.measured = moving || !step.motion.is_ballistic();
     rule.least_depth = moving ? least_of_moving : 0;
-    const double curvature = std::max(start.gap_curvature_bound[i], end.gap_curvature_bound[i]);
+    const double curvature = std::max(start.gaps[i].curvature_bound, end.gaps[i].curvature_bound);
     QuantityOf gap([&](double time) -> QuantityLook {
       const MotionSample& at = step.sample(time);
       Constraint contact;

@@ -40,7 +40,7 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
     for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(at.state.q[i]));
     for (Index i = v.begin; i < v.end; ++i) {
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
-      scales.force = std::max(scales.force, std::abs(at.loads[i]) / lengths[i]);
+      scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }
   }
   scales.gap_noise = gap_rounding * size;

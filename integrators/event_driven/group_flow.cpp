@@ -35,6 +35,7 @@ Flow& GroupFlow::change() {
 void GroupFlow::leave(bool at_rest, bool alone) {
   if (!loan_ || (!at_rest && (alone || !(is_recorded_ || loan_->leave(left_))))) return;
   loan_.reset();
+  if (at_rest) left_ = {};
 }
 
 }  // namespace carom

@@ -17,29 +17,31 @@ void GroupGuards::add(const Assembly& assembly, Index component) {
     const Index each = elements.guard_size();
     if (acting.empty() || each == 0) continue;
     const std::size_t count = static_cast<std::size_t>(each) * acting.size();
-    runs_.push_back({component, kind, acting, elements_.size(), count});
+    if (!list_) list_ = std::make_unique<List>();
+    list_->runs.push_back({component, kind, acting, list_->elements.size(), count});
     for (Index element = acting.begin; element < acting.end; ++element) {
-      elements_.insert(elements_.end(), each, assembly.element_id(kind, element));
+      list_->elements.insert(list_->elements.end(), each, assembly.element_id(kind, element));
     }
-    has_motion_.insert(has_motion_.end(), count, static_cast<char>(elements.has_guard_motion()));
+    list_->has_motion.insert(list_->has_motion.end(), count, static_cast<char>(elements.has_guard_motion()));
     if (!elements.has_guard_motion()) {
-      all_have_motion_ = false;
-      values_.resize(std::max(values_.size(), count));
+      list_->all_have_motion = false;
+      list_->values.resize(std::max(list_->values.size(), count));
     }
   }
 }
 
 void GroupGuards::read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out) {
-  out.resize(elements_.size());
-  for (const Run& run : runs_) {
+  out.resize(count());
+  if (!list_) return;
+  for (const Run& run : list_->runs) {
     at.component = run.component;
     const ForceKind& kind = *at.assembly.force_kinds()[run.kind];
     if (kind.has_guard_motion()) {
       kind.guard_motion(at, acceleration, run.elements, out.data() + run.first);
       continue;
     }
-    kind.guards(at, run.elements, values_.data());
-    for (std::size_t i = 0; i < run.count; ++i) out[run.first + i] = {values_[i], 0.0, 0.0, 0.0};
+    kind.guards(at, run.elements, list_->values.data());
+    for (std::size_t i = 0; i < run.count; ++i) out[run.first + i] = {list_->values[i], 0.0, 0.0, 0.0};
   }
 }
 

@@ -8,6 +8,7 @@
 #include <carom/core/guard_motion.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,13 +23,13 @@ public:
   GroupGuards(const Assembly& assembly, std::span<const Index> components);
 
   /// How many there are.
-  [[nodiscard]] std::size_t count() const { return elements_.size(); }
+  [[nodiscard]] std::size_t count() const { return list_ ? list_->elements.size() : 0; }
   /// The element of a guard.
-  [[nodiscard]] ElementId element(std::size_t guard) const { return elements_[guard]; }
+  [[nodiscard]] ElementId element(std::size_t guard) const { return list_->elements[guard]; }
   /// True if derivatives of a guard are known; else they are written as 0.
-  [[nodiscard]] bool has_motion(std::size_t guard) const { return has_motion_[guard] != 0; }
+  [[nodiscard]] bool has_motion(std::size_t guard) const { return list_->has_motion[guard] != 0; }
   /// True if they are known of all guards.
-  [[nodiscard]] bool all_have_motion() const { return all_have_motion_; }
+  [[nodiscard]] bool all_have_motion() const { return !list_ || list_->all_have_motion; }
   /// Writes all. \param at the evaluation, of any component \param acceleration of all velocity coordinates,
   /// reactions included
   void read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out);
@@ -41,11 +42,14 @@ private:
     Range elements;
     std::size_t first, count;
   };
-  std::vector<Run> runs_;
-  std::vector<ElementId> elements_;
-  std::vector<char> has_motion_;
-  std::vector<double> values_;  // of one kind
-  bool all_have_motion_ = true;
+  struct List {
+    std::vector<Run> runs;
+    std::vector<ElementId> elements;
+    std::vector<char> has_motion;
+    std::vector<double> values;  // of one kind
+    bool all_have_motion = true;
+  };
+  std::unique_ptr<List> list_;  // null if there are none, as of most of many groups
 };
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 /// \file
 /// Joints of the components of a clock group: rows and multipliers of all, component after component.
 
+#include <carom/contact/friction_bounds.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_constraints.h>
@@ -57,5 +58,18 @@ private:
   std::size_t rows_ = 0;
   ComponentsResponse response_;
 };
+
+/// Components as far as joints bind them. Groups without joints share one of no component.
+struct CAROM_API BoundComponents {
+  /// \param assembly must outlive it \param of ascending
+  BoundComponents(const Assembly& assembly, std::span<const Index> of);
+
+  std::vector<Index> components;
+  GroupJoints rows;
+  FrictionBounds bounds;  ///< of friction in joints that follow from forces
+};
+
+/// True if a component has joints.
+[[nodiscard]] CAROM_API bool has_joints(const Assembly& assembly, std::span<const Index> components);
 
 }  // namespace carom

@@ -7,11 +7,11 @@
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/union_find.h>
+#include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 #include <carom/integrators/event_driven/motion_memory.h>
-#include <carom/integrators/event_driven/step_ends.h>
 #include <carom/integrators/flow/flow_pool.h>
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/stop_request.h>
@@ -25,7 +25,7 @@ struct CAROM_API GroupMemory {
       : motion(assembly),
         flows(options.method, options.relative_tolerance),
         instant(assembly),
-        detection(assembly) {
+        detection(instant.now) {
     motion.limit = EvaluationLimit(options.evaluation_limit, stop);
   }
 

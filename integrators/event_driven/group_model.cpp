@@ -154,9 +154,10 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
       unknowns(assembly_in, group.components, works_of(detector_in, group)),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
       bounds(bounds_of(assembly_in, detector_in, pairs)),
-      bound_of(pairs.size(), none),
-      tolerances(tolerances_of(*this, options->absolute_tolerance)) {
-  for (Index i = 0; i < bounds.size(); ++i) bound_of[bounds[i].pair] = i;
+      tolerances(
+          std::make_shared<const std::vector<double>>(tolerances_of(*this, options->absolute_tolerance))) {
+  if (!bounds.empty()) bound_places_.assign(pairs.size(), none);
+  for (Index i = 0; i < bounds.size(); ++i) bound_places_[bounds[i].pair] = i;
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();
   loads.depends_on_time = joints.depends_on_time() || ground_moves;
   // Outlines are looked at in frames that turn with their bodies.

@@ -16,6 +16,8 @@
 #include <carom/integrators/event_driven/motion_unknowns.h>
 #include <carom/integrators/run/event_driven.h>
 
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -54,13 +56,16 @@ struct CAROM_API GroupModel {
   /// contact that resists rolling its resistance.
   std::vector<ContactPair> pairs;
   std::vector<BodyPairBound> bounds;  ///< of the pairs with an outline, in their order
-  std::vector<Index> bound_of;        ///< by pair: its place in `bounds`; `none`: a point and a flat boundary
   /// Times at which laws of the group's elements and drivers and of shapes on ground jump, ascending.
   std::vector<Discontinuity> discontinuities;
-  std::vector<double> tolerances;  ///< absolute, of each unknown
+  std::shared_ptr<const std::vector<double>> tolerances;  ///< absolute, of each unknown
 
   /// The components, with their places.
   [[nodiscard]] const std::vector<MotionUnknowns::Part>& parts() const { return unknowns.parts(); }
+  /// Place of a pair in `bounds`; `none`: a point and a flat boundary.
+  [[nodiscard]] Index bound_of(std::size_t pair) const {
+    return bound_places_.empty() ? none : bound_places_[pair];
+  }
   /// The first body.
   [[nodiscard]] BodyId first_body() const {
     return assembly->layout()->id(parts().front().ranges.bodies.begin);
@@ -86,6 +91,8 @@ struct CAROM_API GroupModel {
 
 private:
   [[nodiscard]] double kinetic_energy_of_mechanism(Index body, const double* velocities) const;
+
+  std::vector<Index> bound_places_;  // by pair; empty without bounds
 };
 
 }  // namespace carom

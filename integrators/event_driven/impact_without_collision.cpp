@@ -34,13 +34,13 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
     failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
                  &problem_);
   }
-  const std::size_t first = at.balance.events.size();
+  const std::size_t first = at.balance.fresh.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
   std::size_t event = first;
   for (const std::size_t i : taking_part_) {
-    if (candidates[i].rolls() || event == at.balance.events.size()) continue;  // in the record of its contact
-    at.balance.events[event].stiffness = candidates[i].stiffness;
-    at.balance.events[event++].free_acceleration = candidates[i].free_acceleration;
+    if (candidates[i].rolls() || event == at.balance.fresh.size()) continue;  // in the record of its contact
+    at.balance.fresh[event].stiffness = candidates[i].stiffness;
+    at.balance.fresh[event++].free_acceleration = candidates[i].free_acceleration;
   }
   at.update();
   // It may throw the body against something else.

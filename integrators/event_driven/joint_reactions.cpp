@@ -19,10 +19,7 @@ void copy(const std::vector<Range>& ranges, const std::vector<double>& from, std
 
 JointReactions::JointReactions(const Assembly& assembly, std::span<const Index> components,
                                MotionMemory& memory)
-    : assembly_(&assembly),
-      components_(components.begin(), components.end()),
-      memory_(&memory),
-      joints_(assembly, components) {
+    : assembly_(&assembly), memory_(&memory), joints_(&memory.no_joints) {
   // Neighbours are one range.
   for (const Index component : components) {
     const Range v = assembly.components()[component].v;
@@ -32,37 +29,39 @@ JointReactions::JointReactions(const Assembly& assembly, std::span<const Index> 
       velocities_.push_back(v);
     }
   }
-  for (const GroupJoints::Part& part : joints_.parts()) bounds_.add(assembly, part.component, *part.joints);
+  if (!has_joints(assembly, components)) return;
+  own_ = std::make_unique<BoundComponents>(assembly, components);
+  joints_ = own_.get();
 }
 
 void JointReactions::react(MotionSample& at) {
   sample_ = &at;
-  if (joints_.empty()) return;
-  joints_.update_and_factor(at.joint_view());
-  joints_.project(JointLevel::acceleration, at.acceleration.data());
+  if (joints_->rows.empty()) return;
+  joints_->rows.update_and_factor(at.joint_view());
+  joints_->rows.project(JointLevel::acceleration, at.acceleration.data());
 }
 
 std::span<const double> JointReactions::multipliers(const MotionSample& at,
                                                     std::span<const ActiveContact> contacts) {
   assert(is_at(at));
   std::vector<double>& answer = memory_->of_velocity;
-  copy(velocities_, at.loads, answer);
+  copy(velocities_, at.loads(), answer);
   for (const ActiveContact& contact : contacts) {
     contact.at.add_force(contact.normal, contact.tangential, answer.data());
   }
-  for (const GroupJoints::Part& part : joints_.parts()) {
+  for (const GroupJoints::Part& part : joints_->rows.parts()) {
     assembly_->for_bodies(part.component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
       kind.apply_inverse_mass(slots, answer.data() + first, answer.data() + first);
     });
   }
-  memory_->multipliers.resize(joints_.size());
-  joints_.project(JointLevel::acceleration, answer.data(), memory_->multipliers.data());
+  memory_->multipliers.resize(joints_->rows.size());
+  joints_->rows.project(JointLevel::acceleration, answer.data(), memory_->multipliers.data());
   return memory_->multipliers;
 }
 
 bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
-  if (bounds_.empty()) return active.add_reactions(*assembly_, at.acceleration.data());
-  std::vector<double>& free = memory_->free;
+  if (joints_->bounds.empty()) return active.add_reactions(*assembly_, at.acceleration.data());
+  std::vector<double>& free = memory_->held;
   copy(velocities_, at.acceleration, free);
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
@@ -74,7 +73,8 @@ bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
     for (ActiveContact& contact : active.list()) {
-      if (bounds_.depends_on_joint_force(contact.at)) contact.at.friction_bound = iteration.guess(bound++);
+      if (joints_->bounds.depends_on_joint_force(contact.at))
+        contact.at.friction_bound = iteration.guess(bound++);
     }
   }
   return false;
@@ -85,11 +85,11 @@ bool JointReactions::update_bounds_once(ActiveSet& active, MotionSample& at, Bou
                                         double& change) {
   if (!active.add_reactions(*assembly_, at.acceleration.data())) return false;
   const std::span<const double> forces = multipliers(at, active.list());
-  bounds_.take(forces.data(), 1.0, largest_load(at));
+  joints_->bounds.take(forces.data(), 1.0, largest_load(at));
   for (ActiveContact& contact : active.list()) {
-    if (!bounds_.depends_on_joint_force(contact.at)) continue;
+    if (!joints_->bounds.depends_on_joint_force(contact.at)) continue;
     const double before = contact.at.friction_bound;
-    change = std::max(change, bounds_.update(contact.at, at.joint_view()));
+    change = std::max(change, joints_->bounds.update(contact.at, at.joint_view()));
     iteration.add(before, contact.at.friction_bound);
   }
   return true;
@@ -100,7 +100,7 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
                                             std::vector<ForceMargin>& margins, BoundIteration& iteration,
                                             double& change) {
   assert(is_at(at));
-  std::vector<double>& free = memory_->free;
+  std::vector<double>& free = memory_->held;
   copy(velocities_, at.acceleration, free);
   active.list().swap(contacts);
   const bool found = update_bounds_once(active, at, iteration, change);
@@ -114,7 +114,7 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
 double JointReactions::largest_load(const MotionSample& at) const {
   double largest = 0.0;
   for (const Range v : velocities_) {
-    for (Index i = v.begin; i < v.end; ++i) largest = std::max(largest, std::abs(at.loads[i]));
+    for (Index i = v.begin; i < v.end; ++i) largest = std::max(largest, std::abs(at.loads()[i]));
   }
   return largest;
 }
@@ -122,7 +122,7 @@ double JointReactions::largest_load(const MotionSample& at) const {
 void JointReactions::build(IslandProblem& problem, std::span<const Constraint> contacts,
                            const double* velocity_before) {
   problem.build(contacts, velocity_before);
-  problem.respond(joints_.response());
+  problem.respond(joints_->rows.response());
 }
 
 bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contacts, const MotionSample& at,
@@ -132,7 +132,7 @@ bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contact
   const auto multipliers = [this, &problem] { return impulses(problem).data(); };
   return memory_->friction_bound.solve({.problem = problem,
                                         .contacts = contacts,
-                                        .bounds = bounds_,
+                                        .bounds = joints_->bounds,
                                         .at = at.joint_view(),
                                         .duration = 0.0,
                                         .multipliers = multipliers},
@@ -143,20 +143,20 @@ std::span<const double> JointReactions::impulses(const IslandProblem& problem) {
   std::vector<double>& change = memory_->of_velocity;
   for (const Range v : velocities_) std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
   problem.map().add_loads(1.0, change.data());
-  joints_.apply_inverse_mass(change.data());
-  memory_->multipliers.resize(joints_.size());
-  joints_.project(JointLevel::change, change.data(), memory_->multipliers.data());
+  joints_->rows.apply_inverse_mass(change.data());
+  memory_->multipliers.resize(joints_->rows.size());
+  joints_->rows.project(JointLevel::change, change.data(), memory_->multipliers.data());
   return memory_->multipliers;
 }
 
 std::span<const double> JointReactions::follow_jump(const MotionSample& at, std::span<double> velocities,
                                                     double noise, double& work) {
   assert(is_at(at));
-  if (!joints_.depends_on_time()) return {};
-  std::vector<double>&change = memory_->of_velocity, &impulse = memory_->impulse;
+  if (!joints_->rows.depends_on_time()) return {};
+  std::vector<double>&change = memory_->of_velocity, &impulse = memory_->held;
   copy(velocities_, at.state.v, change);
-  memory_->multipliers.resize(joints_.size());
-  joints_.project(JointLevel::velocity, change.data(), memory_->multipliers.data());
+  memory_->multipliers.resize(joints_->rows.size());
+  joints_->rows.project(JointLevel::velocity, change.data(), memory_->multipliers.data());
   double largest = 0.0;
   for (const Range v : velocities_) {
     for (Index i = v.begin; i < v.end; ++i) {
@@ -166,7 +166,7 @@ std::span<const double> JointReactions::follow_jump(const MotionSample& at, std:
   }
   if (!(largest > noise)) return {};
   std::size_t place = 0;
-  for (const Index component : components_) {
+  for (const Index component : joints_->components) {
     assembly_->for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
       kind.apply_mass(slots, change.data() + first, impulse.data() + first);
     });

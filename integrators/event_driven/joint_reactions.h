@@ -15,6 +15,7 @@
 #include <carom/integrators/event_driven/motion_memory.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,14 +31,14 @@ public:
   JointReactions& operator=(const JointReactions&) = delete;
 
   /// The rows.
-  [[nodiscard]] GroupJoints& rows() { return joints_; }
-  [[nodiscard]] const GroupJoints& rows() const { return joints_; }
+  [[nodiscard]] GroupJoints& rows() { return joints_->rows; }
+  [[nodiscard]] const GroupJoints& rows() const { return joints_->rows; }
   /// Bounds of friction that follow from forces.
-  [[nodiscard]] FrictionBounds& friction_bounds() { return bounds_; }
-  [[nodiscard]] const FrictionBounds& friction_bounds() const { return bounds_; }
+  [[nodiscard]] FrictionBounds& friction_bounds() { return joints_->bounds; }
+  [[nodiscard]] const FrictionBounds& friction_bounds() const { return joints_->bounds; }
   /// True if the bound of friction in a joint follows from forces.
   [[nodiscard]] bool depends_on_joint_force(const Constraint& contact) const {
-    return bounds_.depends_on_joint_force(contact);
+    return joints_->bounds.depends_on_joint_force(contact);
   }
 
   /// Brings the rows to a sample, and its accelerations, by the loads alone, onto them.
@@ -76,11 +77,10 @@ private:
   [[nodiscard]] double largest_load(const MotionSample& at) const;
 
   const Assembly* assembly_;
-  std::vector<Index> components_;
-  std::vector<Range> velocities_;  // of these
   MotionMemory* memory_;
-  GroupJoints joints_;
-  FrictionBounds bounds_;
+  std::unique_ptr<BoundComponents> own_;  // null without joints
+  BoundComponents* joints_;
+  std::vector<Range> velocities_;         // of the group
   const MotionSample* sample_ = nullptr;  // that the rows were brought to last
 };
 

@@ -6,9 +6,12 @@ namespace carom {
 
 MotionSample::MotionSample(const Assembly& assembly)
     : state(assembly.layout()), evaluation(make_evaluation(assembly)) {
-  for (std::vector<double>* array : {&dissipative, &external, &loads, &acceleration}) {
-    array->assign(state.v.size(), 0.0);
+  acceleration.assign(state.v.size(), 0.0);
+  for (const auto& elements : assembly.force_kinds()) {
+    if (elements->books_dissipative()) dissipative.assign(state.v.size(), 0.0);
+    if (elements->books_external()) external.assign(state.v.size(), 0.0);
   }
+  if (!dissipative.empty() || !external.empty()) all_causes_.assign(state.v.size(), 0.0);
 }
 
 }  // namespace carom

@@ -28,15 +28,23 @@ struct CAROM_API MotionSample {
   State state;                                ///< time and unknowns
   Evaluation evaluation;                      ///< positions and loads
   GroundPlaces places;                        ///< at the time of the state
-  std::vector<double> dissipative, external;  ///< loads by cause, where elements book them [N, N m]
-  std::vector<double> loads;                  ///< of all causes, without reactions [N, N m]
+  std::vector<double> dissipative, external;  ///< loads by cause; empty where no element books any [N, N m]
   std::vector<double> acceleration;           ///< with the reactions asked for
   bool has_forces = true;                     ///< false where no forces keep the closed contacts
+
+  /// Loads of all causes, without reactions [N, N m].
+  [[nodiscard]] std::vector<double>& loads() { return all_causes_.empty() ? evaluation.force : all_causes_; }
+  [[nodiscard]] const std::vector<double>& loads() const {
+    return all_causes_.empty() ? evaluation.force : all_causes_;
+  }
 
   /// The state.
   [[nodiscard]] StateView view() const { return state.view(); }
   /// Configuration that joints are evaluated at.
   [[nodiscard]] JointView joint_view() const { return {state.view(), evaluation.rotation.data()}; }
+
+private:
+  std::vector<double> all_causes_;  // empty where there is one
 };
 
 }  // namespace carom

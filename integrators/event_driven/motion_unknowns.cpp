@@ -8,16 +8,13 @@ namespace carom {
 
 MotionUnknowns::MotionUnknowns(const Assembly& assembly, std::span<const Index> components, Index works)
     : works_(works) {
+  parts_.reserve(components.size());
   for (const Index component : components) {
-    Part& part = parts_.emplace_back();
-    part.component = component;
-    part.ranges = assembly.components()[component];
-    part.q = q_size_;
-    part.v = v_size_;
-    part.z = z_size_;
-    q_size_ += part.ranges.q.size();
-    v_size_ += part.ranges.v.size();
-    z_size_ += part.ranges.z.size();
+    const Component& ranges = assembly.components()[component];
+    parts_.push_back({component, ranges, q_size_, v_size_, z_size_});
+    q_size_ += ranges.q.size();
+    v_size_ += ranges.v.size();
+    z_size_ += ranges.z.size();
   }
   for (Part& part : parts_) {
     part.v += q_size_;

@@ -27,15 +27,15 @@ public:
   /// One component: its numbers in those of the model, and the places of the first of them among the
   /// unknowns.
   struct Part {
-    Index component = 0;  ///< its number in the model
-    Component ranges;     ///< of the model
-    std::size_t q = 0;    ///< place of its first coordinate
-    std::size_t v = 0;    ///< place of its first velocity
-    std::size_t z = 0;    ///< place of its first internal variable
+    Index component = 0;      ///< its number in the model
+    const Component& ranges;  ///< of the model
+    std::size_t q = 0;        ///< place of its first coordinate
+    std::size_t v = 0;        ///< place of its first velocity
+    std::size_t z = 0;        ///< place of its first internal variable
   };
 
-  /// \param components of the assembly, ascending \param works number of works that are integrated: the first
-  /// lines
+  /// \param assembly must outlive it \param components of the assembly, ascending \param works number of
+  /// works that are integrated: the first lines
   MotionUnknowns(const Assembly& assembly, std::span<const Index> components, Index works);
 
   /// The components, ascending.

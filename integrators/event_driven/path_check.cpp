@@ -24,7 +24,7 @@ std::size_t follow(SearchedStep& step, double time) {
   DetectionMemory& memory = step.memory;
   memory.y.resize(step.motion.size());
   memory.path_acceleration.resize(count);
-  follow_path(step.ends.start().path, step.ends.end().path, count, time, memory.y,
+  follow_path(*step.ends.start().path, *step.ends.end().path, count, time, memory.y,
               memory.path_acceleration.data());
   return count;
 }

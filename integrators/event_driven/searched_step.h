@@ -4,6 +4,7 @@
 /// The last step of a flow, as the search for its first event reads it.
 
 #include <carom/core/export.h>
+#include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/guard_search.h>
 #include <carom/integrators/event_driven/smooth_motion.h>

@@ -12,8 +12,10 @@ SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, c
       joints_(assembly, group.components, memory),
       model_(assembly, detector, group, options, joints_.rows()),
       active_(memory.active),
-      guards_(assembly, group.components),
-      jacobian_(model_, joints_, active_, memory) {
+      guards_(assembly, group.components) {
+  // There are many groups alike.
+  if (memory.tolerances && *memory.tolerances == *model_.tolerances) model_.tolerances = memory.tolerances;
+  memory.tolerances = model_.tolerances;
   active_.bind(assembly, joints_.rows().response());
   if (joints_.rows().empty()) return;
   if (!joints_.friction_bounds().empty()) active_.ask_least();  // bounds of friction follow from forces
@@ -25,7 +27,7 @@ void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint&
 
 void SmoothMotion::contact_if_near(std::size_t pair, const MotionSample& at, double near,
                                    Constraint& out) const {
-  if (const Index bound = model_.bound_of[pair]; bound != none) {
+  if (const Index bound = model_.bound_of(pair); bound != none) {
     const GroundMotion* const motion = motion_of(*model_.detector, model_.pairs[pair], at.places);
     const double least = model_.bounds[bound].least_gap(at.view(), motion);
     if (least > near) {
@@ -60,19 +62,21 @@ void SmoothMotion::sample(double time, const double* y, Forces forces, MotionSam
   Loads loads{force, force, force};
   if (traits.books_dissipative) loads.dissipative = out.dissipative.data();
   if (traits.books_external) loads.external = out.external.data();
+  double* const all_loads = out.loads().data();
   for (const auto& part : model_.parts()) {
     evaluate_loads(assembly, part.component, state, out.evaluation, loads);
     const Range v = part.ranges.v;
-    // Masses are accelerated by the sum of all causes, made where the reactions will be added.
+    if (all_loads == force) continue;
+    // Masses are accelerated by the sum of all causes.
     for (Index i = v.begin; i < v.end; ++i) {
       double sum = force[i];
       if (traits.books_dissipative) sum += out.dissipative[i];
       if (traits.books_external) sum += out.external[i];
-      out.loads[i] = sum;
+      all_loads[i] = sum;
     }
   }
   model_.for_bodies([&](const BodyKind& kind, Range slots, Index, Index at, const auto&) {
-    kind.apply_inverse_mass(slots, out.loads.data() + at, out.acceleration.data() + at);
+    kind.apply_inverse_mass(slots, all_loads + at, out.acceleration.data() + at);
   });
   joints_.react(out);
   out.has_forces = true;
@@ -144,7 +148,8 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
 
 void SmoothMotion::jacobian(double time, const double* y, std::vector<RateDerivative>& out) {
   sample(time, y, Forces::all, memory_->flow);
-  jacobian_.append(memory_->flow, out);
+  if (!jacobian_) jacobian_ = std::make_unique<MotionJacobian>(model_, joints_, active_, *memory_);
+  jacobian_->append(memory_->flow, out);
 }
 
 void SmoothMotion::read_guards(const MotionSample& at, std::vector<GuardMotion>& out) {

@@ -21,6 +21,7 @@
 #include <carom/integrators/run/event_driven.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,7 @@ public:
 
   [[nodiscard]] std::size_t size() const override { return model_.unknowns.size(); }
   void rates(double time, const double* y, double* rates) override;
-  [[nodiscard]] std::span<const double> absolute_tolerances() const override { return model_.tolerances; }
+  [[nodiscard]] std::span<const double> absolute_tolerances() const override { return *model_.tolerances; }
 
   /// Where coordinates and velocities correspond one to one.
   [[nodiscard]] bool has_jacobian() const override {
@@ -96,7 +97,7 @@ private:
   GroupModel model_;
   ActiveSet active_;
   GroupGuards guards_;
-  MotionJacobian jacobian_;
+  std::unique_ptr<MotionJacobian> jacobian_;  // null until asked for
 };
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 // Problem: read off a state all that may end a smooth phase, with its rounding.
 
 #include <carom/integrators/event_driven/body_gaps.h>
+#include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>
@@ -22,19 +23,18 @@ constexpr double roundoff_growth = 16.0;
 bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
                  StepEnd& out) {
   out.gaps.resize(motion.model().pairs.size());
-  out.gap_curvature_bound.resize(motion.model().pairs.size());
   const StateView state = at.view();
   bool finite = true;
   Constraint contact;
   for (std::size_t i = 0; i < motion.model().pairs.size(); ++i) {
-    if (is_active[i] != 0 || motion.model().bound_of[i] != none) continue;
+    if (is_active[i] != 0 || motion.model().bound_of(i) != none) continue;
     motion.contact(i, at, contact);
     const Constraint::Block& body = contact.blocks[0];
     const double spin = body.columns > 2 ? state.v[body.v + 2] : 0.0;
     // A point on an arm r that turns at w: its place has the sixth derivative w^6 r, its drift is w^2 r.
-    out.gap_curvature_bound[i] = spin * spin * spin * spin * std::hypot(contact.drift[0], contact.drift[1]);
-    out.gaps[i] = {contact.gap, contact.normal_velocity(state.v),
-                   contact.normal_acceleration(at.acceleration.data())};
+    out.gaps[i] = {
+        {contact.gap, contact.normal_velocity(state.v), contact.normal_acceleration(at.acceleration.data())},
+        spin * spin * spin * spin * std::hypot(contact.drift[0], contact.drift[1])};
     finite = finite && std::isfinite(out.gaps[i].second);
   }
   return sample_body_gaps(motion, is_active, at, out) && finite;
@@ -66,6 +66,7 @@ namespace {
 void read_features(const SmoothMotion& motion, const MotionSample& at, GuardSample& out) {
   constexpr StepPolynomial::End far{std::numeric_limits<double>::max(), 0.0, 0.0};
   const std::vector<ActiveContact>& closed = motion.active().list();
+  out.features.clear();
   if (motion.model().bounds.empty()) return;
   out.features.resize(closed.size());
   for (std::size_t i = 0; i < closed.size(); ++i) {
@@ -92,6 +93,7 @@ void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector
   motion.active().margins(margins);
   out.margins.resize(margins.size());
   for (std::size_t i = 0; i < out.margins.size(); ++i) out.margins[i] = margins[i].margin;
+  out.guards.clear();
   if (motion.guards().count() != 0) motion.read_guards(at, out.guards);
 }
 
@@ -102,11 +104,12 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
   bool finite = sample_gaps(motion, is_active, at, out) && at.has_forces;
   out.sample.time = time;
   if (motion.guards().count() != 0) {
-    out.path.time = time;
-    out.path.y.assign(y, y + motion.size());
-    out.path.acceleration.resize(motion.model().unknowns.v_size());
+    if (!out.path) out.path = std::make_unique<PathEnd>();
+    out.path->time = time;
+    out.path->y.assign(y, y + motion.size());
+    out.path->acceleration.resize(motion.model().unknowns.v_size());
     motion.model().unknowns.for_velocities([&](Range v, std::size_t place) {
-      std::copy_n(at.acceleration.begin() + v.begin, v.size(), out.path.acceleration.data() + place);
+      std::copy_n(at.acceleration.begin() + v.begin, v.size(), out.path->acceleration.data() + place);
     });
   }
   read_guard_sample(motion, at, memory.margins, out.sample);

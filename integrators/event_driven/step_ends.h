@@ -11,25 +11,32 @@
 #include <carom/integrators/event_driven/smooth_motion.h>
 #include <carom/integrators/event_driven/step_path.h>
 
-#include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace carom {
 
-/// One end of a step.
+/// A gap at an end of a step.
+struct GapEnd : StepPolynomial::End {
+  double curvature_bound = 0.0;  ///< of the sixth derivative of the gap by turning [m/s^6]
+};
+
+/// What is known beside of the gap of two bodies, or of a body with an outline.
+struct BodyGapEnd {
+  double speed = 0.0;         ///< bound of the rate of the gap [m/s],
+  double acceleration = 0.0;  ///< and of what accelerations add to it [m/s^2]
+  bool known = false;         ///< else the value of the gap is a lower bound
+};
+
+/// One end of a step. There is one for each group: it is small.
 struct StepEnd {
-  std::vector<StepPolynomial::End> gaps;  ///< by pair
-  /// By pair: bound of the sixth derivative of the gap by turning [m/s^6].
-  std::vector<double> gap_curvature_bound;
-  /// By pair of two bodies: true if the gap is known; else its value is a lower bound.
-  std::vector<char> gap_known;
-  std::vector<double> gap_speeds;         ///< by such pair: bound of the rate of the gap [m/s],
-  std::vector<double> gap_accelerations;  ///< and of what accelerations add to it [m/s^2]
-  GuardSample sample;                     ///< all other guards
-  PathEnd path;                           ///< where elements have guards
-  std::vector<double> noises;             ///< rounding of the margins of forces [N]
+  std::vector<GapEnd> gaps;           ///< by pair
+  std::vector<BodyGapEnd> body_gaps;  ///< by pair with an outline
+  GuardSample sample;                 ///< all other guards
+  std::unique_ptr<PathEnd> path;      ///< where elements have guards
+  std::vector<double> noises;         ///< rounding of the margins of forces [N]
 };
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
@@ -37,12 +44,10 @@ struct StepEnd {
 class CAROM_API StepEnds {
 public:
   /// The ends.
-  [[nodiscard]] StepEnd& start() { return ends_[start_]; }
-  [[nodiscard]] const StepEnd& start() const { return ends_[start_]; }
-  [[nodiscard]] StepEnd& end() { return ends_[1 - start_]; }
-  [[nodiscard]] const StepEnd& end() const { return ends_[1 - start_]; }
-  /// Makes the end the start of the next step.
-  void advance() { start_ = 1 - start_; }
+  [[nodiscard]] StepEnd& start() { return start_; }
+  [[nodiscard]] const StepEnd& start() const { return start_; }
+  [[nodiscard]] StepEnd& end() { return end_; }
+  [[nodiscard]] const StepEnd& end() const { return end_; }
   /// Level of a gap [m]: of two corners that hit at almost the same time one is found late.
   [[nodiscard]] double gap_level(std::size_t pair) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
@@ -55,22 +60,10 @@ public:
   [[nodiscard]] double force_noise(std::size_t island) const;
 
 private:
-  std::array<StepEnd, 2> ends_;
-  std::size_t start_ = 0;
+  StepEnd start_, end_;
 };
 
-/// Memory of the detection of events, shared by clock groups.
-struct CAROM_API DetectionMemory {
-  explicit DetectionMemory(const Assembly& assembly) : within(assembly) {}
-
-  MotionSample within;                    ///< at a time of a step
-  std::vector<double> y;                  ///< there
-  std::vector<double> path_acceleration;  ///< likewise, along the path of a step
-  std::vector<ForceMargin> margins;
-  GuardSample located;        ///< where an event is located
-  GuardSamples samples;       ///< within one step,
-  GuardSamples path_samples;  ///< of guards of elements along its path
-};
+struct DetectionMemory;
 
 /// Writes the guards, those of gaps aside, in a sample of the motion with all forces. \param margins memory
 CAROM_API void read_guard_sample(SmoothMotion& motion, const MotionSample& at,

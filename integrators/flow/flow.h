@@ -114,7 +114,7 @@ public:
   /// time.
   virtual void sample(double time, std::span<double> y) = 0;
   /// Writes y at a time within the last step, as accurate as steps are: explicit_runge_kutta integrates again
-  /// from begin() (seven evaluations), adams and bdf interpolate. Steps to come are not affected in any bit.
+  /// from begin() (six evaluations), adams and bdf interpolate. Steps to come are not affected in any bit.
   virtual void land(double time, std::span<double> y) = 0;
   /// Replaces y at the end of the last step by one that differs little (a projection) and goes on from there
   /// without the cost of a start: explicit_runge_kutta keeps its step for one evaluation more; adams and bdf

@@ -1,6 +1,7 @@
 // Problem: dy/dt = f(t, y) for a handful of unknowns, where restarts are many and the cost is overhead: the
 // pair of orders 5 and 4 by Dormand and Prince (1980), the last stage being the first of the next step.
 
+#include <carom/integrators/flow/dormand_prince.h>
 #include <carom/integrators/flow/flow_checks.h>
 #include <carom/integrators/flow/one_step_flow.h>
 
@@ -13,17 +14,10 @@ namespace carom {
 
 namespace {
 
-constexpr std::size_t stages = 7;
-constexpr std::array<double, stages> c{0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
-constexpr std::array<std::array<double, stages>, stages> a{{
-    {},
-    {1.0 / 5},
-    {3.0 / 40, 9.0 / 40},
-    {44.0 / 45, -56.0 / 15, 32.0 / 9},
-    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-    {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
-}};
+using dormand_prince::a;
+using dormand_prince::c;
+using dormand_prince::stages;
+
 // Of the difference between the two orders.
 constexpr std::array<double, stages> e{71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
                                        -17253.0 / 339200, 22.0 / 525, -1.0 / 40};

@@ -1,164 +1,26 @@
 // Problem: an explicit Runge-Kutta method of order 5 that is started anew for the price of one evaluation,
 // with the motion known everywhere within a step. Steps are those of ARKODE's ERKStep.
 
+#include <carom/integrators/flow/dormand_prince.h>
 #include <carom/integrators/flow/sundials_flow.h>
-
-#include <arkode/arkode_erkstep.h>
+#include <carom/integrators/flow/sundials_loops.h>
+#include <carom/integrators/flow/sundials_stepper.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace carom {
 
 namespace {
 
-// Dormand and Prince: the last evaluation of a step is the first of the next. Named, since what SUNDIALS
-// takes for order 5 by itself has changed between its versions.
-constexpr auto table = ARKODE_DORMAND_PRINCE_7_4_5;
-// A step may be longer than the one before by this factor; the step after one that was guessed, which may be
-// far too short, by the other. Those of ARKODE, which takes the second after the first step it ever makes, of
-// whatever motion.
-constexpr double growth = 25.0, growth_from_guess = 1e4;
-
-// How long the next step is to be by the errors of this and the step before: the PI controller that ARKODE
-// has for explicit methods, but with a memory that can be handed on.
-class LengthControl {
-public:
-  static constexpr double no_error = 1.0;  // where there was no step before
-
-  void remember(double error) { before_ = error; }
-  [[nodiscard]] double error() const { return before_; }
-  /// \param error of the tolerance; a step with more than 1 is not accepted
-  [[nodiscard]] double next(double length, double error) {
-    constexpr double bias = 1.2, least = 1e-10, order = 4.0;  // the lower of the pair
-    constexpr double of_this = 0.8 / order, of_before = 0.31 / order;
-    const double now = bias * error;
-    const auto at_least = [](double number) { return number > least ? number : least; };
-    const double wanted = length * std::pow(at_least(now), -of_this) * std::pow(at_least(before_), of_before);
-    if (error <= 1.0) before_ = now;
-    return wanted;
-  }
-
-#if SUNDIALS_VERSION_MAJOR >= 7
-  /// Controller for ARKODE; null if it cannot be made. To be destroyed.
-  [[nodiscard]] SUNAdaptController make(SUNContext context) {
-    SUNAdaptController made = SUNAdaptController_NewEmpty(context);
-    if (made == nullptr) return nullptr;
-    made->content = this;
-    made->ops->gettype = [](SUNAdaptController) { return SUN_ADAPTCONTROLLER_H; };
-    made->ops->estimatestep = [](SUNAdaptController self, sunrealtype length, int, sunrealtype error,
-                                 sunrealtype* next) -> SUNErrCode {
-      *next = static_cast<LengthControl*>(self->content)->next(length, error);
-      return SUN_SUCCESS;
-    };
-    return made;
-  }
-#else
-  /// Callback of ARKODE; `control` is a LengthControl.
-  static int adapt(N_Vector, double, double length, double, double, double error, double, double, int, int,
-                   double* next, void* control) {
-    *next = static_cast<LengthControl*>(control)->next(length, error);
-    return ARK_SUCCESS;
-  }
-#endif
-
-private:
-  double before_ = no_error;
-};
-
-// One integrator of ARKODE.
-class Stepper {
-public:
-  Stepper(SundialsLink& link, N_Vector y)
-      : memory_(ERKStepCreate(SundialsLink::rates, 0.0, y, link.context())), link_(&link) {
-    link.errors().demand(memory_ != nullptr, "ERKStepCreate");
-#if SUNDIALS_VERSION_MAJOR < 7
-    demand(ERKStepSetErrHandlerFn(memory_, SundialsLink::take_message, &link));
-#endif
-    demand(CAROM_ERK(SetUserData)(memory_, &link));
-    demand(CAROM_ERK(WFtolerances)(memory_, SundialsLink::weights));
-    demand(ERKStepSetTableNum(memory_, table));
-    demand(CAROM_ERK(SetInterpolantDegree)(memory_, 3));
-    demand(CAROM_ERK(SetMaxErrTestFails)(memory_, error_test_failures));
-    demand(CAROM_ERK(SetMaxHnilWarns)(memory_, -1));
-    demand(CAROM_ERK(SetMaxGrowth)(memory_, growth));
-#if SUNDIALS_VERSION_MAJOR >= 7
-    controller_ = control_.make(link.context());
-    link.errors().demand(controller_ != nullptr, "making a controller of steps");
-    demand(CAROM_ERK(SetAdaptController)(memory_, controller_));
-#else
-    demand(ERKStepSetAdaptivityFn(memory_, LengthControl::adapt, &control_));
-    demand(ERKStepSetErrorBias(memory_, 1.0));  // the control has its own
-#endif
-  }
-  ~Stepper() {
-    CAROM_ERK(Free)(&memory_);
-#if SUNDIALS_VERSION_MAJOR >= 7
-    SUNAdaptController_DestroyEmpty(controller_);
-#endif
-  }
-  Stepper(const Stepper&) = delete;
-  Stepper& operator=(const Stepper&) = delete;
-
-  void start(double time, N_Vector y, bool guessed) {
-    if (used_ && !guessed) {
-      demand(CAROM_ERK(Reset)(memory_, time, y));
-      return;
-    }
-    // A reset is no substitute for the first initialisation.
-    demand(CAROM_ERK(SetMaxFirstGrowth)(memory_, guessed ? growth_from_guess : growth));
-    demand(ERKStepReInit(memory_, SundialsLink::rates, time, y));
-    used_ = false;
-  }
-  int step(double horizon, N_Vector y, double& reached) {
-    const int flag = CAROM_ERK(Evolve)(memory_, horizon, y, &reached, ARK_ONE_STEP);
-    used_ = used_ || flag >= 0;
-    return flag;
-  }
-  /// \param error of the step before, for the control
-  void first_step(double length, double error = LengthControl::no_error) {
-    demand(CAROM_ERK(SetInitStep)(memory_, length));
-    control_.remember(error);
-  }
-  [[nodiscard]] double error() const { return control_.error(); }
-  void fixed_step(double length) { demand(CAROM_ERK(SetFixedStep)(memory_, length)); }
-  // Holds for the steps after the next, and for the first one.
-  void longest_step(double length) { demand(CAROM_ERK(SetMaxStep)(memory_, length)); }
-  void stop_at(double time) { demand(CAROM_ERK(SetStopTime)(memory_, time)); }
-  [[nodiscard]] double next_step() const {
-    double length = 0.0;
-    demand(CAROM_ERK(GetCurrentStep)(memory_, &length));
-    return length;
-  }
-  void slope(double time, N_Vector rates) const { demand(CAROM_ERK(GetDky)(memory_, time, 1, rates)); }
-
-private:
-  void demand(int flag) const { link_->errors().demand(flag >= 0, "a call of ERKStep"); }
-
-  void* memory_;
-  SundialsLink* link_;
-  bool used_ = false;
-  LengthControl control_;
-#if SUNDIALS_VERSION_MAJOR >= 7
-  SUNAdaptController controller_ = nullptr;
-#endif
-};
-
 class RungeKuttaFlow final : public SundialsFlow {
 public:
   RungeKuttaFlow(FlowProblem& problem, double relative_tolerance)
       : SundialsFlow(problem, relative_tolerance),
         stepper_(link_, begin_vector_.get()),
-        lander_(link_, begin_vector_.get()),
         known_slope_(link_.size()),
-        slope_(link_.size()),
-        bend_(link_.size()),
-        change_(link_.size()),
-        even_(link_.size()),
-        odd_(link_.size()),
-        place_(link_.size()),
-        at_a_(link_.size()),
-        at_b_(link_.size()) {}
+        scratch_(slopes_kept * link_.size()) {}
 
 private:
   int step(double longest, double& reached) override;
@@ -178,33 +40,43 @@ private:
   void make_polynomial();
   void evaluate_polynomial(double s, double* y) const;
 
+  // Rates of a step that are needed at a time: the last ones are made when the second are of no more use.
+  static constexpr std::size_t slopes_kept = dormand_prince::stages - 2;
+
+  /// Array i of the memory that lasts for one call, i < slopes_kept.
+  [[nodiscard]] double* scratch(std::size_t i) { return scratch_.data() + i * link_.size(); }
+
   Stepper stepper_;
-  Stepper lander_;  // integrates again from begin(), so that the stepper need not be disturbed
   bool restart_ = true;
   bool resumed_ = false;  // the restart is to be none: the next step is the one after that of another flow,
   std::vector<double> known_slope_;  // with these rates at its beginning,
   double known_error_ = 0.0;         // after a step with this error
   bool polynomial_made_ = false;
-  // y(s) = y_0 + s (slope + s (bend + s change)) + s^2 (1-s)^2 (even + (2 s - 1) odd),  s from 0 to 1
-  std::vector<double> slope_, bend_, change_, even_, odd_;
-  std::vector<double> place_, at_a_, at_b_;
+  // y(s) = y_0 + s (slope + s (bend + s change)) + s^2 (1-s)^2 (even + (2 s - 1) odd),  s from 0 to 1: all
+  // slopes, then all bends, ... Empty until asked for: where nothing may happen within a step nobody does.
+  static constexpr std::size_t coefficients = 5;
+  std::vector<double> polynomial_;
+  std::vector<double> scratch_;
 };
 
 // E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4. ARKODE's own
 // guess is that of a method of order 1 and costs eight steps more.
 double RungeKuttaFlow::guess_first_step(double longest) {
   const double* const y = begin_state_.data();
-  if (!link_.evaluate(begin_, y, at_a_.data())) return longest;  // the step will meet it again
-  const double size = link_.in_tolerances(y, y), speed = link_.in_tolerances(at_a_.data(), y);
+  double* const first = scratch(0);
+  double* const second = scratch(1);
+  double* const place = scratch(2);
+  if (!link_.evaluate(begin_, y, first)) return longest;  // the step will meet it again
+  const double size = link_.in_tolerances(y, y), speed = link_.in_tolerances(first, y);
   // An explicit Euler step that changes y by a hundredth.
   const double small = std::min(longest, size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6);
-  for (std::size_t i = 0; i < link_.size(); ++i) place_[i] = y[i] + small * at_a_[i];
-  if (!link_.evaluate(begin_ + small, place_.data(), at_b_.data())) {
+  for (std::size_t i = 0; i < link_.size(); ++i) place[i] = y[i] + small * first[i];
+  if (!link_.evaluate(begin_ + small, place, second)) {
     link_.clear();
     return small;
   }
-  for (std::size_t i = 0; i < link_.size(); ++i) at_b_[i] -= at_a_[i];
-  const double bend = link_.in_tolerances(at_b_.data(), y) / small;
+  for (std::size_t i = 0; i < link_.size(); ++i) second[i] -= first[i];
+  const double bend = link_.in_tolerances(second, y) / small;
   const double largest = std::max(speed, bend);
   const double guess = largest > 1e-15 ? std::pow(0.01 / largest, 1.0 / 5.0) : std::max(1e-6, 1e-3 * small);
   return std::min({100.0 * small, guess, longest});
@@ -275,45 +147,53 @@ int RungeKuttaFlow::step(double longest, double& reached) {
 void RungeKuttaFlow::make_polynomial() {
   const std::size_t n = link_.size();
   const double h = end_ - begin_;
-  N_VSetArrayPointer(slope_.data(), out_vector_.get());
+  polynomial_.resize(coefficients * n);
+  double* const slope = polynomial_.data();
+  double *const bend = slope + n, *const change = bend + n, *const even = change + n, *const odd = even + n;
+  double *const at_a = scratch(0), *const at_b = scratch(1), *const place = scratch(2);
+  N_VSetArrayPointer(slope, out_vector_.get());
   stepper_.slope(begin_, out_vector_.get());
-  N_VSetArrayPointer(at_b_.data(), out_vector_.get());
+  N_VSetArrayPointer(at_b, out_vector_.get());
   stepper_.slope(end_, out_vector_.get());
   for (std::size_t i = 0; i < n; ++i) {
     const double rise = end_state_[i] - begin_state_[i];
-    const double first = h * slope_[i], last = h * at_b_[i];
-    slope_[i] = first;
-    bend_[i] = 3.0 * rise - 2.0 * first - last;
-    change_[i] = first + last - 2.0 * rise;
-    even_[i] = odd_[i] = 0.0;
+    const double first = h * slope[i], last = h * at_b[i];
+    slope[i] = first;
+    bend[i] = 3.0 * rise - 2.0 * first - last;
+    change[i] = first + last - 2.0 * rise;
+    even[i] = odd[i] = 0.0;
   }
-  const auto evaluate = [&](double s, std::vector<double>& rates) {
-    evaluate_polynomial(s, place_.data());
+  const auto evaluate = [&](double s, double* rates) {
+    evaluate_polynomial(s, place);
     link_.clear();
-    if (!link_.evaluate(begin_ + s * h, place_.data(), rates.data())) link_.errors().fail(0, begin_, h);
+    if (!link_.evaluate(begin_ + s * h, place, rates)) link_.errors().fail(0, begin_, h);
   };
   const auto cubic_slope = [&](std::size_t i, double s) {
-    return slope_[i] + s * (2.0 * bend_[i] + s * 3.0 * change_[i]);
+    return slope[i] + s * (2.0 * bend[i] + s * 3.0 * change[i]);
   };
   // The slopes of s^2 (1-s)^2 at a and b are 4/27 and -4/27; those of it times (2 s - 1) are 4/81 both.
   constexpr double a = 1.0 / 3.0, b = 2.0 / 3.0;
-  evaluate(a, at_a_);
-  for (std::size_t i = 0; i < n; ++i) even_[i] = 27.0 / 4.0 * (h * at_a_[i] - cubic_slope(i, a));
-  evaluate(a, at_a_);
-  evaluate(b, at_b_);
+  evaluate(a, at_a);
+  for (std::size_t i = 0; i < n; ++i) even[i] = 27.0 / 4.0 * (h * at_a[i] - cubic_slope(i, a));
+  evaluate(a, at_a);
+  evaluate(b, at_b);
   for (std::size_t i = 0; i < n; ++i) {
-    const double lacking_a = h * at_a_[i] - cubic_slope(i, a), lacking_b = h * at_b_[i] - cubic_slope(i, b);
-    even_[i] = 27.0 / 8.0 * (lacking_a - lacking_b);
-    odd_[i] = 81.0 / 8.0 * (lacking_a + lacking_b);
+    const double lacking_a = h * at_a[i] - cubic_slope(i, a), lacking_b = h * at_b[i] - cubic_slope(i, b);
+    even[i] = 27.0 / 8.0 * (lacking_a - lacking_b);
+    odd[i] = 81.0 / 8.0 * (lacking_a + lacking_b);
   }
   polynomial_made_ = true;
 }
 
 void RungeKuttaFlow::evaluate_polynomial(double s, double* y) const {
   const double hump = s * s * (1.0 - s) * (1.0 - s), slant = hump * (2.0 * s - 1.0);
-  for (std::size_t i = 0; i < link_.size(); ++i) {
+  const std::size_t n = link_.size();
+  const double* const slope = polynomial_.data();
+  const double *const bend = slope + n, *const change = bend + n, *const even = change + n,
+                      *const odd = even + n;
+  for (std::size_t i = 0; i < n; ++i) {
     y[i] = begin_state_[i] +
-           (s * (slope_[i] + s * (bend_[i] + s * change_[i])) + (hump * even_[i] + slant * odd_[i]));
+           (s * (slope[i] + s * (bend[i] + s * change[i])) + (hump * even[i] + slant * odd[i]));
   }
 }
 
@@ -322,15 +202,29 @@ void RungeKuttaFlow::interpolate(double time, double* y) {
   evaluate_polynomial((time - begin_) / (end_ - begin_), y);
 }
 
+// One step, shorter than the one whose error was tolerated, made here: ARKODE's would need memory of its own,
+// so as not to disturb the steps to come, and evaluates once more for an error that nobody asks for.
 void RungeKuttaFlow::integrate_to(double time, double* y) {
-  // One step, shorter than the one whose error was tolerated.
+  namespace pair = dormand_prince;
+  constexpr std::size_t second = 1, sixth = 5, end = 6;
+  static_assert(pair::a[end][second] == 0.0 && end + 1 == pair::stages);
+  const std::size_t n = link_.size();
+  const double h = time - begin_;
+  const auto slopes = [&](std::size_t stage) { return scratch(stage == sixth ? second : stage); };
+  const auto evaluate = [&](std::size_t stage, const double* place) {
+    if (!link_.evaluate(begin_ + h * pair::c[stage], place, slopes(stage))) link_.errors().fail(0, begin_, h);
+  };
   link_.clear();
-  N_VSetArrayPointer(y, out_vector_.get());
-  lander_.fixed_step(time - begin_);
-  lander_.start(begin_, begin_vector_.get(), false);
-  double reached = begin_;
-  const int flag = lander_.step(time, out_vector_.get(), reached);
-  if (flag < 0) link_.errors().fail(flag, begin_, time - begin_);
+  evaluate(0, begin_state_.data());
+  for (std::size_t stage = 1;; ++stage) {
+    std::array<double, pair::stages> factors{};
+    for (std::size_t k = 0; k < stage; ++k) factors[k] = h * pair::a[stage][k];
+    factors[stage] = 1.0;
+    const auto arrays = [&](std::size_t k) { return k < stage ? slopes(k) : begin_state_.data(); };
+    sundials_loops::combine(n, stage + 1, factors.data(), arrays, y);
+    if (stage == end) return;
+    evaluate(stage, y);
+  }
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ struct Flight {
       : assembly(system),
         detector(assembly),
         memory(assembly),
-        detection(assembly),
+        sample(assembly),
+        detection(sample),
         motion(assembly, detector, {{0}, {}}, options, memory),
         failure(motion.model(), clock),
         events(motion, failure, unbounded, detection),
@@ -48,6 +49,7 @@ struct Flight {
   Detector detector;
   EventDriven options;
   MotionMemory memory;
+  MotionSample sample;
   DetectionMemory detection;
   SmoothMotion motion;
   GroupClock clock;

@@ -140,7 +140,7 @@ struct Journey {
   State state;
   Companion companion;
   StepReport report;
-  std::vector<EventRecord> events;
+  RecordedEvents events;
 };
 
 TEST(SharedFlows, AThousandBallsNeedTwo) {
@@ -285,12 +285,12 @@ TEST(SharedFlows, AFailureLosesNone) {
     const EventDriven options{.method = method};
     Journey run(doomed(), options);
     run.to(0.03);
-    const std::size_t made = run.flows().made(), told = run.events.size();
+    const std::size_t made = run.flows().made(), told = run.events.records().size();
     const State before = run.state;
     for (int i = 0; i < 3; ++i) EXPECT_THROW(run.to(0.1), SolverError);
     EXPECT_EQ(run.state.time, 0.03);
     EXPECT_EQ(carom_test::motion_bits(run.state), carom_test::motion_bits(before));
-    EXPECT_EQ(run.events.size(), told);
+    EXPECT_EQ(run.events.records().size(), told);
     run.to(0.045);
     EXPECT_EQ(run.flows().made(), made);
 

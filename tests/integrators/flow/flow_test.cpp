@@ -350,7 +350,7 @@ TEST(RungeKuttaFlow, ACutDoesNotShortenTheStepsAfterIt) {
   EXPECT_NEAR(flow->end() - flow->begin(), wanted, 1e-12);
 }
 
-TEST(RungeKuttaFlow, SamplingCostsThreeEvaluationsForAStepAndLandingSeven) {
+TEST(RungeKuttaFlow, SamplingCostsThreeEvaluationsForAStepAndLandingSix) {
   Problem problem = pendulum(1e-8);
   const auto flow = make_flow(FlowMethod::explicit_runge_kutta, problem, 1e-8);
   flow->start(0.0, std::array{1.0, 0.0}, 0.1);
@@ -361,7 +361,28 @@ TEST(RungeKuttaFlow, SamplingCostsThreeEvaluationsForAStepAndLandingSeven) {
   EXPECT_EQ(problem.evaluations - before, 3);
   before = problem.evaluations;
   flow->land(0.5 * flow->end(), y);
-  EXPECT_EQ(problem.evaluations - before, 7);
+  EXPECT_EQ(problem.evaluations - before, 6);
+}
+
+/// The landing is made apart from the integrator whose steps it is like.
+TEST(RungeKuttaFlow, ALandingHasTheBitsOfAStep) {
+  Problem problem = pendulum(1e-8);
+  const auto flow = make_flow(FlowMethod::explicit_runge_kutta, problem, 1e-8);
+  for (const double angle : {0.3, 1.0, 2.0}) {
+    flow->start(0.0, std::array{angle, 0.5}, 0.1);
+    flow->advance(1.0);
+    const double end = flow->end();
+    for (const double part : {0.1, 0.5, 0.9}) {
+      std::array<double, 2> landed{};
+      flow->land(part * end, landed);
+      const auto shorter = make_flow(FlowMethod::explicit_runge_kutta, problem, 1e-8);
+      shorter->start(0.0, std::array{angle, 0.5}, part * end);
+      shorter->advance(part * end);
+      ASSERT_EQ(shorter->end(), part * end);
+      EXPECT_EQ(landed[0], shorter->state()[0]) << angle << ' ' << part;
+      EXPECT_EQ(landed[1], shorter->state()[1]) << angle << ' ' << part;
+    }
+  }
 }
 
 }  // namespace
