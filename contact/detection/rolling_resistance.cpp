@@ -4,7 +4,7 @@
 
 namespace carom {
 
-Constraint rolling_resistance(const Constraint& contact, const GroundMotion* ground) {
+Constraint rolling_resistance(const Constraint& contact, const GroundMotion* motion) {
   constexpr int of_planar_body = 3;
   Constraint row = contact;
   row.type = ConstraintType::rolling;
@@ -13,9 +13,9 @@ Constraint rolling_resistance(const Constraint& contact, const GroundMotion* gro
   row.law.tangential_restitution = contact.law.rolling_restitution;
   row.allowed_approach = 0.0;
   row.surface_velocity = row.surface_velocity_after = row.drift = {};
-  if (ground != nullptr) {
-    row.surface_velocity[0] = row.surface_velocity_after[0] = ground->spin;
-    row.drift[0] = -ground->angular_acceleration;
+  if (motion != nullptr) {
+    row.surface_velocity[0] = row.surface_velocity_after[0] = motion->spin;
+    row.drift[0] = -motion->angular_acceleration;
   }
   row.jacobian = {};
   double* number = row.jacobian.data();

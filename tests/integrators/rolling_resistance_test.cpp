@@ -188,6 +188,11 @@ TEST(RollingResistance, OneContactIsOneOfItsModes) {
       }
     }
     EXPECT_LE(nearest, 1e-10) << i;
+    // The list of all solutions has these.
+    SolutionList list;
+    const Outcome outcome = list.enumerate(problem);
+    EXPECT_EQ(list.size(), static_cast<std::size_t>(solutions)) << i;
+    EXPECT_EQ(outcome == Outcome::several_solutions, solutions > 1) << i;
     several += solutions > 1 ? 1 : 0;
   }
   EXPECT_LT(several, 1000);
