@@ -2,7 +2,7 @@
 
     /model                       JSON: every part with its fields (carom.model_data)
     /states/times, positions, velocities, ground            a row for each sample
-    /states/orientations                                    likewise, of models in space; without rows if none turns
+    /states/orientations         likewise, of models in space; without rows if no body turns
     /states/contact_ends, event_ends                        rows of the tables up to and with each sample
     /ledger/rows, /contacts/rows, /events/rows              tables
     /names                       what `name` in the tables counts
