@@ -36,6 +36,8 @@ VERSION = 1
 _STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
 _TABLES = ("contacts", "events")
 _CHUNK_BYTES = 1 << 16
+_SAME_TIME = 1e-6  # part of the interval by which samples and its multiples may differ, as in the sampler
+_ROUNDING = 1e-13  # of sums of steps
 
 
 def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = "") -> Any:
@@ -121,12 +123,14 @@ class FileStore:
                 )
             frames = _complete(before)
             times = before["states/times"][:frames]
-            kept = int(numpy.searchsorted(times, time, side="right"))
+            # The run of the checkpoint may have come to this time by other steps: to another last digit.
+            reached = time + _SAME_TIME * float(before.attrs["interval"]) + _ROUNDING * abs(time)
+            kept = int(numpy.searchsorted(times, reached, side="right"))
             counts = {name: _count(before, name, kept) for name in ("contact_ends", "event_ends")}
             later = before["events/rows"]["time"][counts["event_ends"] : _count(before, "event_ends", frames)]
-            counts["event_ends"] += int(numpy.count_nonzero(later <= time))
+            counts["event_ends"] += int(numpy.count_nonzero(later <= reached))
             names = [name.decode() for name in before["names"][()]]
-            last = float(times[kept - 1]) if kept else numpy.nan
+            last = min(float(times[kept - 1]), time) if kept else numpy.nan
         file = _reopen(path)
         lengths = {f"states/{name}": kept for name in _STATES}
         lengths.update({"ledger/rows": kept, "contacts/rows": counts["contact_ends"]})
