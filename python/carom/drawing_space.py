@@ -1,11 +1,13 @@
 """What there is to draw of a model in space: as carom.drawing, with points of three numbers, and solids.
 
-    solids    {kind: "sphere", pose, centre, radius}           {kind: "box", pose, centre, half, turn: [w, x, y, z]}
+    solids    {kind: "sphere", pose, centre, radius}
+              {kind: "box", pose, centre, half, turn: [w, x, y, z]}
               {kind: "capsule" or "cylinder", pose, from, to, radius}
               {kind: "mesh", pose, vertices, faces}            convex; faces by numbers of vertices
               {kind: "plane", pose, normal}                    ground, solid on the other side of its normal
 
-They are made of parts of the types Sphere, Box, Capsule, Cylinder and ConvexMesh, of a body or on ground, and HalfSpace.
+They are made of parts of the types Sphere, Box, Capsule, Cylinder and ConvexMesh, of a body or on ground, and
+HalfSpace.
 """
 
 from __future__ import annotations
@@ -93,7 +95,7 @@ class SpatialDrawing(Drawing):
             self.solids.append({**made, "pose": pose})
 
     def bounds(self, positions: numpy.ndarray, orientations: numpy.ndarray) -> list[float]:
-        """Least and most x, y and z of bodies (samples, bodies, 3 and 4), and of ground of finite size [m]."""
+        """Least and most x, y, z of bodies (samples, bodies, 3 and 4), and of ground of finite size [m]."""
         bodies = positions.shape[1]
         points = positions.reshape(-1, 3)
         sets = [points[numpy.isfinite(points).all(axis=1)]]

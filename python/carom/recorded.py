@@ -100,7 +100,7 @@ class Recording:
 
     @property
     def orientations(self) -> numpy.ndarray:
-        """Unit quaternions (samples, bodies, 4), w, x, y, z: in the plane, of turns about z; of particles in space, 1."""
+        """Unit quaternions (samples, bodies, 4), w, x, y, z: in the plane of turns about z, of particles 1."""
         if self._orientations is not None:
             return self._orientations
         made = numpy.zeros((*self.positions.shape[:2], 4))

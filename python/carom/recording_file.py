@@ -2,7 +2,7 @@
 
     /model                       JSON: every part with its fields (carom.model_data)
     /states/times, positions, velocities, ground            a row for each sample
-    /states/orientations                                    likewise, of models in space; without rows if none turns
+    /states/orientations         likewise, of models in space; without rows if no body turns
     /states/contact_ends, event_ends                        rows of the tables up to and with each sample
     /ledger/rows, /contacts/rows, /events/rows              tables
     /names                       what `name` in the tables counts
@@ -36,8 +36,8 @@ VERSION = 1
 _STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
 _TABLES = ("contacts", "events")
 _CHUNK_BYTES = 1 << 16
-# Ends of steps differ by rounding: by this part of the interval at most.
-_SAME_TIME = 1e-6
+_SAME_TIME = 1e-6  # part of the interval by which samples and its multiples may differ, as in the sampler
+_ROUNDING = 1e-13  # of sums of steps
 
 
 def _rows(group: Any, name: str, shape: tuple[int, ...], kind: Any, unit: str = "") -> Any:
@@ -123,14 +123,14 @@ class FileStore:
                 )
             frames = _complete(before)
             times = before["states/times"][:frames]
-            # The end of one step may differ by rounding from run to run: it is recorded once all the same.
-            until = time + max(_SAME_TIME * before.attrs["interval"], 4.0 * numpy.spacing(time))
-            kept = int(numpy.searchsorted(times, until, side="right"))
+            # The run of the checkpoint may have come to this time by other steps: to another last digit.
+            reached = time + _SAME_TIME * float(before.attrs["interval"]) + _ROUNDING * abs(time)
+            kept = int(numpy.searchsorted(times, reached, side="right"))
             counts = {name: _count(before, name, kept) for name in ("contact_ends", "event_ends")}
             later = before["events/rows"]["time"][counts["event_ends"] : _count(before, "event_ends", frames)]
-            counts["event_ends"] += int(numpy.count_nonzero(later <= until))
+            counts["event_ends"] += int(numpy.count_nonzero(later <= reached))
             names = [name.decode() for name in before["names"][()]]
-            last = float(times[kept - 1]) if kept else numpy.nan
+            last = min(float(times[kept - 1]), time) if kept else numpy.nan
         file = _reopen(path)
         lengths = {f"states/{name}": kept for name in _STATES}
         lengths.update({"ledger/rows": kept, "contacts/rows": counts["contact_ends"]})

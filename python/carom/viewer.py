@@ -105,7 +105,8 @@ def _orientations(recording: Recording, chosen: numpy.ndarray) -> numpy.ndarray:
         sample, body = wrong[0]
         raise _core.ModelError(
             f"write_view: the orientation of {recording.body_names()[body]} at "
-            f"{recording.times[chosen[sample]]:g} s is {turned[sample, body].tolist()}; allowed: a unit quaternion"
+            f"{recording.times[chosen[sample]]:g} s is {turned[sample, body].tolist()}; "
+            "allowed: a unit quaternion"
         )
     return turned
 

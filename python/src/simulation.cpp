@@ -116,7 +116,8 @@ nb::list events_from(Runner& self, std::size_t first) {
 
 using Class = nb::class_<Runner>;
 constexpr const char* no_system =
-    "Simulation: arguments 'system' and 'mode' are missing; allowed: a System, and how to run it, for example "
+    "Simulation: arguments 'system' and 'mode' are missing; allowed: a System, and how to run it, for "
+    "example "
     "Simulation(system, TimeStepping(step=1e-3)) or Simulation(system, EventDriven())";
 constexpr const char* no_mode =
     "Simulation: argument 'mode' is missing; allowed: TimeStepping(step=...) takes steps of that length [s], "

@@ -110,7 +110,7 @@ def everything() -> System:
 
 
 def is_running(simulation: Simulation) -> bool:
-    """Waits until another thread runs a simulation, half a minute at most. That thread must let this one work."""
+    """Waits until another thread runs a simulation, and lets this one work; half a minute at most."""
     end = time.monotonic() + 30.0
     while time.monotonic() < end:
         try:
@@ -121,8 +121,8 @@ def is_running(simulation: Simulation) -> bool:
 
 
 def is_lock_released(simulation: Simulation) -> bool:
-    """Whether a run lets other threads of Python work. It runs until that was seen: a busy machine may let a short
-    run end before it lets another thread work.
+    """Whether a run lets other threads of Python work. It runs until that was seen: on a busy machine a short run
+    may end before another thread works at all.
     """
     enough = threading.Event()
 

@@ -120,7 +120,7 @@ sys.path.insert(0, sys.argv[1])
 from carom import Simulation, TimeStepping
 from models import ball, is_running
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a program in the background inherits that it is ignored
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a program in the background may have it ignored
 simulation = Simulation(ball()[0], TimeStepping(step=1e-6))
 
 def press():
@@ -138,7 +138,7 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_ends_a_run_of_time_stepping():
-    """In a process of its own: others have handlers of signals too, and a signal that is lost would not end it."""
+    """In a process of its own, with a limit: others have handlers of signals too, and a signal may be lost."""
     here = str(pathlib.Path(__file__).parent)
     ran = subprocess.run([sys.executable, "-c", CTRL_C, here], capture_output=True, text=True, timeout=60)
     assert ran.stdout == "True\n", ran.stderr

@@ -18,7 +18,8 @@ def test_notebook_runs(path: pathlib.Path, tmp_path: pathlib.Path) -> None:
     notebook = nbformat.read(path, as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells)  # stored without
     # Sockets are files of its own: a free port may be taken by another program before the kernel has it.
-    kernel = jupyter_client.AsyncKernelManager(kernel_name="python3", transport="ipc", ip=str(tmp_path / "kernel"))
+    sockets = str(tmp_path / "kernel")
+    kernel = jupyter_client.AsyncKernelManager(kernel_name="python3", transport="ipc", ip=sockets)
     nbclient.NotebookClient(notebook, km=kernel, timeout=300, startup_timeout=300).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("<table>" in output.get("data", {}).get("text/html", "") for output in outputs)

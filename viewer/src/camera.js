@@ -9,16 +9,14 @@ const TURN = 0.008; // radians a pixel
 const AT_FIRST = [-0.6, 0.42]; // azimuth and elevation of the view in space [rad]
 
 export class Camera {
-  /** Of a scene: bounds, [x, y, z, x, y, z] of what is seen at first; frame, directions right, up and to the viewer,
-   * seen from in front; depth, how far before and behind its middle anything is [m]. */
-  constructor(canvas, { bounds, frame, depth }, changed) {
-    Object.assign(this, { canvas, bounds, frame, depth, changed });
+  /** scene: has bounds, [x, y, z, x, y, z] of what is seen at first; frame, directions right, up and to the viewer,
+   * seen from in front; depth, how far before and behind its middle anything is [m]; inSpace. */
+  constructor(canvas, scene, changed) {
+    Object.assign(this, { canvas, scene, changed });
     this.three = new OrthographicCamera();
-    this.turn = new Matrix4();
     this.middle = [0, 0, 0];
     this.scale = 1; // [pixels/m]
     this.azimuth = this.elevation = 0;
-    this.turns = false; // dragging turns the view
     this.follows = () => null; // place of what is followed
     this.last = null;
     this.aim();
@@ -33,17 +31,16 @@ export class Camera {
     this.height = this.canvas.clientHeight;
   }
 
-  /** Seen from in front, or in space. */
-  show(inSpace) {
-    this.turns = inSpace;
-    [this.azimuth, this.elevation] = inSpace ? AT_FIRST : [0, 0];
+  /** Seen from in front, or in space, where dragging turns the view. */
+  show() {
+    [this.azimuth, this.elevation] = this.scene.inSpace ? AT_FIRST : [0, 0];
     this.aim();
     this.fit();
   }
 
   /** Directions of the picture from the angles. */
   aim() {
-    const [right, up, back] = this.frame;
+    const [right, up, back] = this.scene.frame;
     const [c, s] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
     const [d, e] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     const level = right.map((_, i) => c * back[i] + s * right[i]); // to the viewer, without elevation
@@ -53,12 +50,13 @@ export class Camera {
   }
 
   fit() {
-    const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((k) => this.bounds[(i >> k) & 1 ? k + 3 : k]));
+    const { bounds } = this.scene;
+    const corners = Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((k) => bounds[(i >> k) & 1 ? k + 3 : k]));
     const span = (axis) => {
       const along = corners.map((corner) => dot(corner, axis));
       return Math.max(...along) - Math.min(...along);
     };
-    this.middle = [0, 1, 2].map((k) => 0.5 * (this.bounds[k] + this.bounds[k + 3]));
+    this.middle = [0, 1, 2].map((k) => 0.5 * (bounds[k] + bounds[k + 3]));
     this.scale = 0.92 * Math.min(this.width / span(this.right), this.height / span(this.up));
     this.last = null;
     this.changed();
@@ -74,11 +72,11 @@ export class Camera {
       this.changed();
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener("contextmenu", (event) => { if (this.turns) event.preventDefault(); });
+    canvas.addEventListener("contextmenu", (event) => { if (this.scene.inSpace) event.preventDefault(); });
     canvas.addEventListener("pointermove", (event) => {
-      const turns = this.turns && !event.shiftKey && event.buttons & 1;
-      if (turns) this.orbit(-TURN * event.movementX, TURN * event.movementY);
-      else if (event.buttons & (this.turns ? 3 : 1)) this.move(-event.movementX, event.movementY);
+      const { inSpace } = this.scene;
+      if (inSpace && !event.shiftKey && event.buttons & 1) this.orbit(-TURN * event.movementX, TURN * event.movementY);
+      else if (event.buttons & (inSpace ? 3 : 1)) this.move(-event.movementX, event.movementY);
     });
   }
 
@@ -117,11 +115,11 @@ export class Camera {
 
   update() {
     const wide = 0.5 * this.width / this.scale, high = 0.5 * this.height / this.scale;
-    const { three, depth, right, up, back } = this;
+    const { three, right, up, back } = this, { depth } = this.scene;
     // What is near is never cut off, however close the middle was moved to it.
     Object.assign(three, { left: -wide, right: wide, top: high, bottom: -high, near: -depth, far: depth });
-    this.turn.set(right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0, 0, 0, 0, 1);
-    three.quaternion.setFromRotationMatrix(this.turn);
+    three.quaternion.setFromRotationMatrix(new Matrix4().set(
+      right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0, 0, 0, 0, 1));
     three.position.set(...this.middle);
     three.updateProjectionMatrix();
     three.updateMatrixWorld();

@@ -2,12 +2,13 @@
 // recording into textures, from which the shaders take those of an item: a frame costs no loop over contacts.
 
 import {
-  BufferAttribute, BufferGeometry, DataTexture, FloatType, NearestFilter, RedFormat, RGBFormat, RGFormat,
+  BufferAttribute, BufferGeometry, DataTexture, FloatType, NearestFilter, Points, RedFormat, RGBFormat, RGFormat,
   UnsignedByteType,
 } from "three";
 import { layer } from "./layers.js";
 
 const PER_ROW = 256;
+const MANY = 3000; // contacts of a sample from which on mark and arrow are one triangle
 const FORMATS = { 1: RedFormat, 2: RGFormat, 3: RGBFormat };
 
 /** Numbers of the contacts that are shown, `width` of each. */
@@ -53,6 +54,18 @@ const IMPULSE = {
 }`,
 };
 
+const ARROWS = (dimension) => `
+uniform float arrowScale;
+${IMPULSE[dimension]}
+// Direction and length [pixels] of the impulse of a contact in the picture.
+vec2 arrow(ivec2 at, out float span) {
+  vec3 n = texelFetch(contactNormals, at, 0).xyz, impulse = texelFetch(contactImpulses, at, 0).xyz;
+  vec2 seen = (viewMatrix * vec4(impulseInScene(n, impulse), 0.0)).xy * arrowScale;
+  span = length(seen) / pixel;
+  return span > 0.0 ? seen / (span * pixel) : vec2(0.0);
+}
+`;
+
 const COLUMNS = (corners, colours) => `
 precision highp sampler2D;
 uniform sampler2D contactPoints, contactNormals, contactImpulses, contactModes, contactImpacts;
@@ -80,15 +93,15 @@ export class Contacts {
     this.dotSize = { value: 1 };
     const own = { ...uniforms, dotSize: this.dotSize, contactColours: { value: Float32Array.from(colours.flat()) } };
     for (const [name, { texture }] of Object.entries(this.columns)) own[name] = { value: texture };
-    this.dots = dots(most, colours.length, own, order);
-    this.arrows = arrows(most, colours.length, own, order + 1, dimension);
+    this.meshes = most > MANY ? [needles(most, colours.length, own, order, dimension)]
+      : [dots(most, colours.length, own, order), arrows(most, colours.length, own, order + 1, dimension)];
     this.show(0, 0);
   }
 
   /** Shows the contacts [first, end) of the recording. */
   show(first, end) {
     if (end > first) for (const column of Object.values(this.columns)) column.show(first, end);
-    for (const mesh of [this.dots, this.arrows]) {
+    for (const mesh of this.meshes) {
       mesh.geometry.setDrawRange(0, (end - first) * mesh.userData.perItem);
       mesh.visible = end > first;
     }
@@ -97,25 +110,23 @@ export class Contacts {
 
 /** Discs whose radius is `dotSize` pixels. */
 function dots(most, colours, uniforms, order) {
-  const triangles = [0, 1, 2, 0, 2, 3];
-  const mesh = layer(repeated(4, triangles, most), uniforms, `
+  const mesh = layer(repeated(1, [0], most), uniforms, `
 uniform float dotSize;
-${COLUMNS(4, colours)}
-out vec2 place; out float size;
-const vec2 corners[4] = vec2[4](vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, 1));
+${COLUMNS(1, colours)}
+out float size;
 void main() {
   ivec2 at = contact();
   inside = colourOf(at);
   size = dotSize;
-  place = corners[gl_VertexID % 4] * (size + 1.0);
-  gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, place);
+  gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, vec2(0.0));
+  gl_PointSize = density * 2.0 * (size + 1.0);
 }`, `
-in vec3 inside; in vec2 place; in float size;
+in vec3 inside; in float size;
 void main() {
-  float d = length(place) - size;
+  float d = length((2.0 * gl_PointCoord - 1.0) * (size + 1.0)) - size;
   paint = vec4(mix(inside, inside * 0.55, clamp(2.0 + d, 0.0, 1.0)), clamp(0.5 - d, 0.0, 1.0));
-}`, order);
-  mesh.userData.perItem = triangles.length;
+}`, order, false, false, Points);
+  mesh.userData.perItem = 1;
   return mesh;
 }
 
@@ -124,18 +135,15 @@ function arrows(most, colours, uniforms, order, dimension) {
   // A corner: along the arrow (0: foot, 1: head), along the head (0: its base, 1: its tip), across [pixels].
   const triangles = [0, 1, 2, 0, 2, 3, 4, 5, 6];
   const mesh = layer(repeated(7, triangles, most), uniforms, `
-uniform float arrowScale;
 ${COLUMNS(7, colours)}
-${IMPULSE[dimension]}
+${ARROWS(dimension)}
 const vec3 corners[7] = vec3[7](vec3(0, 0, -0.9), vec3(1, 0, -0.9), vec3(1, 0, 0.9), vec3(0, 0, 0.9),
                                 vec3(1, 0, -4), vec3(1, 1, 0), vec3(1, 0, 4));
 void main() {
   ivec2 at = contact();
   vec3 corner = corners[gl_VertexID % 7];
-  vec3 n = texelFetch(contactNormals, at, 0).xyz, impulse = texelFetch(contactImpulses, at, 0).xyz;
-  vec2 arrow = (viewMatrix * vec4(impulseInScene(n, impulse), 0.0)).xy * arrowScale;
-  float span = length(arrow) / pixel;
-  vec2 u = span > 0.0 ? arrow / (span * pixel) : vec2(0.0);
+  float span;
+  vec2 u = arrow(at, span);
   float head = min(9.0, 0.6 * span);
   float along = corner.x * (span - head) + corner.y * head;
   float across = corner.z * (corner.x > 0.5 && abs(corner.z) > 1.0 ? head / 9.0 : 1.0);
@@ -145,5 +153,28 @@ void main() {
 in vec3 inside;
 void main() { paint = vec4(inside, 1.0); }`, order);
   mesh.userData.perItem = triangles.length;
+  return mesh;
+}
+
+/** Mark and impulse of a contact as one triangle, as wide as the mark at its foot: of very many contacts, as software
+ * takes its time for each triangle. */
+function needles(most, colours, uniforms, order, dimension) {
+  const mesh = layer(repeated(3, [0, 1, 2], most), uniforms, `
+uniform float dotSize;
+${COLUMNS(3, colours)}
+${ARROWS(dimension)}
+const vec2 corners[3] = vec2[3](vec2(-0.5, -0.87), vec2(1, 0), vec2(-0.5, 0.87));
+void main() {
+  ivec2 at = contact();
+  float span;
+  vec2 u = arrow(at, span), corner = 1.6 * dotSize * corners[gl_VertexID % 3];
+  if (u == vec2(0.0)) u = vec2(0.0, 1.0);
+  if (corner.x > 0.0) corner.x = max(corner.x, span);
+  inside = colourOf(at);
+  gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, corner.x * u + corner.y * vec2(-u.y, u.x));
+}`, `
+in vec3 inside;
+void main() { paint = vec4(inside, 1.0); }`, order);
+  mesh.userData.perItem = 3;
   return mesh;
 }

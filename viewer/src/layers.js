@@ -2,7 +2,7 @@
 // marks are in pixels; `pixel` is the length of one in the scene [m].
 
 import {
-  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, GLSL3, Mesh, RawShaderMaterial,
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, GLSL3, Mesh, Points, RawShaderMaterial,
 } from "three";
 import { POSE_SHADER } from "./poses.js";
 
@@ -12,6 +12,7 @@ precision highp int;
 uniform mat4 projectionMatrix;
 uniform mat4 viewMatrix;
 uniform float pixel;
+uniform float density; // of the screen: dots a pixel
 uniform float picked;
 uniform vec3 pickedColour;
 // Where a point of the scene is seen from the camera, moved by pixels of the picture.
@@ -73,13 +74,14 @@ export function repeated(form, count, attributes) {
   return made.geometry;
 }
 
-/** One call of drawing, over what has a lower order. solid: hides what is behind it. isHidden: by solids. */
-export function layer(geometry, uniforms, vertex, fragment, order, solid = false, isHidden = solid) {
+/** One call of drawing, over what has a lower order. solid: hides what is behind it. isHidden: by solids. Kind:
+ * Mesh, or Points, which have one vertex each where a square has four: software spends its time on those. */
+export function layer(geometry, uniforms, vertex, fragment, order, solid = false, isHidden = solid, Kind = Mesh) {
   const material = new RawShaderMaterial({
     glslVersion: GLSL3, uniforms, vertexShader: HEAD + POSE_SHADER + vertex, fragmentShader: PAINT + fragment,
     transparent: !solid, depthTest: isHidden, depthWrite: solid, side: DoubleSide, // triangles turn either way
   });
-  const mesh = new Mesh(geometry, material);
+  const mesh = new Kind(geometry, material);
   mesh.frustumCulled = false;
   mesh.renderOrder = order;
   return mesh;
@@ -131,6 +133,44 @@ void main() {
 }`, order);
 }
 
+/** Discs of a few pixels, as capsules() has them but as points, which end where their middle leaves the picture. */
+export function smallDiscs(list, uniforms, order) {
+  const at = new Float32Array(2 * list.length), radius = new Float32Array(list.length);
+  const pose = new Float32Array(list.length), fill = new Float32Array(3 * list.length);
+  const edge = new Float32Array(3 * list.length);
+  list.forEach((item, i) => {
+    at.set([item.ax, item.ay], 2 * i);
+    radius[i] = item.radius;
+    pose[i] = item.pose;
+    fill.set(item.fill, 3 * i);
+    edge.set(item.edge, 3 * i);
+  });
+  const geometry = new BufferGeometry();
+  const attributes = { at: [at, 2], radius: [radius, 1], pose: [pose, 1], fill: [fill, 3], edge: [edge, 3] };
+  for (const [name, [array, width]] of Object.entries(attributes)) {
+    geometry.setAttribute(name, new BufferAttribute(array, width));
+  }
+  geometry.setDrawRange(0, list.length);
+  return layer(geometry, uniforms, `
+in vec2 at; in float radius; in float pose; in vec3 fill; in vec3 edge;
+out float size; out vec3 inside; out vec3 border;
+void main() {
+  size = max(radius / pixel, 0.75);
+  inside = picked == pose ? pickedColour : fill;
+  border = edge;
+  vec3 place = placeOf(pose);
+  if (at != vec2(0.0)) place += turned(pose, vec3(at, 0.0));
+  gl_Position = projectionMatrix * eye(place, vec2(0.0));
+  gl_PointSize = density * (2.0 * size + 1.0);
+}`, `
+in float size; in vec3 inside; in vec3 border;
+void main() {
+  float d = length((2.0 * gl_PointCoord - 1.0) * (size + 0.5)) - size;
+  float isEdge = clamp(0.5 + d + min(1.3, 0.22 * size), 0.0, 1.0);
+  paint = vec4(mix(inside, border, isEdge), clamp(0.5 - d, 0.0, 1.0));
+}`, order, false, false, Points);
+}
+
 /** Filled triangles: [{pose, points, colour, triangles}]; without `triangles` three points each. */
 export function fills(list, uniforms, order) {
   const count = list.reduce((sum, item) => sum + item.points.length / 2, 0);
@@ -164,8 +204,8 @@ void main() { paint = vec4(inside, 1.0); }`, order);
 }
 
 /** Straight lines between two ends, each in the frame of its own pose: [{poseA, a, poseB, b, s0, t0, s1, t1, width,
- * colour}] with a and b of two numbers or three. A line goes from s0 to s1 of the way between the ends, t0 and t1 pixels beside it: pieces of a
- * spring's zigzag. isHidden: behind solids. */
+ * colour}] with a and b of two numbers or three. A line goes from s0 to s1 of the way between the ends, t0 and t1 pixels
+ * beside it: pieces of a spring's zigzag. isHidden: behind solids. */
 export function lines(list, uniforms, order, isHidden = false) {
   const poses = new Float32Array(2 * list.length);
   const from = new Float32Array(3 * list.length), to = new Float32Array(3 * list.length);

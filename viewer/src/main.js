@@ -21,7 +21,7 @@ class Page {
     this.player = new Player(this.recording.times, changed);
     this.scene = new RunScene(element("scene"), this.recording);
     this.camera = new Camera(element("scene"), this.scene, changed);
-    this.camera.show(this.scene.isSpatial);
+    this.camera.show();
     const seek = (time) => {
       this.player.play(false);
       this.player.seek(time);
@@ -99,7 +99,7 @@ class Page {
     element("space").checked = element("space").disabled = this.scene.isSpatial;
     element("space").addEventListener("change", (event) => {
       this.scene.showSpace(event.target.checked);
-      camera.show(event.target.checked);
+      camera.show();
     });
     element("names").replaceChildren(...recording.bodies.slice(0, 2000).map((name) => new Option(name)));
     element("followed").addEventListener("change", (event) => (
@@ -187,7 +187,7 @@ class Page {
     const { player, scene, camera } = this;
     const { sample, fraction } = player.place();
     scene.draw(camera, { sample, fraction, time: player.time, speed: player.speed });
-    this.plot.draw(player.time, sample);
+    this.plot.draw(player.time, sample, player.isPlaying);
     this.events.follow(player.time, player.isPlaying);
     element("time").value = player.end > player.start ? (player.time - player.start) / (player.end - player.start) : 0;
     element("now").textContent = `${player.time.toFixed(4)} s`;

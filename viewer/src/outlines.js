@@ -48,7 +48,8 @@ export function along(pose, points, isClosed, width, colour) {
   const list = [], count = points.length / 2;
   for (let i = 0; i + 1 < count || (isClosed && i < count); ++i) {
     const k = (i + 1) % count;
-    list.push({ poseA: pose, a: points.slice(2 * i, 2 * i + 2), poseB: pose, b: points.slice(2 * k, 2 * k + 2), width, colour });
+    const [a, b] = [points.slice(2 * i, 2 * i + 2), points.slice(2 * k, 2 * k + 2)];
+    list.push({ poseA: pose, a, poseB: pose, b, width, colour });
   }
   return list;
 }

@@ -43,6 +43,8 @@ function marks(low, high, most) {
   return list;
 }
 
+const BETWEEN_VALUES = 120; // [ms]
+
 export class LedgerPlot {
   /** cursor: the element that is a line at the present time, beside which nothing is drawn anew. */
   constructor(canvas, cursor, legend, recording, seek) {
@@ -156,9 +158,12 @@ export class LedgerPlot {
     }
   }
 
-  draw(time, sample) {
+  /** Values change some times a second while the run plays: nobody reads more, and each has the page drawn again. */
+  draw(time, sample, isPlaying = false) {
     this.cursor.style.transform = `translateX(${Math.round(this.x(time))}px)`;
-    if (sample !== this.sample) {
+    const now = performance.now();
+    if (sample !== this.shownSample && !(isPlaying && now - this.shownAt < BETWEEN_VALUES)) {
+      [this.shownSample, this.shownAt] = [sample, now];
       for (const { value, values } of this.series) value.textContent = `${shown(values[sample])} J`;
     }
     [this.time, this.sample] = [time, sample];

@@ -4,7 +4,7 @@ import { Color, OrthographicCamera, Scene, Vector3, WebGLRenderer } from "three"
 import * as colours from "./colours.js";
 import { Contacts } from "./contacts.js";
 import { lastNotAfter } from "./data.js";
-import { capsules, fills, lines, Marks } from "./layers.js";
+import { capsules, fills, lines, Marks, smallDiscs } from "./layers.js";
 import { along, fan, link, widened } from "./outlines.js";
 import { Poses } from "./poses.js";
 import { around, plain, thickened } from "./solids.js";
@@ -14,6 +14,7 @@ const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
 const MOST_FLASHES = 400;
 const CLEAR_FLASHES = 20; // the marks of older events are fainter, so that many do not hide the bodies
 const ARROW = [10, 60]; // least and most pixels of the arrow of a large impulse, three bodies long between
+const SMALL = 4; // pixels of the radius up to which discs are points
 const DOT = [0.8, 2.2]; // least and most pixels of the radius of a contact's mark
 
 const within = ([least, most], value) => Math.min(Math.max(value, least), most);
@@ -24,13 +25,13 @@ const SPACE = [[1, 0, 0], [0, 0, 1], [0, -1, 0]];
 export class RunScene {
   constructor(canvas, recording) {
     this.recording = recording;
-    this.canvas = canvas;
     this.poses = new Poses(recording);
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.renderer.setClearColor(new Color("#fbfbf9"), 1);
     this.three = new Scene();
     this.uniforms = {
-      poses: { value: this.poses.texture }, pixel: { value: 1 }, picked: { value: -1 }, arrowScale: { value: 1 },
+      poses: { value: this.poses.texture }, pixel: { value: 1 }, density: { value: 1 }, picked: { value: -1 },
+      arrowScale: { value: 1 },
       pickedColour: { value: new Vector3(...colours.rgb(colours.PICKED)) },
     };
     this.showsContacts = true;
@@ -38,7 +39,6 @@ export class RunScene {
     this.bodySize = bodySize(recording);
     this.planar = []; // what is seen of the plane only
     this.space = null; // made when it is seen
-    this.bounds = this.isSpatial ? recording.bounds : flatBounds(recording.bounds, this.bodySize);
     this.addGround();
     this.addBodies();
     this.addLinks();
@@ -50,19 +50,26 @@ export class RunScene {
 
   get isSpatial() { return this.recording.dimension === 3; }
 
+  /** Least and most x, y and z of what is seen at first; a planar scene is as thick as a body is wide. */
+  get bounds() {
+    const { bounds } = this.recording, half = 0.5 * this.bodySize;
+    return this.isSpatial ? bounds : [...bounds.slice(0, 2), -half, ...bounds.slice(2), half];
+  }
+
+  get inSpace() { return this.space?.visible ?? false; }
+
   /** Directions right, up and to the viewer, seen from in front. */
   get frame() { return this.isSpatial ? SPACE : PLANE; }
 
   /** Bodies as solids in space, or a planar run as the plane has it. */
   showSpace(on) {
-    this.inSpace = on;
     if (on && !this.space) {
       const solids = this.isSpatial ? this.recording.solids : thickened(this.recording, this.bodySize);
       this.space = new Space(this.three, solids, this.uniforms, (pose) => this.look(pose), this.bounds, this.frame);
     }
     if (this.space) this.space.visible = on;
     for (const mesh of this.planar) mesh.visible = !on;
-    this.sample = undefined;
+    this.drawn = {}; // what is drawn anew where it changes
   }
 
   /** How far from the middle of the view anything is that is drawn [m]. */
@@ -96,13 +103,17 @@ export class RunScene {
     const round = recording.capsules.map(([pose, ax, ay, bx, by, radius]) => (
       { pose, ax, ay, bx, by, radius, ...this.look(pose) }));
     const outlines = recording.polygons.map(([pose, radius, points]) => ({ pose, points: widened(points, radius) }));
+    const bodies = round.filter((item) => !this.isGround(item.pose));
+    const isDisc = ({ ax, ay, bx, by }) => ax === bx && ay === by;
+    const discs = bodies.filter(isDisc), largest = discs.reduce((most, { radius }) => Math.max(most, radius), 0);
+    this.discs = { largest, small: smallDiscs(discs, uniforms, 5), large: capsules(discs, uniforms, 5) };
     this.addPlanar(
       capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2),
       fills(outlines.map(({ pose, points }) => (
         { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3),
       lines(outlines.flatMap(({ pose, points }) => (
         along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4),
-      capsules(round.filter((item) => !this.isGround(item.pose)), uniforms, 5));
+      capsules(bodies.filter((item) => !isDisc(item)), uniforms, 5), this.discs.small, this.discs.large);
   }
 
   addLinks() {
@@ -135,7 +146,7 @@ export class RunScene {
     const modes = this.recording.modes.map((mode) => colours.rgb(colours.MODES[mode]));
     this.contacts = new Contacts(this.recording, [...modes, colours.rgb(colours.IMPACT)], this.uniforms, 8);
     this.flashes = new Marks(MOST_FLASHES, this.uniforms, 10);
-    this.three.add(this.contacts.dots, this.contacts.arrows, this.flashes.mesh);
+    this.three.add(...this.contacts.meshes, this.flashes.mesh);
   }
 
   contactRange(sample) {
@@ -164,34 +175,35 @@ export class RunScene {
   arrowLength(camera) { return within(ARROW, 3 * this.bodySize * camera.scale); }
 
   draw(camera, { sample, fraction, time, speed }) {
-    const isMoved = sample !== this.sample || fraction !== this.fraction;
+    const { drawn, showsContacts } = this, isMoved = sample !== drawn.sample || fraction !== drawn.fraction;
     if (isMoved) this.poses.fill(sample, fraction);
-    if (sample !== this.sample || this.contactsShown !== this.showsContacts) {
-      const [first, end] = this.showsContacts ? this.contactRange(sample) : [0, 0];
+    if (sample !== drawn.sample || showsContacts !== drawn.showsContacts) {
+      const [first, end] = showsContacts ? this.contactRange(sample) : [0, 0];
       this.contacts.show(first, end);
     }
     this.contacts.dotSize.value = within(DOT, 0.25 * this.bodySize * camera.scale);
-    [this.sample, this.fraction, this.contactsShown] = [sample, fraction, this.showsContacts];
+    this.drawn = { sample, fraction, showsContacts };
     this.fillFlashes(time, speed);
     if (isMoved && this.inSpace) this.space.drawShadows(this.renderer, this.three);
     camera.follow();
     camera.update();
     if (this.inSpace) this.uniforms.toScene.value = camera.three.matrixWorld;
     this.uniforms.pixel.value = 1 / camera.scale;
+    const isSmall = this.discs.largest * camera.scale <= SMALL;
+    this.discs.small.visible = !this.inSpace && isSmall;
+    this.discs.large.visible = !this.inSpace && !isSmall;
     this.uniforms.arrowScale.value =
       this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
     this.renderer.render(this.three, camera.three);
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.canvas;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const { clientWidth, clientHeight } = this.renderer.domElement;
+    this.uniforms.density.value = Math.min(window.devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.uniforms.density.value);
     this.renderer.setSize(clientWidth, clientHeight, false);
   }
 }
-
-/** Bounds of a planar scene, as thick as a body is wide. */
-const flatBounds = ([left, low, right, high], width) => [left, low, -0.5 * width, right, high, 0.5 * width];
 
 /** Width of a body in the middle of all [m]. */
 function bodySize({ capsules: round, polygons, solids, bounds }) {

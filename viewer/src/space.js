@@ -55,6 +55,8 @@ export class Space {
     return this.rays.poseAt(poses, plus(point, this.depth, back), back.map((value) => -value));
   }
 
+  get visible() { return this.meshes[0].visible; }
+
   set visible(on) { for (const mesh of this.meshes) mesh.visible = on; }
 
   /** Draws what the light meets first. */

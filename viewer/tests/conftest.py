@@ -10,7 +10,7 @@ from selenium import webdriver
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "python" / "tests"))
 
-import spatial  # noqa: E402
+import spatial_run as spatial  # noqa: E402
 from browser import COLOURS, Page, open_browser  # noqa: E402
 from models import everything, falling_ball, pile  # noqa: E402
 

@@ -1,6 +1,6 @@
 """Prints what a page of many discs costs: the size of the file, pictures a second in a browser that draws in
-software, the processor time of each, which other programs on the machine change less, and how much of a picture
-is JavaScript, which stays where a graphics card draws.
+software, the processor time of each, which other programs on the machine change less, as it plays and where it
+jumps, and how much of a picture is JavaScript, which stays where a graphics card draws.
 
     python viewer/tests/measure.py [number of discs] [file of a picture]
 """
@@ -93,12 +93,16 @@ def main() -> None:
             begin = time.perf_counter()
             Page(driver, path.as_uri(), recording)
             print(f"opened in {time.perf_counter() - begin:.1f} s")
+            before = processor_time(driver.service.process.pid)
             frames, milliseconds = driver.execute_async_script(COUNT)
+            spent = processor_time(driver.service.process.pid) - before
             print(f"pictures: {1000 * frames / milliseconds:.1f} a second over {milliseconds / 1000:.1f} s")
+            spent *= 1000 / max(1, frames)
+            print(f"playing: {spent:.1f} ms of processor time a picture, of all processes of the browser")
             before = processor_time(driver.service.process.pid)
             count = driver.execute_async_script(DRAW)
             spent = processor_time(driver.service.process.pid) - before
-            print(f"processor time: {1000 * spent / count:.1f} ms a picture, of all processes of the browser")
+            print(f"by samples: {1000 * spent / count:.1f} ms of processor time a picture")
             print(f"JavaScript: {script_time(driver):.2f} ms a picture")
             if len(sys.argv) > 2:
                 driver.save_screenshot(sys.argv[2])

@@ -1,5 +1,5 @@
-"""A recording in space whose motion has a closed form: balls that bounce on a plane, a box that tumbles about a fixed
-axis in free flight, and one of each other solid at rest.
+"""A recording in space whose motion has a closed form: balls that bounce on a plane, a box that tumbles about a
+fixed axis in free flight, and one of each other solid at rest.
 """
 
 import numpy
@@ -11,12 +11,17 @@ GRAVITY = 9.81
 RADIUS = 0.2
 BALLS = [(-1.5, 0.0), (-0.9, 0.5), (-0.3, 0.0)]
 HEIGHTS = [0.8, 1.1, 1.4]  # of their middles at first
-BOX = {"centre": (0.9, 0.0, 0.4), "sides": (0.6, 0.4, 0.2), "velocity": (0.3, 0.0, 5.0), "spin": (1.0, 2.0, 2.0)}
+BOX = {
+    "centre": (0.9, 0.0, 0.4),
+    "sides": (0.6, 0.4, 0.2),
+    "velocity": (0.3, 0.0, 5.0),
+    "spin": (1.0, 2.0, 2.0),
+}
 UNTIL, SAMPLES = 1.0, 51
 
 
 def turn(spin: numpy.ndarray, times: numpy.ndarray) -> numpy.ndarray:
-    """Orientations (n, 4) after a constant spin [rad/s], as of a body whose three moments of inertia are equal."""
+    """Orientations (n, 4) after a constant spin [rad/s], as of equal moments of inertia."""
     rate = numpy.linalg.norm(spin)
     half = 0.5 * rate * times[:, None]
     return numpy.concatenate([numpy.cos(half), numpy.sin(half) * spin / rate], axis=1)
