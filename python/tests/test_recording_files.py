@@ -105,23 +105,6 @@ def test_a_resumed_file_is_that_of_one_run(tmp_path, is_killed, shift):
         assert [one.names[i] for i in rows["name"]] == [other.names[i] for i in expected["name"]]
 
 
-def test_a_file_is_resumed_at_a_sample_whose_time_has_another_last_digit(tmp_path):
-    path, checkpoint, half = tmp_path / "run.h5", tmp_path / "half", 0.052
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    with Recorder(simulation, path, interval=0.002):
-        simulation.run_until(0.102)
-    times = load_recording(path).times
-    assert abs(times[26] - half) < 1e-12 and times[26] > half  # of a sum of steps
-    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    simulation.run_until(half)
-    simulation.save(checkpoint)
-    resumed = Simulation(pile(6, 6), TimeStepping(step=1e-3))
-    resumed.load(checkpoint)
-    with Recorder(resumed, path, interval=0.002, resume=True) as recorder:
-        resumed.run_until(0.102)
-    numpy.testing.assert_array_equal(recorder.recording().times, times)
-
-
 def test_a_file_of_another_model_is_not_resumed(tmp_path):
     path = tmp_path / "run.h5"
     with Recorder(Simulation(falling_ball(), TimeStepping()), path):
