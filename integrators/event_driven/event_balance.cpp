@@ -172,7 +172,7 @@ void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c
     flows[EnergyFlow::joint_friction] -= work;
     return;
   }
-  EventRecord& event = events.back();
+  EventRecord& event = fresh.back();
   event.rolling_moment = impulse;
   event.contact_work += work;
   flows[line_of_rolling(impact.kind)] -= work;
