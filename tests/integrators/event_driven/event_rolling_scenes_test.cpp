@@ -1,5 +1,5 @@
-// Rolling resistance in event-driven mode: random discs and boxes in a box, agreement with time stepping, Painleve's
-// rod, implicit flows, checkpoints and changes of the mode.
+// Rolling resistance in event-driven mode: random discs and boxes in a box, agreement with time stepping,
+// Painleve's rod, implicit flows, checkpoints and changes of the mode.
 
 #include "tests/contact/random_problems.h"
 #include "tests/integrators/event_driven/body_scenes.h"
@@ -116,12 +116,12 @@ System rod(double theta, double friction, double omega, double tip_speed, double
   system.add(Gravity{{0.0, -g}});
   system.add(HalfPlane{.normal = {0.0, 1.0}},
              Surface{.friction = friction, .normal_restitution = 0.0, .rolling_resistance = rho});
-  const BodyId body = system.add(
-      RigidBody{.mass = planar::rod(1.0, 2.0),
-                .position = lever,
-                .angle = theta,
-                .velocity = Vec<2>(tip_speed, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
-                .spin = omega});
+  const BodyId body =
+      system.add(RigidBody{.mass = planar::rod(1.0, 2.0),
+                           .position = lever,
+                           .angle = theta,
+                           .velocity = Vec<2>(tip_speed, 0.0) + omega * Vec<2>(-lever[1], lever[0]),
+                           .spin = omega});
   system.add(Point{.body = body, .position = {-1.0, 0.0}});
   return system;
 }
@@ -151,6 +151,38 @@ TEST(EventRollingScenes, PainlevesRodIsThatWithoutResistanceInTheLimit) {
   }
   EXPECT_EQ(impacts, 1);
   EXPECT_EQ(several, 1);
+}
+
+TEST(EventRollingScenes, JointsWithFrictionAndAFallingLawOfFriction) {
+  // Two wheels on a rod roll down a slope; forces in the bearing, which friction there depends on, follow
+  // from those of contact.
+  const Vec<2> normal = Vec<2>(0.05, 1.0).normalized(), along(normal[1], -normal[0]);
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = normal}, Surface{.friction = 0.3,
+                                                  .normal_restitution = 0.0,
+                                                  .static_friction = 0.5,
+                                                  .stribeck_speed = 0.2,
+                                                  .rolling_resistance = 0.01});
+  const BodyId first = add_disc(system, 1.0, 0.2, 0.2 * normal, along, -5.0);
+  const BodyId second = add_disc(system, 1.0, 0.2, 0.2 * normal + 0.6 * along, along);
+  const BodyId bar = system.add(RigidBody{.mass = {.mass = 0.5, .inertia = 0.05},
+                                          .position = 0.2 * normal + 0.3 * along,
+                                          .angle = std::atan2(along[1], along[0]),
+                                          .velocity = along});
+  const JointId bearing = system.add(Revolute{.from = first, .to = {bar, {-0.3, 0.0}}});
+  system.add(Revolute{.from = {bar, {0.3, 0.0}}, .to = second});
+  system.add(JointFriction{.joint = bearing, .bound = 0.01, .coefficient = 0.005});
+  Simulation events(system, EventDriven{}), steps(system, TimeStepping{.step = 5e-4});
+  events.run_until(1.0);
+  steps.run_until(1.0);
+  // Errors of a step of 0.5 ms, of first order where sliding ends.
+  EXPECT_NEAR(events.state().position(bar)[0], steps.state().position(bar)[0], 1e-4);
+  for (const EnergyFlow flow : {EnergyFlow::rolling, EnergyFlow::joint_friction, EnergyFlow::sliding}) {
+    EXPECT_NEAR(events.energy().flow(flow), steps.energy().flow(flow), 1e-3);
+    EXPECT_GT(events.energy().flow(flow), 0.01);
+  }
+  EXPECT_LE(std::abs(events.energy().residual()), 1e-9);
 }
 
 TEST(EventRollingScenes, AccumulationsEndInRolling) {

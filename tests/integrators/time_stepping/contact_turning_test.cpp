@@ -1,6 +1,7 @@
 // Lasting contacts of bodies that both turn, with impacts located: they sink by errors of second order, gain
 // no energy, and follow the exact motion.
 
+#include "tests/allocation_counter.h"
 #include "tests/integrators/event_driven/body_scenes.h"
 
 #include <carom/carom.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -117,6 +119,15 @@ TEST_P(ContactTurning, FollowsTheExactMotion) {
   }
   EXPECT_LT(errors[1], 1e-5) << scene.name;
   EXPECT_GT(errors[0] / errors[1], 12.0) << scene.name;  // 16 of order 2
+}
+
+TEST_P(ContactTurning, TakesNoMemoryOnceContactsLast) {
+  const Scene scene = ContactTurning::scene();
+  Simulation simulation(scene.system, TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located});
+  for (int i = 0; i < 100; ++i) simulation.step();
+  const std::int64_t before = carom_test::allocations();
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_EQ(carom_test::allocations() - before, 0) << scene.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ContactTurning, testing::Values(0, 1, 2));
