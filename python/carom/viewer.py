@@ -98,7 +98,7 @@ def _add_table(arrays: _Arrays, prefix: str, rows: numpy.ndarray, codes: dict[st
 
 def _orientations(recording: Recording, chosen: numpy.ndarray) -> numpy.ndarray:
     """Orientations of samples. Raises ModelError naming a body whose orientation is no unit quaternion."""
-    turned = recording.orientations[chosen]
+    turned: numpy.ndarray = recording.orientations[chosen]
     sizes = numpy.linalg.norm(turned, axis=2)
     wrong = numpy.argwhere(~(numpy.abs(sizes - 1.0) < 1e-6))  # rounding of some steps, but no other quantity
     if len(wrong):
