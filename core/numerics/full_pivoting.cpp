@@ -1,6 +1,7 @@
 #include <carom/core/numerics/full_pivoting.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -17,16 +18,41 @@ void FullPivoting::reset(std::size_t n) {
   std::iota(column_order_.begin(), column_order_.end(), std::size_t{0});
 }
 
-/// The largest number that is left.
+/// The size of the largest number of a row from a column on.
+double FullPivoting::largest_from(const double* row, std::size_t column) const {
+  // Four at a time: one after the other each would wait for the one before.
+  std::array<double, 4> best{-1.0, -1.0, -1.0, -1.0};
+  const std::size_t n = size();
+  std::size_t j = column;
+  for (; j + best.size() <= n; j += best.size()) {
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      const double number = std::abs(row[j + k]);
+      best[k] = number > best[k] ? number : best[k];
+    }
+  }
+  for (; j < n; ++j) best[0] = std::max(best[0], std::abs(row[j]));
+  return std::max(std::max(best[0], best[1]), std::max(best[2], best[3]));
+}
+
+/// The largest number that is left, of several alike the first.
 FullPivoting::Pivot FullPivoting::choose_pivot(std::size_t step) const {
   Pivot best{step, step, -1.0};
   for (std::size_t i = step; i < size(); ++i) {
-    for (std::size_t j = step; j < size(); ++j) {
-      const double number = std::abs(entry(i, j));
-      if (number > best.size) best = {i, j, number};
-    }
+    const double number = row_sizes_[row_order_[i]];
+    if (number > best.size) best = {i, step, number};
   }
+  const double* const row = row_at(best.row);
+  while (best.column + 1 < size() && std::abs(row[best.column]) != best.size) ++best.column;
   return best;
+}
+
+/// Brings a column to a place, and that which is there to its own.
+void FullPivoting::swap_columns(std::size_t a, std::size_t b) {
+  if (a == b) return;
+  std::swap(column_order_[a], column_order_[b]);
+  const std::size_t n = size();
+  for (double *row = matrix_.data(), *const end = row + n * n; row != end; row += n)
+    std::swap(row[a], row[b]);
 }
 
 /// One equation, without the search.
@@ -39,6 +65,8 @@ bool FullPivoting::solve_one(double& right) {
 bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   const std::size_t n = size();
   if (n == 1) return solve_one(right[0]);
+  row_sizes_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) row_sizes_[i] = largest_from(matrix_.data() + i * n, 0);
   double largest = 0.0;
   for (std::size_t step = 0; step < n; ++step) {
     const Pivot pivot = choose_pivot(step);
@@ -48,13 +76,15 @@ bool FullPivoting::solve(double dependent, std::vector<double>& right) {
       break;
     }
     std::swap(row_order_[step], row_order_[pivot.row]);
-    std::swap(column_order_[step], column_order_[pivot.column]);
+    swap_columns(step, pivot.column);
+    const double* const of_pivot = row_at(step);
     for (std::size_t i = step + 1; i < n; ++i) {
-      const double factor = entry(i, step) / entry(step, step);
-      if (factor == 0.0) continue;
       double* const row = matrix_.data() + row_order_[i] * n;
-      for (std::size_t j = step + 1; j < n; ++j) row[column_order_[j]] -= factor * entry(step, j);
+      if (row[step] == 0.0) continue;  // its largest number is elsewhere
+      const double factor = row[step] / of_pivot[step];
+      for (std::size_t j = step + 1; j < n; ++j) row[j] -= factor * of_pivot[j];
       right[row_order_[i]] -= factor * right[row_order_[step]];
+      row_sizes_[row_order_[i]] = largest_from(row, step + 1);
     }
   }
   work_.assign(n, 0.0);
