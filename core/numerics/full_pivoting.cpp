@@ -1,8 +1,10 @@
 #include <carom/core/numerics/full_pivoting.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -20,21 +22,12 @@ void FullPivoting::reset(std::size_t n) {
 
 /// The size of the largest number of a row from a column on.
 double FullPivoting::largest_from(const double* row, std::size_t column) const {
-  // Four at a time: one after the other each would wait for the one before.
-  std::array<double, 4> best{-1.0, -1.0, -1.0, -1.0};
-  const std::size_t n = size();
-  std::size_t j = column;
-  for (; j + best.size() <= n; j += best.size()) {
-    for (std::size_t k = 0; k < best.size(); ++k) {
-      const double number = std::abs(row[j + k]);
-      best[k] = number > best[k] ? number : best[k];
-    }
-  }
-  for (; j < n; ++j) best[0] = std::max(best[0], std::abs(row[j]));
-  return std::max(std::max(best[0], best[1]), std::max(best[2], best[3]));
+  const auto count = static_cast<Eigen::Index>(size() - column);
+  if (count == 0) return -1.0;
+  return Eigen::Map<const Eigen::ArrayXd>(row + column, count).abs().maxCoeff();
 }
 
-/// The largest number that is left, of several alike the first.
+/// The largest number that is left, of several alike the first; size -1 where none of them is a number.
 FullPivoting::Pivot FullPivoting::choose_pivot(std::size_t step) const {
   Pivot best{step, step, -1.0};
   for (std::size_t i = step; i < size(); ++i) {
@@ -71,6 +64,10 @@ bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   for (std::size_t step = 0; step < n; ++step) {
     const Pivot pivot = choose_pivot(step);
     if (step == 0) largest = pivot.size;
+    if (pivot.size < 0.0) {
+      std::fill(right.begin(), right.end(), std::numeric_limits<double>::quiet_NaN());
+      return false;
+    }
     if (!(pivot.size > dependent * largest)) {
       rank_ = step;
       break;
