@@ -183,21 +183,30 @@ void Delassus::lay_out(BodyResponse& response) {
     const std::size_t first = parts_.size();
     first_part_[j] = first;
     if (j == 0 || directions_[j].constraint != directions_[j - 1].constraint) {
-      add_parts(*directions_[j].constraint, response, numbers);
+      add_parts(j, response, numbers);
       continue;
     }
     for (std::size_t part = first_part_[j - 1]; part < first; ++part) {
       parts_.push_back(parts_[part]);
       parts_.back().begin = numbers;
+      parts_.back().column = j;
       numbers += parts_.back().v.size();
     }
   }
   first_part_[n] = parts_.size();
   responses_.assign(numbers, 0.0);
+  // Chains of parts that reach the same velocities: W is written without asking each column for each row.
+  Index end = 0;
+  for (const Part& part : parts_) end = std::max(end, part.v.end);
+  last_part_.assign(end, no_part);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    parts_[i].before = std::exchange(last_part_[parts_[i].v.begin], i);
+  }
 }
 
-/// One part for each reach of the bodies of a constraint.
-void Delassus::add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers) {
+/// One part for each reach of the bodies of a column.
+void Delassus::add_parts(std::size_t column, BodyResponse& response, std::size_t& numbers) {
+  const Constraint& constraint = *directions_[column].constraint;
   const std::size_t first = parts_.size();
   for (int b = 0; b < constraint.bodies; ++b) {
     const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
@@ -205,7 +214,7 @@ void Delassus::add_parts(const Constraint& constraint, BodyResponse& response, s
     const auto begin = parts_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto same = [&](const Part& part) { return part.v.begin == reach.begin; };
     if (std::any_of(begin, parts_.end(), same)) continue;
-    parts_.push_back({reach, numbers, body});
+    parts_.push_back({reach, numbers, body, column});
     numbers += reach.size();
   }
 }
@@ -245,9 +254,9 @@ void Delassus::write_column(std::size_t j) {
   }
 }
 
+/// A product of a row and a column of a common reach.
 double Delassus::entry(std::size_t i, std::size_t j) const {
   const std::size_t stride = common_.size();
-  if (stride == 0) return sparse_entry(i, j);
   const double* const response = responses_.data() + j * stride;
   if (!loads_.empty()) {
     const double* const load = loads_.data() + i * stride;
@@ -264,39 +273,53 @@ double Delassus::entry(std::size_t i, std::size_t j) const {
   return sum;
 }
 
-double Delassus::sparse_entry(std::size_t i, std::size_t j) const {
-  double sum = 0.0;
-  if (!loads_.empty()) {
-    for (const Part& part : parts(i)) {
-      const Part* const other = part_of(j, part.v.begin);
-      if (other == nullptr) continue;
-      const double* const load = loads_.data() + part.begin;
-      sum = std::inner_product(load, load + part.v.size(), responses_.data() + other->begin, sum);
+/// Products of rows and the columns that reach the same bodies; the others are zero.
+void Delassus::write_by_parts(bool lower, double* matrix) const {
+  const std::size_t n = size();
+  std::fill_n(matrix, n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    double* const row = matrix + i * n;
+    const auto add = [&](Index reach, Index offset, const double* h, std::size_t width) {
+      for (std::size_t k = last_part_[reach]; k != no_part; k = parts_[k].before) {
+        if (lower && parts_[k].column > i) continue;
+        double& sum = row[parts_[k].column];
+        const double* const response = responses_.data() + parts_[k].begin + offset;
+        for (std::size_t c = 0; c < width; ++c) sum += h[c] * response[c];
+      }
+    };
+    if (!loads_.empty()) {
+      for (const Part& part : parts(i)) add(part.v.begin, 0, loads_.data() + part.begin, part.v.size());
+    } else {
+      const Constraint& at = *directions_[i].constraint;
+      const double* h = at.row(directions_[i].row);
+      for (int b = 0; b < at.bodies; ++b) {
+        const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
+        const Index reach = part_of(i, block.v)->v.begin;
+        add(reach, block.v - reach, h, static_cast<std::size_t>(block.columns));
+        h += block.columns;
+      }
     }
-    return sum;
+    for (std::size_t j = 0; lower && j < i; ++j) matrix[j * n + i] = row[j];
   }
-  const Constraint& at = *directions_[i].constraint;
-  const double* h = at.row(directions_[i].row);
-  for (int b = 0; b < at.bodies; ++b) {
-    const Constraint::Block& block = at.blocks[static_cast<std::size_t>(b)];
-    if (const Part* const part = part_of(j, block.v)) {
-      const double* const response = responses_.data() + part->begin + (block.v - part->v.begin);
-      for (int c = 0; c < block.columns; ++c) sum += h[c] * response[c];
+}
+
+/// Writes W as it is, or its lower triangle, mirrored.
+void Delassus::write_entries(bool lower, double* matrix) const {
+  if (common_.empty()) return write_by_parts(lower, matrix);
+  const std::size_t n = size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < (lower ? i + 1 : n); ++j) {
+      matrix[i * n + j] = entry(i, j);
+      if (lower) matrix[j * n + i] = matrix[i * n + j];
     }
-    h += block.columns;
   }
-  return sum;
 }
 
 void Delassus::write_symmetric(double* matrix) const {
   if (velocities_of_one_ == 3) return multiply_symmetric<3>(directions_, responses_.data(), matrix);
   if (velocities_of_one_ == 2) return multiply_symmetric<2>(directions_, responses_.data(), matrix);
+  write_entries(true, matrix);
   const std::size_t n = size();
-  for (std::size_t row = 0; row < n; ++row) {
-    for (std::size_t column = 0; column <= row; ++column) {
-      matrix[row * n + column] = matrix[column * n + row] = entry(row, column);
-    }
-  }
   for (std::size_t row = 0; row < n; ++row) {
     if (held_[row] == 0) continue;
     for (std::size_t other = 0; other < n; ++other) matrix[row * n + other] = matrix[other * n + row] = 0.0;
@@ -306,10 +329,7 @@ void Delassus::write_symmetric(double* matrix) const {
 void Delassus::write(double* matrix) const {
   if (velocities_of_one_ == 3) return multiply<3>(directions_, responses_.data(), false, matrix);
   if (velocities_of_one_ == 2) return multiply<2>(directions_, responses_.data(), false, matrix);
-  const std::size_t n = size();
-  for (std::size_t row = 0; row < n; ++row) {
-    for (std::size_t column = 0; column < n; ++column) matrix[row * n + column] = entry(row, column);
-  }
+  write_entries(false, matrix);
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {

@@ -62,11 +62,14 @@ public:
   void add_response(std::span<const double> impulses, double* x, double scale = 1.0) const;
 
 private:
+  static constexpr auto no_part = static_cast<std::size_t>(-1);
   // Response of one reach to a column.
   struct Part {
     Range v;
     std::size_t begin = 0;  // of its numbers
     Index body = none;      // one of those that reach there
+    std::size_t column = 0;
+    std::size_t before = no_part;  // of an earlier column that reaches there
   };
   [[nodiscard]] bool add_slots(const Constraint& constraint, const BodyResponse& response, int* slot);
   void write_masses(ResponseFactors& factors) const;
@@ -74,20 +77,22 @@ private:
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);
   void lay_out(BodyResponse& response);
-  void add_parts(const Constraint& constraint, BodyResponse& response, std::size_t& numbers);
+  void add_parts(std::size_t column, BodyResponse& response, std::size_t& numbers);
   void write_column(std::size_t j);
   void answer(Index body, Range v, std::size_t begin, std::size_t columns, char* held,
               BodyResponse& response);
   [[nodiscard]] std::span<const Part> parts(std::size_t column) const;
   [[nodiscard]] const Part* part_of(std::size_t column, Index v) const;
   [[nodiscard]] double entry(std::size_t i, std::size_t j) const;
-  [[nodiscard]] double sparse_entry(std::size_t i, std::size_t j) const;
+  void write_entries(bool lower, double* matrix) const;
+  void write_by_parts(bool lower, double* matrix) const;
 
   std::span<const ImpulseDirection> directions_;
   int velocities_of_one_ = 0;            // of the only body, which answers for itself; else 0
   Range common_;                         // velocities that all columns reach, empty if there are none
   std::vector<std::size_t> first_part_;  // by column, and an end; where there is no common reach
   std::vector<Part> parts_;
+  std::vector<std::size_t> last_part_;  // by velocity that a reach begins with: the last part there
   std::vector<double> responses_;
   std::vector<double> loads_;  // columns as they act, by the same places; empty where they act as they are
   std::vector<char> held_;     // by column

@@ -162,7 +162,8 @@ void IslandProblem::build_any(const double* velocity_before) {
   const auto count = static_cast<std::size_t>(rows);
   directions_.reserve(count);
   // A large W is not to be made before it is known whether anybody needs it.
-  const bool many = !constraints.empty() && constraints.size() >= options_.factored_from;
+  const bool many = !constraints.empty() && constraints.size() >= options_.factored_from &&
+                    constraints.size() <= options_.factored_to;
   const bool factored = many && fit_factors(constraints);
   if (!factored) demand_room(constraints.size(), rows);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
@@ -298,6 +299,7 @@ void IslandProblem::set_impulses(std::span<const double> impulses) {
   std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
   xi_.resize(impulses.size());
   problem_.velocities(answer_.impulse, xi_);
+  answer_.modes.resize(problem_.groups().size());
   for (std::size_t group = 0; group < answer_.modes.size(); ++group) {
     answer_.modes[group] = contact_mode(problem_, problem_.groups()[group], answer_.impulse, xi_);
   }

@@ -33,6 +33,9 @@ struct IslandOptions {
   /// belong to several bodies of the plane that answer for themselves. Answers are only as exact then as the
   /// budget of the sweeps says.
   std::size_t factored_from = std::numeric_limits<std::size_t>::max();
+  /// Constraints up to which it does so: few enough that the exact solvers go on where sweeps do not end, if
+  /// answers have to be exact.
+  std::size_t factored_to = std::numeric_limits<std::size_t>::max();
   /// Contacts that jam and have no answer are solved with e = 0. Contacts jam where impulses P in their cones
   /// cancel each other, H^T P = 0. Then P.b = P.(E gamma^-), over ground at rest; an answer demands that
   /// it is not negative, and where e differ it may be. Without restitution it is 0, and there is an answer

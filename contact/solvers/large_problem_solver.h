@@ -21,8 +21,8 @@ namespace carom {
 /// exactly (newton_polish.h), as the forces of a stack are far less certain than its residual.
 class LargeProblemSolver {
 public:
-  /// Contacts up to which exact solvers are asked where sweeps do not end: W in full, a few milliseconds.
-  static constexpr std::size_t most_exact = 50;
+  /// Contacts up to which exact solvers are asked where sweeps do not end.
+  static constexpr std::size_t most_exact = most_exact_contacts;
   /// Contacts up to which an answer that must not be used is polished all the same: some 0.1 s.
   static constexpr std::size_t most_polished = 200;
 

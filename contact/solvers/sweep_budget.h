@@ -5,6 +5,10 @@
 
 namespace carom {
 
+/// Contacts of a problem in factors up to which exact solvers are asked where sweeps do not end: W in full, a
+/// few milliseconds.
+inline constexpr int most_exact_contacts = 50;
+
 /// Options of the sweeps over a problem in factors (nonlinear_cg_solver.h).
 struct SweepBudget {
   /// Residual (residual.h) at which the sweeps end; the answer is `solved` then.

@@ -1,7 +1,10 @@
 #include <carom/core/numerics/full_pivoting.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -17,16 +20,32 @@ void FullPivoting::reset(std::size_t n) {
   std::iota(column_order_.begin(), column_order_.end(), std::size_t{0});
 }
 
-/// The largest number that is left.
+/// The size of the largest number of a row from a column on.
+double FullPivoting::largest_from(const double* row, std::size_t column) const {
+  const auto count = static_cast<Eigen::Index>(size() - column);
+  if (count == 0) return -1.0;
+  return Eigen::Map<const Eigen::ArrayXd>(row + column, count).abs().maxCoeff();
+}
+
+/// The largest number that is left, of several alike the first; size -1 where none of them is a number.
 FullPivoting::Pivot FullPivoting::choose_pivot(std::size_t step) const {
   Pivot best{step, step, -1.0};
   for (std::size_t i = step; i < size(); ++i) {
-    for (std::size_t j = step; j < size(); ++j) {
-      const double number = std::abs(entry(i, j));
-      if (number > best.size) best = {i, j, number};
-    }
+    const double number = row_sizes_[row_order_[i]];
+    if (number > best.size) best = {i, step, number};
   }
+  const double* const row = row_at(best.row);
+  while (best.column + 1 < size() && std::abs(row[best.column]) != best.size) ++best.column;
   return best;
+}
+
+/// Brings a column to a place, and that which is there to its own.
+void FullPivoting::swap_columns(std::size_t a, std::size_t b) {
+  if (a == b) return;
+  std::swap(column_order_[a], column_order_[b]);
+  const std::size_t n = size();
+  for (double *row = matrix_.data(), *const end = row + n * n; row != end; row += n)
+    std::swap(row[a], row[b]);
 }
 
 /// One equation, without the search.
@@ -39,22 +58,30 @@ bool FullPivoting::solve_one(double& right) {
 bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   const std::size_t n = size();
   if (n == 1) return solve_one(right[0]);
+  row_sizes_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) row_sizes_[i] = largest_from(matrix_.data() + i * n, 0);
   double largest = 0.0;
   for (std::size_t step = 0; step < n; ++step) {
     const Pivot pivot = choose_pivot(step);
     if (step == 0) largest = pivot.size;
+    if (pivot.size < 0.0) {
+      std::fill(right.begin(), right.end(), std::numeric_limits<double>::quiet_NaN());
+      return false;
+    }
     if (!(pivot.size > dependent * largest)) {
       rank_ = step;
       break;
     }
     std::swap(row_order_[step], row_order_[pivot.row]);
-    std::swap(column_order_[step], column_order_[pivot.column]);
+    swap_columns(step, pivot.column);
+    const double* const of_pivot = row_at(step);
     for (std::size_t i = step + 1; i < n; ++i) {
-      const double factor = entry(i, step) / entry(step, step);
-      if (factor == 0.0) continue;
       double* const row = matrix_.data() + row_order_[i] * n;
-      for (std::size_t j = step + 1; j < n; ++j) row[column_order_[j]] -= factor * entry(step, j);
+      if (row[step] == 0.0) continue;  // its largest number is elsewhere
+      const double factor = row[step] / of_pivot[step];
+      for (std::size_t j = step + 1; j < n; ++j) row[j] -= factor * of_pivot[j];
       right[row_order_[i]] -= factor * right[row_order_[step]];
+      row_sizes_[row_order_[i]] = largest_from(row, step + 1);
     }
   }
   work_.assign(n, 0.0);

@@ -16,7 +16,7 @@ class CAROM_API FullPivoting {
 public:
   /// Sizes the matrix, whose numbers are then to be written to matrix(). \param n rows and columns
   void reset(std::size_t n);
-  /// The matrix, row-major; its factors after solve().
+  /// The matrix, row-major; overwritten by solve().
   [[nodiscard]] double* matrix() { return matrix_.data(); }
   /// Eliminates, and replaces the right side by a solution: unknowns beyond the rank are zero. False if a
   /// number is not finite. \param dependent pivots below this part of the largest are rounding
@@ -34,17 +34,20 @@ public:
   void null_vector(std::size_t free, std::vector<double>& out) const;
 
 private:
-  [[nodiscard]] double entry(std::size_t i, std::size_t j) const {
-    return matrix_[row_order_[i] * size() + column_order_[j]];
-  }
+  // Columns are moved into the order of elimination, so that rows are read on end; rows stay where they are.
+  [[nodiscard]] const double* row_at(std::size_t i) const { return matrix_.data() + row_order_[i] * size(); }
+  [[nodiscard]] double entry(std::size_t i, std::size_t j) const { return row_at(i)[j]; }
   [[nodiscard]] bool solve_one(double& right);
   struct Pivot {
     std::size_t row, column;  // in the order of elimination
     double size;
   };
+  [[nodiscard]] double largest_from(const double* row, std::size_t column) const;
   [[nodiscard]] Pivot choose_pivot(std::size_t step) const;
+  void swap_columns(std::size_t a, std::size_t b);
 
   std::vector<double> matrix_, work_;
+  std::vector<double> row_sizes_;  // largest number that is left, by row
   std::vector<std::size_t> row_order_, column_order_;
   std::size_t rank_ = 0;
 };

@@ -57,6 +57,7 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
   if (group.impacts.resolve(at)) {
     group.modes.forget_ends();  // what stopped moves again,
     at.update();                // and loads may depend on velocities
+    group.impacts.settle(at);
   }
   group.modes.select(at);
   group.phase = {is_connected(group) ? start_flow(group, at) : Phase::parted};

@@ -48,6 +48,17 @@ bool ImpactStage::resolve(EventInstant& at) {
                  std::move(names));
 }
 
+void ImpactStage::settle(EventInstant& at) {
+  for (int round = 0; round < most_closings_at_once; ++round) {
+    bool any = false;
+    for (std::size_t island = 0; island < at.islands.size(); ++island) {
+      any = memory_->settling.settle(at.islands.pairs(island), at, *chain_) || any;
+    }
+    if (!any || !resolve(at)) return;
+    at.update();
+  }
+}
+
 double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventInstant& at) const {
   double fastest = 0.0;
   for (const Index i : pairs) {
@@ -72,18 +83,16 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   share_impact_restitution(touching, at.velocities(), 0.0);
   if (captured) add_captured(pairs, at);
   if (captured || memory_->note.cut_sequence) remove_restitution();
-  IslandProblem& problem = memory_->problem;
-  problem.use(nullptr, ImpactLaw::newton);
-  if (!captured && !memory_->note.cut_sequence) choose_law(problem);
+  IslandProblem& problem = captured || memory_->note.cut_sequence ? memory_->problem : problem_by_law();
   const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
   if (!solve(problem, at)) {
-    if (!closes_slow) fail_unsolved(at);
+    if (!closes_slow) fail_unsolved(problem, at);
     // Slower than the capture speed all that touches closes anyway.
     problem.forget_impulses();
   } else if (options_->impact_rules.energy_gain == EnergyGain::limit && !captured) {
     const auto again = [&] { return solve(problem, at); };
     memory_->note.restitution_factor = limit_gain(problem, touching, again);
-    if (!problem.report().usable()) fail_unsolved(at);
+    if (!problem.report().usable()) fail_unsolved(problem, at);
   }
   const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
@@ -97,8 +106,8 @@ bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
   return joints.solve(problem, memory_->touching, at.now, *chain_);
 }
 
-/// Has the problem solved by the law of its contacts. Fails where they have different ones.
-void ImpactStage::choose_law(IslandProblem& problem) const {
+/// The problem that is solved by the law of its contacts. Fails where they have different ones.
+IslandProblem& ImpactStage::problem_by_law() {
   const std::optional<ImpactLaw> law = law_of_impact(memory_->touching);
   if (!law) {
     failure_->fail(
@@ -106,7 +115,9 @@ void ImpactStage::choose_law(IslandProblem& problem) const {
         "instant, or impact_rules.order sequential",
         failure_->names(memory_->touching));
   }
-  if (*law != ImpactLaw::newton) problem.use(&memory_->by_law, *law);
+  if (*law == ImpactLaw::newton) return memory_->problem;
+  memory_->of_other_law.use(&memory_->by_law, *law);
+  return memory_->of_other_law;
 }
 
 void ImpactStage::remove_restitution() {
@@ -140,8 +151,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
   }
 }
 
-void ImpactStage::fail_unsolved(const EventInstant& at) const {
-  const IslandProblem& problem = memory_->problem;
+void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) const {
   const std::vector<Constraint>& touching = memory_->touching;
   std::string what = "the contact problem of an impact is not solved (" +
                      std::string(to_string(problem.report().outcome)) + at.motion.model().driven() + ")";

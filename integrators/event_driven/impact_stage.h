@@ -13,6 +13,7 @@
 #include <carom/integrators/event_driven/accumulation.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/group_failure.h>
+#include <carom/integrators/event_driven/impact_settling.h>
 #include <carom/integrators/run/impact_note.h>
 
 #include <cstdint>
@@ -28,16 +29,22 @@ struct ImpactCounts {
   int closings = 0;  ///< and of those that were slow: projections that closed contacts
 };
 
+/// Ways of solving an impact of many contacts by Newton's law: by sweeps, whose modes are solved exactly.
+inline constexpr IslandOptions many_contacts{.factored_from = factored_constraints,
+                                             .factored_to = most_exact_contacts};
+
 /// Memory of impacts, shared by clock groups.
 struct ImpactMemory {
-  IslandProblem problem;
-  std::vector<Constraint> touching;  ///< constraints of the problem,
-  std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
+  IslandProblem problem{many_contacts};  ///< by Newton's law,
+  IslandProblem of_other_law;            ///< and by others
+  std::vector<Constraint> touching;      ///< constraints of the problem,
+  std::vector<Index> places;             ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
   std::vector<double> before_closing;  ///< state
   std::vector<ImpactCounts> counts;    ///< by island
   ImpactSolver by_law;
   ImpactNote note;  ///< of the impact at hand
+  ImpactSettling settling;
 };
 
 /// The impacts of one clock group.
@@ -55,6 +62,9 @@ public:
   /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
   /// loads and accelerations those before.
   [[nodiscard]] bool resolve(EventInstant& at);
+  /// Settles what the impacts left slower than the capture speed, and solves the impacts that this leads to.
+  /// \param at brought to the state after the impacts; is so again
+  void settle(EventInstant& at);
   /// Applies the answer of a problem of contacts of one island, books and records it.
   void apply(EventKind kind, const IslandProblem& problem, EventInstant& at);
 
@@ -62,7 +72,7 @@ private:
   [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
   void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
   [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
-  void choose_law(IslandProblem& problem) const;
+  [[nodiscard]] IslandProblem& problem_by_law();
   void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
@@ -72,7 +82,7 @@ private:
   enum class Closing : std::uint8_t { with_sliding, all, pressed };
   [[nodiscard]] bool close_captured(Closing closing, double slow, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
-  [[noreturn]] void fail_unsolved(const EventInstant& at) const;
+  [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at) const;
 
   const EventDriven* options_;
   const GroupFailure* failure_;

@@ -61,6 +61,25 @@ private:
 
 }  // namespace
 
+void GroupSamples::take(double time, ClockGroup& group) {
+  const auto is_of = [&](const auto& known) { return known.first == &group; };
+  const auto found = std::find_if(known_.begin(), known_.end(), is_of);
+  if (found != known_.end() && found->second == time) return;
+  JoinableGroup(group).sample(time, false, at_);
+  if (found != known_.end()) {
+    found->second = time;
+  } else {
+    known_.emplace_back(&group, time);
+  }
+}
+
+const MotionSample& GroupSamples::at(double time, ClockGroup& a, ClockGroup& b) {
+  if (at_.state.time != time) known_.clear();  // shapes on ground stand where they did then
+  take(time, a);
+  take(time, b);
+  return at_;
+}
+
 /// Calls f(bodies, other group, pairs) for bodies of other groups whose volumes overlap those of a group.
 template <class F>
 void MeetingSearch::for_neighbours(ClockGroup& group, F&& f) {
@@ -84,6 +103,8 @@ void MeetingSearch::for_neighbours(ClockGroup& group, F&& f) {
 }
 
 void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
+  begins_.forget();
+  ends_.forget();
   for_neighbours(group, [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
     const double end = std::min(flights_->horizon(bodies.a.component), flights_->horizon(bodies.b.component));
     if (!(end > time)) return;
@@ -121,15 +142,14 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
     const double time = first_closing(path, gap, rule, from, to);
     return time < never ? std::clamp(time, begin, end) : never;
   }
-  GroupsPath path(bodies.of_a, bodies.of_b, false, at_);
   double speed = 0.0, pull = 0.0;
-  const auto look = [&](double time) -> GapLook {
-    const MotionSample& at = path.sample(time);
+  const auto look = [&](double time, GroupSamples& samples) -> GapLook {
+    const MotionSample& at = samples.at(time, bodies.of_a, bodies.of_b);
     speed = std::max(speed, bound.most_speed(at.state.v.data(), nullptr));
     pull = std::max(pull, bound.most_speed(at.acceleration.data(), nullptr));
     return {time, true, gap_in(gap, at)};
   };
-  const GapLook from = look(begin), to = look(end);
+  const GapLook from = look(begin, begins_), to = look(end, ends_);
   constexpr double unseen = 2.0;
   rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
   rule.level = std::min(0.0, from.gap.value);
@@ -184,13 +204,13 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
       least = std::min(least, apart.norm() - bound.rounding);
       continue;
     }
-    GroupsPath path(bodies.of_a, bodies.of_b, false, at_);
-    least = std::min(least, gap_in(gap, path.sample(time)).value);
+    least = std::min(least, gap_in(gap, begins_.at(time, bodies.of_a, bodies.of_b)).value);
   }
   return least;
 }
 
 void MeetingSearch::add_near(double time, double near, std::vector<ClockGroup*>& list) {
+  begins_.forget();
   for (std::size_t i = 0; i < list.size(); ++i) {
     for_neighbours(*list[i], [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
       ClockGroup* const other = &bodies.of_a == list[i] ? &bodies.of_b : &bodies.of_a;

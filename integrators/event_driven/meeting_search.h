@@ -15,9 +15,27 @@
 #include <carom/integrators/event_driven/pair_closing.h>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace carom {
+
+/// Motions of groups at one time each: a group that is near several others is evaluated once.
+class CAROM_API GroupSamples {
+public:
+  /// Memory for any group of a model.
+  explicit GroupSamples(const Assembly& assembly) : at_(assembly) {}
+  /// Forgets all: groups went on.
+  void forget() { known_.clear(); }
+  /// Two groups at a time within their steps, by interpolation.
+  [[nodiscard]] const MotionSample& at(double time, ClockGroup& a, ClockGroup& b);
+
+private:
+  void take(double time, ClockGroup& group);
+
+  MotionSample at_;
+  std::vector<std::pair<const ClockGroup*, double>> known_;  // and times
+};
 
 /// The search for meetings of groups. Keeps memory only.
 class CAROM_API MeetingSearch {
@@ -25,7 +43,13 @@ public:
   /// All must outlive it.
   MeetingSearch(const Assembly& assembly, const Detector& detector, GroupSet& groups,
                 const BodyFlights& flights)
-      : assembly_(&assembly), detector_(&detector), groups_(&groups), flights_(&flights), at_(assembly) {}
+      : assembly_(&assembly),
+        detector_(&detector),
+        groups_(&groups),
+        flights_(&flights),
+        begins_(assembly),
+        ends_(assembly),
+        at_(assembly) {}
 
   /// Makes appointments for all meetings of a group with others from a time on, before the horizons of both.
   void find(ClockGroup& group, double time, MeetingQueue& queue);
@@ -51,6 +75,7 @@ private:
   const Detector* detector_;
   GroupSet* groups_;
   const BodyFlights* flights_;
+  GroupSamples begins_, ends_;      // of the times searched
   MotionSample at_;                 // of two groups
   std::vector<ContactPair> pairs_;  // of two bodies
 };

@@ -1,0 +1,152 @@
+// Problem: which of the closed contacts that an impact shakes come to rest again at once?
+
+#include <carom/integrators/event_driven/constraint_projection.h>
+#include <carom/integrators/event_driven/impact_settling.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain) {
+  if (!list_touching(pairs, at) || !solve_ahead(at, chain) || !list_held(at)) return false;
+  before_.assign(at.y.begin(), at.y.end());
+  if (project(pairs, at)) return true;
+  std::copy(before_.begin(), before_.end(), at.y.begin());
+  at.update();
+  return false;
+}
+
+/// Lists what touches and does not fly off. False if nothing is left to settle.
+bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInstant& at) {
+  const double capture = at.motion.model().options->capture_speed, noise = at.scales.speed_noise;
+  touching_.clear();
+  places_.clear();
+  bool any = false;
+  for (const Index i : pairs) {
+    if (!at.touches(i) || -at.approach(i) > capture) continue;
+    const Constraint& contact = at.contacts[i];
+    if (contact.has_dry_friction() && !at.motion.joints().depends_on_joint_force(contact)) continue;
+    Constraint& listed = touching_.emplace_back(contact);
+    places_.push_back(i);
+    listed.law.normal_restitution = listed.law.tangential_restitution = 0.0;
+    listed.law.rolling_restitution = 0.0;
+    listed.friction_bound = 0.0;
+    const double sliding = contact.sliding_speed(at.velocities());
+    listed.friction = sliding <= capture ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
+    if (at.before_at[i] == none) continue;
+    any = any || -at.approach(i) > noise;
+    any = any || (sliding > noise && sliding <= capture && at.before[at.before_at[i]].sticks());
+  }
+  return any;
+}
+
+/// Solves for the velocities after the time in which what parts at the capture speed comes back:
+/// b = gamma + time a, without restitution.
+bool ImpactSettling::solve_ahead(EventInstant& at, SolverChain& chain) {
+  double pull = 0.0;
+  for (const Constraint& contact : touching_) {
+    for (int row = 0; row < contact.rows; ++row)
+      pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
+  }
+  if (!(pull > 0.0)) return false;
+  const double time = 2.0 * at.motion.model().options->capture_speed / pull;
+  for (Constraint& contact : touching_) {
+    for (std::size_t row = 0; row < Constraint::max_rows; ++row)
+      contact.surface_velocity_after[row] = contact.surface_velocity[row] - time * contact.drift[row];
+  }
+  ahead_.assign(at.now.state.v.begin(), at.now.state.v.end());
+  at.motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
+    for (Index i = v.begin; i < v.end; ++i) ahead_[i] += time * at.now.acceleration[i];
+  });
+  at.motion.joints().build(problem_, touching_, at.velocities());
+  problem_.set_free_velocity(ahead_.data());
+  if (!problem_.problem().is_factored()) return problem_.solve(chain).usable();
+  // It is asked which contacts are pressed, not how much: exact solvers would take most of the time.
+  constexpr double good_enough = 1e-3;
+  impulse_.assign(static_cast<std::size_t>(problem_.problem().rows()), 0.0);
+  const ContactReport report = chain.solve_with(SolverId::nonlinear_cg, problem_.problem(), impulse_);
+  if (!(report.residual <= good_enough)) return false;
+  problem_.set_impulses(impulse_);
+  return true;
+}
+
+/// Lists the contacts that are pressed then. False if they need not be stopped.
+bool ImpactSettling::list_held(const EventInstant& at) {
+  const double capture = at.motion.model().options->capture_speed, noise = at.scales.speed_noise;
+  held_.clear();
+  bool any = false;
+  // Sweeps leave what sticks with some velocity: it is told by its friction.
+  const auto is_inside = [&](std::size_t c) {
+    constexpr double within = 0.999;
+    const auto row = static_cast<std::size_t>(problem_.first_row(c));
+    return problem_.modes()[c] == ContactMode::stick ||
+           std::abs(problem_.impulses()[row + 1]) < within * touching_[c].friction * problem_.impulses()[row];
+  };
+  for (std::size_t c = 0; c < touching_.size(); ++c) {
+    const Constraint& contact = touching_[c];
+    const Index place = places_[c];
+    if (contact.has_dry_friction() || at.before_at[place] == none) continue;
+    if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
+    const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
+    const bool sticks =
+        contact.rows > 1 && is_inside(c) && at.before[at.before_at[place]].sticks() && sliding <= capture;
+    any = any || -at.approach(place) > noise || (sticks && sliding > noise);
+    ActiveContact& held = held_.emplace_back();
+    held.mode = sticks ? ContactMode::stick : ContactMode::slip_positive;
+    held.at = at.contacts[place];
+    held.place = place;
+  }
+  return any;
+}
+
+/// Holds what touches and approaches now, too: what stops one contact may push another. False if there is
+/// nothing.
+bool ImpactSettling::hold_approaching(std::span<const Index> pairs, const EventInstant& at) {
+  const std::size_t before = held_.size();
+  for (const Index i : pairs) {
+    const Constraint& contact = at.contacts[i];
+    if (!at.touches(i) || contact.has_dry_friction() || at.approach(i) <= at.scales.speed_noise) continue;
+    const auto same = [&](const ActiveContact& held) { return held.place == i; };
+    const auto known = held_.begin() + static_cast<std::ptrdiff_t>(before);
+    if (std::any_of(held_.begin(), known, same)) continue;  // rounding, or a turned row
+    ActiveContact& held = held_.emplace_back();
+    held.mode = ContactMode::slip_positive;
+    held.at = contact;
+    held.place = i;
+  }
+  return held_.size() > before;
+}
+
+/// Takes the velocities of the contacts held away. False if that does not succeed; the state is of no use
+/// then.
+bool ImpactSettling::project(std::span<const Index> pairs, EventInstant& at) {
+  constexpr int most_projections = 3;  // a shift turns rows
+  const double noise = at.scales.speed_noise;
+  std::vector<ActiveContact>& active = at.motion.active().list();
+  const auto is_still = [&](const ActiveContact& held) {
+    return std::abs(held.at.normal_velocity(at.velocities())) <= noise;
+  };
+  double lost = 0.0, shift = 0.0;
+  for (int i = 0; i < most_projections;) {
+    active.swap(held_);
+    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
+    active.swap(held_);
+    lost += projection.lost;
+    shift += projection.shift;
+    if (projection.changed) at.update();
+    for (ActiveContact& held : held_) held.at = at.contacts[held.place];
+    if (hold_approaching(pairs, at)) {
+      i = 0;
+    } else if (!projection.changed || std::all_of(held_.begin(), held_.end(), is_still)) {
+      at.balance.flows[EnergyFlow::accumulation] += lost;
+      at.balance.shift = std::max(at.balance.shift, shift);
+      return true;
+    } else {
+      ++i;
+    }
+  }
+  return false;
+}
+
+}  // namespace carom

@@ -1,0 +1,48 @@
+#pragma once
+
+/// \file
+/// Closed contacts through an impact of their neighbours: those that it parts, or makes slide, slower than
+/// the capture speed although loads hold them stay as they were. It is what the capture of slow impacts is to
+/// the contact that bounces (docs/method.md, section 7, *Accumulation of impacts*): in a pile every impact
+/// shakes all that touches, and each contact that bounces lower than the neglected height would end its
+/// bounce, and each short slide, by an event of its own.
+
+#include <carom/contact/active_contact.h>
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/event_driven/event_instant.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Settles one island at a time. Keeps memory only.
+class CAROM_API ImpactSettling {
+public:
+  /// Closes contacts of an island that were closed before the event and part slower than the capture speed,
+  /// and stops those that stuck and slide slower, where forces of contact do so within the time in which what
+  /// parts at that speed comes back. Books the energy as that of accumulations. True if velocities changed;
+  /// the instant is up to date then, and contacts may approach each other. \param at brought to the state
+  /// after the impacts
+  [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain);
+
+private:
+  [[nodiscard]] bool list_touching(std::span<const Index> pairs, const EventInstant& at);
+  [[nodiscard]] bool solve_ahead(EventInstant& at, SolverChain& chain);
+  [[nodiscard]] bool list_held(const EventInstant& at);
+  [[nodiscard]] bool hold_approaching(std::span<const Index> pairs, const EventInstant& at);
+  [[nodiscard]] bool project(std::span<const Index> pairs, EventInstant& at);
+
+  IslandProblem problem_{{.factored_from = factored_constraints, .factored_to = most_exact_contacts}};
+  std::vector<Constraint> touching_;
+  std::vector<Index> places_;    // their pairs
+  std::vector<double> ahead_;    // velocities
+  std::vector<double> impulse_;  // by row, of sweeps
+  std::vector<ActiveContact> held_;
+  std::vector<double> before_;  // state
+};
+
+}  // namespace carom
