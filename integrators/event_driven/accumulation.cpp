@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/accumulation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,10 +15,25 @@ void Accumulation::clear() {
   contacts_.clear();
 }
 
+/// Lets go of contacts that no impact has any more.
+void Accumulation::forget_contacts() {
+  std::array<std::uint8_t, 2 * remembered> place{};  // 0: of no impact; else one more than the new place
+  for (const std::uint8_t of : of_) place[of] = 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (place[i] == 0) continue;
+    contacts_[kept++] = contacts_[i];
+    place[i] = static_cast<std::uint8_t>(kept);
+  }
+  contacts_.resize(kept);
+  for (std::uint8_t& of : of_) of = static_cast<std::uint8_t>(place[of] - 1);
+}
+
 /// The place of a contact among those of the impacts, where it is put if need be.
 std::uint8_t Accumulation::place(const ConstraintKey& contact) {
   const auto known = std::find(contacts_.begin(), contacts_.end(), contact);
   if (known != contacts_.end()) return static_cast<std::uint8_t>(known - contacts_.begin());
+  if (contacts_.size() >= remembered) forget_contacts();
   contacts_.push_back(contact);
   return static_cast<std::uint8_t>(contacts_.size() - 1);
 }
@@ -28,18 +44,10 @@ void Accumulation::insert(std::size_t before, double time, const ConstraintKey& 
   times_.insert(times_.begin() + at, time);
 }
 
-/// And contacts that no impact has any more.
 void Accumulation::forget_first(std::size_t count) {
   const auto end = static_cast<std::ptrdiff_t>(count);
   times_.erase(times_.begin(), times_.begin() + end);
   of_.erase(of_.begin(), of_.begin() + end);
-  for (std::size_t place = contacts_.size(); place-- > 0;) {
-    if (std::find(of_.begin(), of_.end(), place) != of_.end()) continue;
-    contacts_.erase(contacts_.begin() + static_cast<std::ptrdiff_t>(place));
-    for (std::uint8_t& other : of_) {
-      if (other > place) --other;
-    }
-  }
 }
 
 void Accumulation::remember(double time, const ConstraintKey& contact) {

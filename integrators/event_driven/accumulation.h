@@ -33,6 +33,7 @@ private:
   static constexpr std::size_t remembered = 32;
 
   [[nodiscard]] const ConstraintKey& contact(std::size_t impact) const { return contacts_[of_[impact]]; }
+  void forget_contacts();
   [[nodiscard]] std::uint8_t place(const ConstraintKey& contact);
   void insert(std::size_t before, double time, const ConstraintKey& contact);
   void forget_first(std::size_t count);

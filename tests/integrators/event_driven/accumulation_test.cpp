@@ -84,4 +84,26 @@ TEST(Accumulation, RepeatedImpactsOfOneInstantCountOnce) {
   EXPECT_TRUE(std::isnan(impacts.end(1.0)));
 }
 
+TEST(Accumulation, ContactsOfLongAgoAreForgotten) {
+  const double ratio = 0.5;
+  Accumulation impacts;
+  Index other = 1;
+  for (; other <= 200; ++other) impacts.remember(1e-3 * other, contact(other));
+  for (int k = 1; k <= 6; ++k) {
+    const double time = 2.0 - std::pow(ratio, k);
+    impacts.remember(time, contact(0));
+    for (int i = 1; i <= 4; ++i) impacts.remember(time + 0.01 * i * std::pow(ratio, k), contact(++other));
+  }
+  std::vector<Constraint> closing(1);
+  closing.front().key = contact(0);
+  const double now = 2.0 - std::pow(ratio, 7);
+  EXPECT_TRUE(std::isnan(impacts.end(now)));
+  EXPECT_NEAR(impacts.end(now, closing), 2.0, 1e-12);
+  // Others that had as many at the same times.
+  Accumulation together;
+  for (Index i = 1; i <= 40; ++i) together.remember(0.01 * i, contact(1000 + i));
+  together.take(impacts);
+  EXPECT_NEAR(together.end(now, closing), 2.0, 1e-12);
+}
+
 }  // namespace
