@@ -1,5 +1,5 @@
-// Rolling resistance in event-driven mode on ground that moves: the moment acts against the spin relative to that
-// of the ground, and the ground does work.
+// Rolling resistance in event-driven mode on ground that moves: the moment acts against the spin relative to
+// that of the ground, and the ground does work.
 
 #include "tests/integrators/event_driven/body_scenes.h"
 
@@ -37,7 +37,8 @@ TEST(EventRollingGround, ImpactOnGroundThatTurns) {
     System system;
     const Surface law{.friction = 0.0, .normal_restitution = e, .rolling_resistance = rho};
     if (pieces) {
-      system.add(planar::Block{.vertices = {{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}, .motion = turning(turn)}, law);
+      system.add(planar::Block{.vertices = {{-1, -1}, {1, -1}, {1, 0}, {-1, 0}}, .motion = turning(turn)},
+                 law);
     } else {
       system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = turning(turn)}, law);
     }
@@ -74,8 +75,8 @@ TEST(EventRollingGround, ADiscRollsWhereItIsInADrumThatTurns) {
 }
 
 TEST(EventRollingGround, ADiscOnAConveyorRollsUntilItMovesWithTheBelt) {
-  // Seen from the belt, which moves with b, the disc comes to rest: at rest on it at first, rolling without slip,
-  // it has the spin b/r and the acceleration rho g/(r (1 + k)).
+  // Seen from the belt, which moves with b, the disc comes to rest: at rest on it at first, rolling without
+  // slip, it has the spin b/r and the acceleration rho g/(r (1 + k)).
   constexpr double rho = 0.01, k = 0.5;
   const double belt = 0.6;
   System system;
@@ -142,7 +143,8 @@ TEST(EventRollingGround, ARockingPlaneHoldsADisc) {
       .angular_acceleration = [size, rate](double t) { return -size * rate * rate * std::sin(rate * t); }};
   system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = motion},
              Surface{.friction = 2.0, .normal_restitution = 0.0, .rolling_resistance = rho});
-  const BodyId disc = add_disc(system, mass, radius, {0.0, radius}, {-size * rate * radius, 0.0}, size * rate);
+  const BodyId disc =
+      add_disc(system, mass, radius, {0.0, radius}, {-size * rate * radius, 0.0}, size * rate);
   Simulation simulation(system, EventDriven{});
   for (const double time : {1.0, 3.0, 10.0}) {
     simulation.run_until(time);

@@ -259,7 +259,8 @@ TEST(SmoothMotionJacobian, ContactsThatStickAndSlip) {
 TEST(SmoothMotionJacobian, RollingResistance) {
   // Behind the contact its resistance, held or at its bound.
   const auto stick = ContactMode::stick, slip = ContactMode::slip_positive, back = ContactMode::slip_negative;
-  for (const auto& [contact, rolling] : {std::pair(stick, stick), {stick, slip}, {slip, back}, {slip, stick}}) {
+  for (const auto& [contact, rolling] :
+       {std::pair(stick, stick), {stick, slip}, {slip, back}, {slip, stick}}) {
     System system;
     system.add(Gravity{{0.0, -9.81}});
     const Surface law{.friction = 0.3, .normal_restitution = 0.0, .rolling_resistance = 0.05};
