@@ -38,9 +38,8 @@ private:
 
   IslandProblem problem_{{.factored_from = factored_constraints, .factored_to = most_exact_contacts}};
   std::vector<Constraint> touching_;
-  std::vector<Index> places_;    // their pairs
-  std::vector<double> ahead_;    // velocities
-  std::vector<double> impulse_;  // by row, of sweeps
+  std::vector<Index> places_;  // their pairs
+  std::vector<double> ahead_;  // velocities
   std::vector<ActiveContact> held_;
   std::vector<double> before_;  // state
 };

@@ -186,6 +186,15 @@ TEST(EventPilesLong, TwentyDiscsComeToRest) {
   EXPECT_NEAR(difference_at_rest({20, true, 0.5, 0.0, 3}, 2.5), 0.0, 0.05);
 }
 
+// Each impact shook all that touched, and each shake was ended by events of its own: no end in 800 s of
+// processor time.
+TEST(EventPilesLong, TwentyDiscsThatBounceComeToRest) {
+  Runs runs;
+  run({20, true, 0.5, 0.3, 3}, 2.0, runs);
+  EXPECT_EQ(runs.failed, 0);
+  EXPECT_EQ(runs.at_rest, 1);
+}
+
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
