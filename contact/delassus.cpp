@@ -1,94 +1,13 @@
 // Problem: how impulses along the rows of constraints change the velocities along the same rows.
 
 #include <carom/contact/delassus.h>
+#include <carom/contact/one_body_products.h>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <utility>
 
 namespace carom {
-
-namespace {
-
-constexpr std::size_t of_planar_body = 3;  // velocities, the last of them its spin
-
-/// Numbers of a row of a constraint of one body of S velocities.
-template <std::size_t S>
-const double* row_of_one(const Constraint& at, int row) {
-  return at.jacobian.data() + S * static_cast<std::size_t>(row);
-}
-
-/// Responses of one body of S velocities.
-template <std::size_t S>
-void answer_alone(std::span<const ImpulseDirection> directions, const double* mass, const double* inertia,
-                  double* x) {
-  std::array<double, S> masses;
-  for (std::size_t c = 0; c < S; ++c) masses[c] = c < 2 ? *mass : *inertia;
-  for (const ImpulseDirection& direction : directions) {
-    const Constraint& at = *direction.constraint;
-    const double* const row = row_of_one<S>(at, direction.row);
-    // In registers until they are divided.
-    std::array<double, S> column;
-    for (std::size_t c = 0; c < S; ++c) column[c] = row[c];
-    if (direction.ratio != 0.0) {
-      const double* const tangent = row_of_one<S>(at, at.tangent_row());
-      for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratio * tangent[c];
-    }
-    if constexpr (S == of_planar_body) {
-      if (direction.lever != 0.0) column[S - 1] += direction.lever;
-    }
-    for (std::size_t c = 0; c < S; ++c) x[c] = column[c] / masses[c];
-    x += S;
-  }
-}
-
-/// Product of a row and a response of one body of S velocities.
-template <std::size_t S>
-double product(const double* row, const double* response) {
-  double sum = 0.0;
-  for (std::size_t c = 0; c < S; ++c) sum += row[c] * response[c];
-  return sum;
-}
-
-/// Products of rows and columns of one body of S velocities. \param lower of the lower triangle, mirrored
-template <std::size_t S>
-void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
-              double* matrix) {
-  const std::size_t n = directions.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const double* const row = row_of_one<S>(*directions[i].constraint, directions[i].row);
-    const double* response = responses;
-    for (std::size_t j = 0; j < (lower ? i + 1 : n); ++j, response += S) {
-      matrix[i * n + j] = product<S>(row, response);
-      if (lower) matrix[j * n + i] = matrix[i * n + j];
-    }
-  }
-}
-
-/// Likewise of the lower triangle, of one planar contact without loops.
-template <std::size_t S>
-void multiply_symmetric(std::span<const ImpulseDirection> directions, const double* responses,
-                        double* matrix) {
-  if (directions.size() != 2) return multiply<S>(directions, responses, true, matrix);
-  const double* const first = row_of_one<S>(*directions[0].constraint, directions[0].row);
-  const double* const second = row_of_one<S>(*directions[1].constraint, directions[1].row);
-  const double mixed = product<S>(second, responses);
-  matrix[0] = product<S>(first, responses);
-  matrix[1] = matrix[2] = mixed;
-  matrix[3] = product<S>(second, responses + S);
-}
-
-/// Adds responses of one body of S velocities.
-template <int S>
-void add_alone(const double* responses, std::span<const double> impulses, double scale, double* x) {
-  for (const double number : impulses) {
-    const double impulse = scale * number;
-    for (int c = 0; c < S; ++c) x[c] += *responses++ * impulse;
-  }
-}
-
-}  // namespace
 
 /// Responses of one body that answers for itself, the usual case, in a tight loop. Returns the number of its
 /// velocities, 0 if there is no such body.
@@ -105,9 +24,9 @@ int Delassus::build_of_one_body(const BodyResponse& response) {
   common_ = {block.v, block.v + static_cast<Index>(block.columns)};
   responses_.resize(size() * common_.size());
   if (masses.layout == BodyMasses::Layout::planar_points) {
-    answer_alone<2>(directions_, masses.mass, masses.mass, responses_.data());
+    one_body::answer_alone<2>(directions_, masses.mass, masses.mass, responses_.data());
   } else {
-    answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
+    one_body::answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
   }
   return block.columns;
 }
@@ -247,8 +166,8 @@ void Delassus::write_column(std::size_t j) {
     if (direction.ratio != 0.0) {
       for (int c = 0; c < block->columns; ++c) x[c] += direction.ratio * tangent[c];
     }
-    if (direction.lever != 0.0 && block->columns == static_cast<int>(of_planar_body))
-      x[of_planar_body - 1] += b == 0 ? direction.lever : -direction.lever;
+    if (direction.lever != 0.0 && block->columns == static_cast<int>(one_body::of_planar_body))
+      x[one_body::of_planar_body - 1] += b == 0 ? direction.lever : -direction.lever;
     number += block->columns;
     tangent += block->columns;
   }
@@ -316,8 +235,8 @@ void Delassus::write_entries(bool lower, double* matrix) const {
 }
 
 void Delassus::write_symmetric(double* matrix) const {
-  if (velocities_of_one_ == 3) return multiply_symmetric<3>(directions_, responses_.data(), matrix);
-  if (velocities_of_one_ == 2) return multiply_symmetric<2>(directions_, responses_.data(), matrix);
+  if (velocities_of_one_ == 3) return one_body::multiply_symmetric<3>(directions_, responses_.data(), matrix);
+  if (velocities_of_one_ == 2) return one_body::multiply_symmetric<2>(directions_, responses_.data(), matrix);
   write_entries(true, matrix);
   const std::size_t n = size();
   for (std::size_t row = 0; row < n; ++row) {
@@ -327,17 +246,17 @@ void Delassus::write_symmetric(double* matrix) const {
 }
 
 void Delassus::write(double* matrix) const {
-  if (velocities_of_one_ == 3) return multiply<3>(directions_, responses_.data(), false, matrix);
-  if (velocities_of_one_ == 2) return multiply<2>(directions_, responses_.data(), false, matrix);
+  if (velocities_of_one_ == 3) return one_body::multiply<3>(directions_, responses_.data(), false, matrix);
+  if (velocities_of_one_ == 2) return one_body::multiply<2>(directions_, responses_.data(), false, matrix);
   write_entries(false, matrix);
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
   if (factored_) return add_factored_response(impulses, x, scale);
   if (velocities_of_one_ == 3)
-    return add_alone<3>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
+    return one_body::add_alone<3>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
   if (velocities_of_one_ == 2)
-    return add_alone<2>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
+    return one_body::add_alone<2>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
   const auto add = [&](const double* response, double impulse, Range v) {
     for (Index i = v.begin; i < v.end; ++i) x[i] += *response++ * impulse;
   };

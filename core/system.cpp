@@ -36,59 +36,6 @@ std::vector<JointId> System::joints() const { return identities<JointId>(joints_
 std::vector<ShapeId> System::shapes() const { return identities<ShapeId>(shapes_); }
 std::vector<ObstacleId> System::obstacles() const { return identities<ObstacleId>(ground_shapes_); }
 
-std::string System::describe(std::string_view label, const std::string& name, Index serial) {
-  std::string text(label);
-  return name.empty() ? text + " #" + std::to_string(serial) : text + " '" + name + "'";
-}
-
-void System::take_dimension(int dimension, std::string_view label) const {
-  if (dimension == 0 || dimension_ == 0 || dimension == dimension_) return;
-  throw ModelError(std::string(label) + ": dimension is " + std::to_string(dimension) +
-                   "; allowed: " + std::to_string(dimension_) + ", as the other parts of the system");
-}
-
-void System::check_name(Role role, const std::string& name, std::string_view label) const {
-  if (name.empty()) return;
-  const auto names = serials_by_name_.find(role);
-  if (names == serials_by_name_.end() || !names->second.contains(name)) return;
-  throw ModelError(std::string(label) + " '" + name +
-                   "': name is taken; allowed: a name no other part of its role has");
-}
-
-template <class K>
-Index System::add_to(Registry<K>& registry, Role role, const PartType<K>& type, const void* part,
-                     std::string name) {
-  const Index serial = registry.next_serial();
-  take_dimension(type.dimension, type.label);
-  check_name(role, name, type.label);
-  registry.add(type, part, PartCheck(describe(type.label, name, serial), *this));
-  added(role, type.dimension, serial, std::move(name));
-  return serial;
-}
-
-// Here, so that programs do not compile them for every part.
-template CAROM_API Index System::add_to(Registry<BodyKind>&, Role, const PartType<BodyKind>&, const void*,
-                                        std::string);
-template CAROM_API Index System::add_to(Registry<ForceKind>&, Role, const PartType<ForceKind>&, const void*,
-                                        std::string);
-template CAROM_API Index System::add_to(Registry<JointKind>&, Role, const PartType<JointKind>&, const void*,
-                                        std::string);
-template CAROM_API Index System::add_to(Registry<ShapeKind>&, Role, const PartType<ShapeKind>&, const void*,
-                                        std::string);
-template CAROM_API Index System::add_to(Registry<GroundShapeKind>&, Role, const PartType<GroundShapeKind>&,
-                                        const void*, std::string);
-
-void System::check_surface(const Surface& surface, std::string_view label, const std::string& name) const {
-  PartCheck(describe(label, name, ground_shapes_.next_serial()), *this).surface(surface);
-}
-
-void System::added(Role role, int dimension, Index serial, std::string name) {
-  if (dimension_ == 0) dimension_ = dimension;
-  if (name.empty()) return;
-  serials_by_name_[role].emplace(name, serial);
-  names_[role].emplace(serial, std::move(name));
-}
-
 template <class Identity, class K>
 std::string System::name_in(Role role, const Registry<K>& registry, Identity id) const {
   if (!id.valid()) return "part that was never given";

@@ -227,7 +227,7 @@ TEST(OneSidedSprings, TooManyEventsNameTheSpring) {
   system.add(Bumper{.from = {ground, {0.0, 1.0}}, .to = dot, .stiffness = 1e4, .free_length = 0.4});
   Simulation simulation(system, EventDriven{.event_limit = 1.0});
   try {
-    simulation.run_until(20.0);
+    simulation.run_until(1e3);
     ADD_FAILURE() << "not refused";
   } catch (const SolverError& error) {
     const std::string what = error.what();

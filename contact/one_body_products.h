@@ -1,0 +1,93 @@
+#pragma once
+
+/// \file
+/// W of the constraints of one body that answers for itself, in tight loops over its 2 or 3 velocities: the
+/// usual case of an impact.
+
+#include <carom/contact/delassus.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace carom::one_body {
+
+/// Velocities of a planar body.
+inline constexpr std::size_t of_planar_body = 3;  // the last of them its spin
+
+/// Numbers of a row of a constraint of one body of S velocities.
+template <std::size_t S>
+const double* row_of_one(const Constraint& at, int row) {
+  return at.jacobian.data() + S * static_cast<std::size_t>(row);
+}
+
+/// Responses of one body of S velocities.
+template <std::size_t S>
+void answer_alone(std::span<const ImpulseDirection> directions, const double* mass, const double* inertia,
+                  double* x) {
+  std::array<double, S> masses;
+  for (std::size_t c = 0; c < S; ++c) masses[c] = c < 2 ? *mass : *inertia;
+  for (const ImpulseDirection& direction : directions) {
+    const Constraint& at = *direction.constraint;
+    const double* const row = row_of_one<S>(at, direction.row);
+    // In registers until they are divided.
+    std::array<double, S> column;
+    for (std::size_t c = 0; c < S; ++c) column[c] = row[c];
+    if (direction.ratio != 0.0) {
+      const double* const tangent = row_of_one<S>(at, at.tangent_row());
+      for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratio * tangent[c];
+    }
+    if constexpr (S == of_planar_body) {
+      if (direction.lever != 0.0) column[S - 1] += direction.lever;
+    }
+    for (std::size_t c = 0; c < S; ++c) x[c] = column[c] / masses[c];
+    x += S;
+  }
+}
+
+/// Product of a row and a response of one body of S velocities.
+template <std::size_t S>
+double product(const double* row, const double* response) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < S; ++c) sum += row[c] * response[c];
+  return sum;
+}
+
+/// Products of rows and columns of one body of S velocities. \param lower of the lower triangle, mirrored
+template <std::size_t S>
+void multiply(std::span<const ImpulseDirection> directions, const double* responses, bool lower,
+              double* matrix) {
+  const std::size_t n = directions.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* const row = row_of_one<S>(*directions[i].constraint, directions[i].row);
+    const double* response = responses;
+    for (std::size_t j = 0; j < (lower ? i + 1 : n); ++j, response += S) {
+      matrix[i * n + j] = product<S>(row, response);
+      if (lower) matrix[j * n + i] = matrix[i * n + j];
+    }
+  }
+}
+
+/// Likewise of the lower triangle, of one planar contact without loops.
+template <std::size_t S>
+void multiply_symmetric(std::span<const ImpulseDirection> directions, const double* responses,
+                        double* matrix) {
+  if (directions.size() != 2) return multiply<S>(directions, responses, true, matrix);
+  const double* const first = row_of_one<S>(*directions[0].constraint, directions[0].row);
+  const double* const second = row_of_one<S>(*directions[1].constraint, directions[1].row);
+  const double mixed = product<S>(second, responses);
+  matrix[0] = product<S>(first, responses);
+  matrix[1] = matrix[2] = mixed;
+  matrix[3] = product<S>(second, responses + S);
+}
+
+/// Adds responses of one body of S velocities.
+template <int S>
+void add_alone(const double* responses, std::span<const double> impulses, double scale, double* x) {
+  for (const double number : impulses) {
+    const double impulse = scale * number;
+    for (int c = 0; c < S; ++c) x[c] += *responses++ * impulse;
+  }
+}
+
+}  // namespace carom::one_body
