@@ -22,12 +22,16 @@ void FullPivoting::reset(std::size_t n) {
 
 /// The size of the largest number of a row from a column on.
 double FullPivoting::largest_from(const double* row, std::size_t column) const {
-  const auto count = static_cast<Eigen::Index>(size() - column);
-  if (count == 0) return -1.0;
-  return Eigen::Map<const Eigen::ArrayXd>(row + column, count).abs().maxCoeff();
+  constexpr std::size_t few = 8;  // for which the call of a wide search takes longer
+  const std::size_t count = size() - column;
+  if (count > few)
+    return Eigen::Map<const Eigen::ArrayXd>(row + column, static_cast<Eigen::Index>(count)).abs().maxCoeff();
+  double largest = -1.0;
+  for (std::size_t j = column; j < size(); ++j) largest = std::max(largest, std::abs(row[j]));
+  return largest;
 }
 
-/// The largest number that is left, of several alike the first; size -1 where none of them is a number.
+/// The largest number that is left, of several alike the first.
 FullPivoting::Pivot FullPivoting::choose_pivot(std::size_t step) const {
   Pivot best{step, step, -1.0};
   for (std::size_t i = step; i < size(); ++i) {
@@ -55,19 +59,25 @@ bool FullPivoting::solve_one(double& right) {
   return std::isfinite(right);
 }
 
+/// There is no solution in numbers.
+bool FullPivoting::fail(std::vector<double>& right) {
+  std::fill(right.begin(), right.end(), std::numeric_limits<double>::quiet_NaN());
+  return false;
+}
+
 bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   const std::size_t n = size();
   if (n == 1) return solve_one(right[0]);
+  // What is no number has no size: its row would be taken for one without a pivot.
+  if (!std::all_of(matrix_.begin(), matrix_.end(), [](double number) { return std::isfinite(number); }))
+    return fail(right);
   row_sizes_.resize(n);
   for (std::size_t i = 0; i < n; ++i) row_sizes_[i] = largest_from(matrix_.data() + i * n, 0);
   double largest = 0.0;
   for (std::size_t step = 0; step < n; ++step) {
     const Pivot pivot = choose_pivot(step);
     if (step == 0) largest = pivot.size;
-    if (pivot.size < 0.0) {
-      std::fill(right.begin(), right.end(), std::numeric_limits<double>::quiet_NaN());
-      return false;
-    }
+    if (pivot.size < 0.0) return fail(right);  // numbers have grown beyond all bounds
     if (!(pivot.size > dependent * largest)) {
       rank_ = step;
       break;

@@ -38,6 +38,7 @@ private:
   [[nodiscard]] const double* row_at(std::size_t i) const { return matrix_.data() + row_order_[i] * size(); }
   [[nodiscard]] double entry(std::size_t i, std::size_t j) const { return row_at(i)[j]; }
   [[nodiscard]] bool solve_one(double& right);
+  [[nodiscard]] static bool fail(std::vector<double>& right);
   struct Pivot {
     std::size_t row, column;  // in the order of elimination
     double size;
