@@ -28,15 +28,15 @@ struct PartType {
   int dimension;               ///< of a part, 0: any
   std::unique_ptr<K> (*make_kind)();
   /// Stores a part of this type in its kind. Throws ModelError.
-  void (*store)(K& kind, const void* part, const PartCheck& check);
+  void (*store)(K& of_type, const void* part, const PartCheck& check);
 
   /// That of a part whose kind is `Concrete`.
   template <class Concrete, class Description>
   [[nodiscard]] static PartType of() {
     return {&typeid(Concrete), Concrete::part_label(), Concrete::part_dimension(),
             []() -> std::unique_ptr<K> { return std::make_unique<Concrete>(); },
-            [](K& kind, const void* part, const PartCheck& check) {
-              static_cast<Concrete&>(kind).add(*static_cast<const Description*>(part), check);
+            [](K& of_type, const void* part, const PartCheck& check) {
+              static_cast<Concrete&>(of_type).add(*static_cast<const Description*>(part), check);
             }};
   }
 };

@@ -217,10 +217,43 @@ def test_what_cannot_be_written_is_refused(all_parts, tmp_path):
         recording.to_vtk(tmp_path / "run.pvd", every=0)
     with pytest.raises(FileError, match="none/run.pvd' cannot be written"):
         recording.to_vtk(tmp_path / "none" / "run.pvd")
+
+
+def test_a_run_in_space_is_written(tmp_path):
+    """A particle falls on a slope and slides, another hangs on a spring."""
     system = System()
-    system.add(carom.spatial.Particle(mass=1.0))
-    with pytest.raises(ModelError, match="the model is in space; allowed: models in the plane"):
-        recorded(system, 0.1, 0.1).to_vtk(tmp_path / "run.pvd")
+    system.add(carom.spatial.Gravity((0.0, 0.0, -9.81)))
+    normal = numpy.array([1.0, 2.0, 2.0]) / 3.0
+    slope = carom.Surface(friction=0.3, normal_restitution=0.0, tangential_restitution=0.0)
+    system.add(carom.spatial.HalfSpace(normal=normal), slope, name="slope")
+    position, velocity = (0.0, 0.0, 0.1), (1.0, 0.5, 0.0)
+    stone = system.add(carom.spatial.Particle(mass=2.0, position=position, velocity=velocity), name="stone")
+    bob = system.add(carom.spatial.Particle(mass=1.0, position=(3.0, 3.0, 3.0), contact=False))
+    ends = {"from_": (carom.ground, (3.0, 3.0, 5.0)), "to": bob}
+    system.add(carom.spatial.SpringDamper(**ends, stiffness=50.0, free_length=1.0))
+    recording = recorded(system, 0.5, 0.1)
+    path = tmp_path / "run.pvd"
+    recording.to_vtk(path)
+    rows = series(path)
+    assert {part for _, part, _ in rows} == {"bodies", "contacts", "links", "ground"}
+    by_part = {part: [arrays(file) for _, name, file in rows if name == part] for _, part, _ in rows}
+    for sample, data in enumerate(by_part["bodies"]):
+        numpy.testing.assert_array_equal(data["Points/points"], recording.positions[sample])
+        numpy.testing.assert_array_equal(data["CellData/velocity"], recording.velocities[sample])
+    lines = by_part["links"][-1]
+    numpy.testing.assert_array_equal(lines["Points/points"], [(3.0, 3.0, 5.0), recording.positions[-1, 1]])
+    square = by_part["ground"][0]["Points/points"]
+    assert len(square) == 4
+    numpy.testing.assert_allclose(square @ normal, 0.0, rtol=0, atol=1e-13)  # rounding at 100 m
+    contacts = by_part["contacts"][-1]
+    impulse, slid = contacts["PointData/impulse"], recording.velocities[-1, 0]
+    assert contacts["PointData/mode"] == [carom.ContactMode.slip.value]
+    # Pressed by the weight, and friction against the velocity; the mean of a step of 1 ms.
+    push = 2.0 * 9.81 * normal[2] * 1e-3
+    expected = push * (normal - 0.3 * slid / numpy.linalg.norm(slid))
+    numpy.testing.assert_allclose(impulse, [expected], rtol=0, atol=2e-3 * push)
+    numpy.testing.assert_allclose(contacts["PointData/normal_impulse"], [push], rtol=1e-9)
+    assert contacts["PointData/tangential_impulse"] == pytest.approx([0.3 * push], rel=1e-9)
 
 
 def test_the_command_writes_a_series(tmp_path, capsys):
