@@ -173,9 +173,10 @@ def bounce_table(event):
     hand = event["bounce_by_hand"]
     rows = [["loop by hand, Runge-Kutta 4 in steps of 0.1 s", figure(1e6 * hand["per_event"]), "1.00",
              f"{hand['steps']:.3g}", f"{hand['evaluations']:.3g}", ""]]
-    for key, title in FLOWS:
+    cases = [("in_flight", "library")] + [(key, f"library, in air, {title}") for key, title in FLOWS]
+    for key, title in cases:
         case = event[f"bounce/{key}"]
-        rows.append([f"library, {title}", figure(1e6 * case["per_event"]),
+        rows.append([title, figure(1e6 * case["per_event"]),
                      f"{case['per_event'] / hand['per_event']:.1f}", f"{case['steps']:.3g}",
                      f"{case['evaluations']:.3g}", f"{case['apart']:.1e}"])
     return table(["one impact with its flight", "µs", "ratio", "steps", "evaluations", "apart after 100 [m]"], rows)
@@ -183,13 +184,9 @@ def bounce_table(event):
 
 def balls_table(event):
     counts = [1, 10, 100, 1000]
-    events = ["events in 3 s"] + [f"{event[f'balls_at_rest/{FLOWS[0][0]}/{count}']['events']:.0f}" for count in counts]
-    rows = [events]
-    for key, title in FLOWS[:2]:
-        rows.append([f"µs per event, {title}"] + [figure(1e6 * event[f"balls_at_rest/{key}/{count}"]["per_event"])
-                                                  for count in counts])
-    rows.append(["µs per event, options by default"]
-                + [figure(1e6 * event[f"balls_by_default/{count}"]["per_event"]) for count in counts])
+    rows = [["events in 3 s"] + [f"{event[f'balls_at_rest/{count}']['events']:.0f}" for count in counts]]
+    for key, title in (("balls_at_rest", "nothing recorded"), ("balls_by_default", "options by default")):
+        rows.append([f"µs per event, {title}"] + [figure(1e6 * event[f"{key}/{count}"]["per_event"]) for count in counts])
     return table([""] + [f"{count} ball{'s' if count > 1 else ''}" for count in counts], rows)
 
 
