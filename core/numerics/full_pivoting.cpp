@@ -68,7 +68,7 @@ bool FullPivoting::fail(std::vector<double>& right) {
 bool FullPivoting::solve(double dependent, std::vector<double>& right) {
   const std::size_t n = size();
   if (n == 1) return solve_one(right[0]);
-  // What is no number has no size: its row would be taken for one without a pivot.
+  // A number that is NaN has no size: its row would be taken for one without a pivot.
   if (!std::all_of(matrix_.begin(), matrix_.end(), [](double number) { return std::isfinite(number); }))
     return fail(right);
   row_sizes_.resize(n);

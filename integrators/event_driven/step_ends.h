@@ -23,7 +23,7 @@ struct GapEnd : StepPolynomial::End {
   double curvature_bound = 0.0;  ///< of the sixth derivative of the gap by turning [m/s^6]
 };
 
-/// What is known beside of the gap of two bodies, or of a body with an outline.
+/// Facts known beside of the gap of two bodies, or of a body with an outline.
 struct BodyGapEnd {
   double speed = 0.0;         ///< bound of the rate of the gap [m/s],
   double acceleration = 0.0;  ///< and of what accelerations add to it [m/s^2]

@@ -35,7 +35,7 @@ const Words& empty_words() {
 
 }  // namespace
 
-/// What comes first of a packed record, then the words that its mask names.
+/// The first words of a packed record; then come the words that its mask names.
 struct PackedEvents::Head {
   double time;
   std::int64_t instant;

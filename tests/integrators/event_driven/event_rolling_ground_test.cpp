@@ -149,7 +149,7 @@ TEST(EventRollingGround, ARockingPlaneHoldsADisc) {
   for (const double time : {1.0, 3.0, 10.0}) {
     simulation.run_until(time);
     const double angle = motion.angle(time);
-    // What 10 s of integration at the tolerance 1e-10 leave.
+    // Errors of 10 s of integration at the tolerance 1e-10.
     EXPECT_NEAR(simulation.state().spin(disc), motion.spin(time), 1e-9) << time;
     EXPECT_NEAR(simulation.state().angle(disc), angle, 1e-8) << time;
     const Vec<2> place = radius * Vec<2>(-std::sin(angle), std::cos(angle));

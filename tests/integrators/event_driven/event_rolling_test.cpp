@@ -69,7 +69,7 @@ TEST(EventRolling, DiscRollsToRestAtAnExactTime) {
     const std::vector<double> holds = times_of(simulation, EventKind::hold);
     ASSERT_EQ(holds.size(), 1U) << k;
     EXPECT_NEAR(holds[0], end, 1e-13 * end) << k;
-    // What a projection leaves is rounding of rounding.
+    // A projection leaves rounding of rounding.
     const double spin = simulation.state().spin(scene.body);
     EXPECT_LE(std::abs(spin), 1e-30) << k;
     EXPECT_LE(simulation.state().velocity(scene.body).norm(), 1e-30) << k;
