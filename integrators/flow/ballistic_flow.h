@@ -4,9 +4,7 @@
 /// The flow where velocities change at constant rates: a parabola, without an error.
 
 #include <carom/core/export.h>
-#include <carom/integrators/flow/flow.h>
-
-#include <vector>
+#include <carom/integrators/flow/plain_flow.h>
 
 namespace carom {
 
@@ -16,36 +14,17 @@ namespace carom {
 ///
 /// from the start t_0 of a step. It evaluates the rates once after each start(), and its steps are as long as
 /// they may be.
-class CAROM_API BallisticFlow final : public Flow {
+class CAROM_API BallisticFlow final : public PlainFlow {
 public:
   /// ModelError: as make_flow().
-  BallisticFlow(FlowProblem& problem, double relative_tolerance);
+  BallisticFlow(FlowProblem& problem, double relative_tolerance)
+      : PlainFlow(problem, relative_tolerance, 1) {}
 
-  void bind(FlowProblem& problem) override;
-  [[nodiscard]] bool leave(FlowStep& out) const override;
-  void resume(const FlowStep& step) override;
-  void start(double time, std::span<const double> y, double first_step) override;
   void advance(double longest) override;
-  [[nodiscard]] double begin() const override { return begin_; }
-  [[nodiscard]] double end() const override { return end_; }
-  [[nodiscard]] std::span<const double> state() const override { return state_; }
-  void sample(double time, std::span<double> y) override { land(time, y); }
-  void land(double time, std::span<double> y) override;
-  void correct(std::span<const double> y) override;
-  [[nodiscard]] double next_step() const override { return next_step_; }
-  [[nodiscard]] const FlowCounts& counts() const override { return counts_; }
 
 private:
-  void fly(double time, std::span<double> y) const;
-
-  FlowProblem* problem_;
-  std::size_t integrals_;
-  double relative_tolerance_;
-  double begin_ = 0.0, end_ = 0.0, next_step_ = 0.0;
-  std::vector<double> start_, state_, rates_;  // y at begin_, at end_; rates at begin_
-  bool started_ = false;
-  bool known_ = false;  // rates_ are those at end_ but for the integrals
-  FlowCounts counts_;
+  void reach(double time, std::span<double> y) override;
+  void carry_rates() override;
 };
 
 }  // namespace carom
