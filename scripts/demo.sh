@@ -30,31 +30,41 @@ if /usr/bin/python3 -c 'import matplotlib' 2>/dev/null; then
 fi
 export MPLBACKEND=Agg
 
-# run_example <program> <plot script>: results in data/<program>, pictures of them in figures.
+# run_example <program> <plot script>: results in data/<program>, pictures of them in figures. What it prints stands
+# together.
 run_example() {
-  local program=$1 plot=$2
-  mkdir -p "$data/$program" "$figures"
-  echo "== $program"
-  "$programs/$program" "$data/$program"
-  if [[ -f $plot ]]; then
-    "$python" "$plot" "$data/$program" "$figures"
-  fi
+  local program=$1 plot=$2 printed
+  printed=$(
+    echo "== $program"
+    mkdir -p "$data/$program" &&
+      "$programs/$program" "$data/$program" &&
+      "$python" "$plot" "$data/$program" "$figures"
+  ) || {
+    printf '%s\n' "$printed" "$program failed" >&2
+    return 1
+  }
+  printf '%s\n' "$printed"
 }
+export -f run_example
+export programs data figures python
 
 # Nothing of an earlier run may pass for a result of this one.
 rm -rf "$data" "$figures"
-run_example 01_bar_and_pair scripts/plot_incline.py
-run_example 02_ball_between_tables scripts/plot_tables.py
-run_example 03_ball_in_a_box scripts/plot_box.py
-run_example 04_block_on_a_moving_plane scripts/plot_shaker.py
-run_example 05_squeezing_mechanism scripts/plot_squeezer.py
-run_example 06_slider_crank_and_stop scripts/plot_slider_crank.py
-run_example 07_pendulums_and_wall scripts/plot_pendulums.py
-run_example 08_discs_in_a_box scripts/plot_discs.py
-run_example 09_newtons_cradle scripts/plot_cradle.py
-run_example 10_rocking_block scripts/plot_rocking_block.py
-run_example 11_bars_in_a_drum scripts/plot_drum.py
-run_example 12_woodpecker scripts/plot_woodpecker.py
+mkdir -p "$figures"
+xargs -P "$(nproc)" -L 1 bash -c 'run_example "$@"' run_example <<'EOF'
+01_bar_and_pair scripts/plot_incline.py
+02_ball_between_tables scripts/plot_tables.py
+03_ball_in_a_box scripts/plot_box.py
+04_block_on_a_moving_plane scripts/plot_shaker.py
+05_squeezing_mechanism scripts/plot_squeezer.py
+06_slider_crank_and_stop scripts/plot_slider_crank.py
+07_pendulums_and_wall scripts/plot_pendulums.py
+08_discs_in_a_box scripts/plot_discs.py
+09_newtons_cradle scripts/plot_cradle.py
+10_rocking_block scripts/plot_rocking_block.py
+11_bars_in_a_drum scripts/plot_drum.py
+12_woodpecker scripts/plot_woodpecker.py
+EOF
 
 if $update_docs; then
   mkdir -p docs/figures
