@@ -2,6 +2,7 @@
 // margins are the largest there are; corrections bring gaps and velocities back by the smallest change.
 
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 #include <carom/contact/active_set.h>
@@ -270,7 +271,9 @@ void find_margins_in_a_corner(std::uint64_t seed, int count) {
   }
 }
 
-TEST(ActiveSet, MarginsAreTheLargestOfABoxInACorner) { find_margins_in_a_corner(2, 100); }
+TEST(ActiveSet, MarginsAreTheLargestOfABoxInACorner) {
+  find_margins_in_a_corner(2, carom_test::count_of_samples(100));
+}
 TEST(ClosedContactsLong, MarginsAreTheLargestOfABoxInACorner) { find_margins_in_a_corner(3, 500); }
 
 TEST(ActiveSet, WedgedContactsKeepFiniteForces) {

@@ -3,6 +3,7 @@
 #include <carom/contact/detection/gap_convex.h>
 
 #include "tests/contact/detection/convex_reference.h"
+#include "tests/shares.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ void expect_same_swapped(const Gaps& found, const Gaps& swapped, int count) {
 TEST(GapConvexRandom, IsTheDistanceOrTheLeastOverlap) {
   Random random(1);
   int overlapping = 0, undirected = 0;
-  constexpr int pairs = 100000;
+  constexpr int pairs = carom_test::count_of_samples(100000);
   for (int i = 0; i < pairs && !HasFailure(); ++i) {
     SCOPED_TRACE(i);
     const auto [a, b] = random_pair(random);
