@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from performance_tables import figure, machine, replace_parts, table
+from performance_figures import figure, machine, replace_parts, table
 
 ENGINES = ("carom", "ode", "chipmunk", "box2d", "bullet", "mujoco", "simbody", "siconos")
 SCENES = ("tables", "net", "balls", "chain", "bar")

@@ -5,19 +5,16 @@ of benchmarks that were not run stay as they are.
 usage: performance_tables.py <folder of results> <page> <compiler>
 """
 
-import json
-import os
-import re
 import sys
 from pathlib import Path
+
+from performance_figures import figure, load, machine, replace_parts, seconds, table
 
 SIZES = [10, 30, 100, 300, 1000]
 WHEELS = [500, 4000]
 DISCS = [100, 2000, 10000]
 PILES = [100, 500, 2000, 10000]
 BOXES = [100, 1000, 10000, 100000]
-TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc", "per_box", "ms")
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -31,38 +28,6 @@ NET_ROWS = [
     ("step_resting", "library: step, lowest row in contact"),
     ("first_step", "library: first step of a run"),
 ]
-
-
-def load(folder, program):
-    """Context and, for each case, the least of every time and the most of every count over its repetitions."""
-    file = folder / f"{program}.json"
-    if not file.exists():
-        return None, None
-    data = json.loads(file.read_text())
-    cases = {}
-    for run in data["benchmarks"]:
-        if run["run_type"] != "iteration" or run.get("error_occurred"):
-            continue
-        name = "/".join(part for part in run["name"].split("/") if ":" not in part)
-        case = cases.setdefault(name, {})
-        for key, value in run.items():
-            if isinstance(value, (int, float)) and not isinstance(value, bool):
-                case[key] = (min if key in TIMES else max)(case.get(key, value), value)
-        case["unit"] = run["time_unit"]
-    return data["context"], cases
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
-
-
-def figure(value):
-    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
-
-
-def seconds(case):
-    return case["cpu_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[case["unit"]]
 
 
 def net_table(net):
@@ -331,79 +296,39 @@ def pile_table(pile, steps):
     return table(["one step"] + [f"{count:,} discs" for count in PILES], rows)
 
 
-def machine(context, compiler, began, idle=1.2):
-    """What was measured on. Up to `idle` is the load of the benchmark before."""
-    cpu = "unknown processor"
-    if Path("/proc/cpuinfo").exists():
-        found = re.search(r"model name\s*:\s*(.*)", Path("/proc/cpuinfo").read_text())
-        cpu = found.group(1) if found else cpu
-    cpu = cpu.replace("(R)", "").replace("(TM)", "")
-    load = context.get("load_avg", [0.0])[0]
-    return (f"{cpu}, {os.cpu_count()} cores; {compiler}, Release. Measured {context['date'][:10]}; "
-            f"load of the machine when {began} began: {load:.1f}."
-            + (" The machine was busy: a run on an idle one is due." if load > idle else ""))
-
-
-def replace_parts(page, parts):
-    """Writes each part between its marks on a page."""
-    text = page.read_text()
-    for name, part in parts.items():
-        text, count = re.subn(rf"(<!-- measured: {name} -->\n).*?(\n<!-- end -->)",
-                              lambda match: match.group(1) + part + match.group(2), text, flags=re.DOTALL)
-        if count != 1:
-            sys.exit(f"{page}: section '{name}' is there {count} times")
-    page.write_text(text)
+# Of each section: the programs that must have run, the mark of the machine of the first, what began when its load was
+# looked at, and the tables by their marks.
+SECTIONS = (
+    (("net",), "machine", "the net", {"net": net_table, "second": second_table}),
+    (("net", "impact", "tables"), None, "", {"aims": aims_table}),
+    (("impact",), None, "", {"impact": impact_table}),
+    (("tables",), None, "", {"tables": tables_table}),
+    (("chain",), None, "", {"chain": chain_table}),
+    (("uncoupled",), "uncoupled_machine", "the discs", {"uncoupled": uncoupled_table}),
+    (("gap",), "gap_machine", "the gaps", {"gap": gap_table}),
+    (("broad_phase",), "broad_phase_machine", "the boxes", {"broad_phase": broad_phase_table}),
+    (("pile", "pile_steps"), "pile_machine", "the piles", {"pile": pile_table}),
+    (("event",), "event_machine", "the events",
+     {"bounce": bounce_table, "balls": balls_table, "lasting": lasting_table, "friction": friction_table}),
+    (("flow",), "flow_machine", "the stiff motion", {"stiff": stiff_table}),
+    (("joint",), "joint_machine", "the joints", {"joint": joint_table, "joint_aims": joint_aims_table}),
+    (("description",), "description_machine", "the descriptions", {"description": description_table}),
+)
 
 
 def main():
     if len(sys.argv) != 4:
         sys.exit(__doc__)
     folder, page, compiler = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3]
-    context, net = load(folder, "net")
-    _, impact = load(folder, "impact")
-    _, tables = load(folder, "tables")
-    _, chain = load(folder, "chain")
-    event_context, event = load(folder, "event")
-    flow_context, flow = load(folder, "flow")
-    joint_context, joint = load(folder, "joint")
-    description_context, description = load(folder, "description")
-    uncoupled_context, uncoupled = load(folder, "uncoupled")
-    gap_context, gap = load(folder, "gap")
-    broad_context, broad = load(folder, "broad_phase")
-    pile_context, pile = load(folder, "pile")
-    _, steps = load(folder, "pile_steps")
     parts = {}
-    if uncoupled:
-        parts |= {"uncoupled_machine": machine(uncoupled_context, compiler, "the discs"),
-                  "uncoupled": uncoupled_table(uncoupled)}
-    if gap:
-        parts |= {"gap_machine": machine(gap_context, compiler, "the gaps"), "gap": gap_table(gap)}
-    if broad:
-        parts |= {"broad_phase_machine": machine(broad_context, compiler, "the boxes"),
-                  "broad_phase": broad_phase_table(broad)}
-    if pile and steps:
-        parts |= {"pile_machine": machine(pile_context, compiler, "the piles"), "pile": pile_table(pile, steps)}
-    if net:
-        parts |= {"machine": machine(context, compiler, "the net", idle=0.5), "net": net_table(net), "second": second_table(net)}
-    if net and impact and tables:
-        parts["aims"] = aims_table(net, impact, tables)
-    if impact:
-        parts["impact"] = impact_table(impact)
-    if tables:
-        parts["tables"] = tables_table(tables)
-    if chain:
-        parts["chain"] = chain_table(chain)
-    if event:
-        parts |= {"event_machine": machine(event_context, compiler, "the events"), "bounce": bounce_table(event),
-                  "balls": balls_table(event), "lasting": lasting_table(event), "friction": friction_table(event)}
-    if flow:
-        parts |= {"flow_machine": machine(flow_context, compiler, "the stiff motion"), "stiff": stiff_table(flow)}
-    if joint:
-        parts |= {"joint_machine": machine(joint_context, compiler, "the joints"), "joint": joint_table(joint),
-                  "joint_aims": joint_aims_table(joint)}
-    if description:
-        parts |= {"description_machine": machine(description_context, compiler, "the descriptions"),
-                  "description": description_table(description)}
+    for programs, mark, began, tables in SECTIONS:
+        contexts, cases = zip(*(load(folder, program) for program in programs))
+        if not all(cases):
+            continue
+        if mark:
+            # The net runs first, on a machine that has done nothing before.
+            parts[mark] = machine(contexts[0], compiler, began, idle=0.5 if mark == "machine" else 1.2)
+        parts |= {name: write(*cases) for name, write in tables.items()}
     replace_parts(page, parts)
 
 
