@@ -26,6 +26,7 @@ set(carom_public_headers
     contact/solvers/impact_order.h
     contact/solvers/problem_file.h
     contact/solvers/residual.h
+    contact/solvers/residual_history.h
     contact/solvers/response_factors.h
     contact/solvers/solution_list.h
     contact/solvers/solver_chain.h

@@ -2,6 +2,7 @@
 // and says who is right by the one residual that judges them (docs/contact_problems.md).
 
 #include <carom/contact/solvers/problem_file.h>
+#include <carom/contact/solvers/residual_history.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <exception>
 #include <iomanip>
@@ -19,6 +21,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -27,7 +30,7 @@ using namespace carom;
 
 constexpr int certified = 0, not_certified = 1, wrong_call = 2;
 
-constexpr std::string_view usage = R"(usage: carom-solve-contact FILE [--solver NAME] [--json]
+constexpr std::string_view usage = R"(usage: carom-solve-contact FILE [--solver NAME] [--json] [--history CSV]
 
 Solves the contact problem in FILE and prints the answer with its certificate.
 
@@ -35,6 +38,9 @@ Solves the contact problem in FILE and prints the answer with its certificate.
                  principal-pivoting (on the paper's form), lemke, projection, enumeration,
                  nonlinear-cg (of problems in factors)
   --json         prints JSON instead of tables
+  --history CSV  also writes the residual of each solver asked after every sweep, and the seconds that it
+                 took; of `chain` those of the solver whose answer it took
+  --sweeps N     most sweeps of nonlinear-cg, at least 1 (default: 80)
   --help         prints this
 
 Exit code: 0 if the answer is certified (residual up to 1e-10; of `all`: any answer), 1 if not, 2 if the
@@ -53,6 +59,8 @@ std::string option_name(SolverId solver) {
 struct Options {
   std::string file;
   std::string solver = "chain";
+  std::string history;  // path; empty: none
+  SweepBudget budget{};
   bool json = false;
   bool help = false;
 };
@@ -61,19 +69,47 @@ struct WrongCall : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// True if the argument at i is an option with a value, "--name value" or "--name=value"; i is then at its
+// end.
+bool read_value(std::span<char*> arguments, std::size_t& i, const std::string& name, std::string& value) {
+  const std::string argument = arguments[i];
+  if (argument.starts_with(name + "=")) {
+    value = argument.substr(name.size() + 1);
+  } else if (argument != name) {
+    return false;
+  } else if (++i == arguments.size()) {
+    throw WrongCall(name + " needs a value");
+  } else {
+    value = arguments[i];
+  }
+  if (value.empty()) throw WrongCall(name + " needs a value");
+  return true;
+}
+
+int sweeps_of(const std::string& text) {
+  int sweeps = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sweeps);
+  if (error != std::errc() || end != text.data() + text.size() || sweeps < 1) {
+    throw WrongCall("--sweeps is '" + text + "'; allowed: a whole number, at least 1");
+  }
+  return sweeps;
+}
+
 Options options_of(std::span<char*> arguments) {
   Options options;
+  std::string sweeps;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (read_value(arguments, i, "--solver", options.solver)) continue;
+    if (read_value(arguments, i, "--history", options.history)) continue;
+    if (read_value(arguments, i, "--sweeps", sweeps)) {
+      options.budget.sweeps = sweeps_of(sweeps);
+      continue;
+    }
     const std::string argument = arguments[i];
     if (argument == "--help" || argument == "-h") {
       options.help = true;
     } else if (argument == "--json") {
       options.json = true;
-    } else if (argument == "--solver") {
-      if (++i == arguments.size()) throw WrongCall("--solver needs a name");
-      options.solver = arguments[i];
-    } else if (argument.starts_with("--solver=")) {
-      options.solver = argument.substr(std::string_view("--solver=").size());
     } else if (argument.size() > 1 && argument.front() == '-') {
       throw WrongCall("unknown option '" + argument + "'");
     } else if (!options.file.empty()) {
@@ -107,9 +143,10 @@ struct Answer {
   std::vector<double> impulse, xi;
   std::vector<ContactMode> modes;
 
-  Answer(const ContactProblem& problem, std::optional<SolverId> solver)
+  Answer(const ContactProblem& problem, std::optional<SolverId> solver, const SweepBudget& budget)
       : name(solver ? to_string(*solver) : "chain"), impulse(static_cast<std::size_t>(problem.rows())) {
     SolverChain chain;
+    if (problem.is_factored()) chain.set_budget(budget);
     report = solver ? chain.solve_with(*solver, problem, impulse) : chain.solve(problem, impulse);
     xi.assign(chain.velocities().begin(), chain.velocities().end());
     modes.assign(chain.modes().begin(), chain.modes().end());
@@ -251,12 +288,29 @@ void print_json(const std::string& path, const std::vector<Answer>& answers) {
   std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }
 
+// Of a chain: of the solver that it believed, if there is one.
+void write_histories(const Options& options, const ContactProblem& problem,
+                     const std::vector<Answer>& answers) {
+  std::vector<ResidualHistory> histories;
+  for (const Answer& answer : answers) {
+    const std::string_view by = answer.name == "chain" ? answer.report.solver : answer.name;
+    const bool known = std::any_of(histories.begin(), histories.end(),
+                                   [&](const ResidualHistory& history) { return history.solver == by; });
+    for (const SolverId solver : all_solvers) {
+      if (known || to_string(solver) != by || answer.empty()) continue;
+      histories.push_back(residual_history(problem, solver, options.budget));
+    }
+  }
+  carom::write_histories(options.history, histories);
+}
+
 int run(const Options& options) {
   const auto solvers = asked(options.solver);
   const ProblemFile file = load_problem(options.file);
   std::vector<Answer> answers;
   answers.reserve(solvers.size());
-  for (const auto& solver : solvers) answers.emplace_back(file.problem, solver);
+  for (const auto& solver : solvers) answers.emplace_back(file.problem, solver, options.budget);
+  if (!options.history.empty()) write_histories(options, file.problem, answers);
   if (options.json) {
     print_json(options.file, answers);
   } else {

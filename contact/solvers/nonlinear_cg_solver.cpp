@@ -45,6 +45,11 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
   while (goes_on() && best <= std::numeric_limits<double>::max()) {
     const SweepChange change = sweeps_.sweep();
     ++sweep;
+    if (watch_) {
+      watched_.resize(impulse.size());
+      sweeps_.write(problem, watched_);
+      watch_(sweep, watched_);
+    }
     const bool regular_look = sweep % look_every == 0;
     if (change.largest <= target * sweeps_.scale() || regular_look || sweep % budget_.sweeps == 0) {
       const double found = sweeps_.judge();

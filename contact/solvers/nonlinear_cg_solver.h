@@ -9,10 +9,12 @@
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/contact_sweeps.h>
 #include <carom/contact/solvers/sweep_budget.h>
+#include <carom/contact/solvers/sweep_watch.h>
 #include <carom/core/export.h>
 
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -35,10 +37,14 @@ public:
   /// Budget of an answer.
   [[nodiscard]] const SweepBudget& budget() const { return budget_; }
   void set_budget(const SweepBudget& budget) { budget_ = budget; }
+  /// Has every sweep looked at from now on.
+  void set_watch(SweepWatch watch) { watch_ = std::move(watch); }
 
 private:
   SweepBudget budget_;
   ContactSweeps sweeps_;
+  SweepWatch watch_;
+  std::vector<double> watched_;
 };
 
 }  // namespace carom

@@ -189,6 +189,7 @@ SolverAnswer ProjectionSolver::solve(const ContactProblem& problem, std::span<do
   int attempt = first_attempt;
   for (int sweep = 1; sweep <= projection_sweeps; ++sweep) {
     for (const RowGroup& group : problem.groups()) visit(problem, group);
+    if (watch_) watch_(sweep, impulse_);
     if (sweep != attempt && sweep != projection_sweeps) continue;
     attempt *= attempt_growth;
     trial_ = impulse_;

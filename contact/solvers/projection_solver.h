@@ -5,9 +5,11 @@
 
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/newton_polish.h>
+#include <carom/contact/solvers/sweep_watch.h>
 #include <carom/core/export.h>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -25,6 +27,8 @@ class CAROM_API ProjectionSolver final : public ContactSolver {
 public:
   [[nodiscard]] std::string_view name() const override { return "projection"; }
   [[nodiscard]] SolverAnswer solve(const ContactProblem& problem, std::span<double> impulse) override;
+  /// Has every sweep looked at from now on.
+  void set_watch(SweepWatch watch) { watch_ = std::move(watch); }
 
 private:
   void visit(const ContactProblem& problem, const RowGroup& group);
@@ -35,6 +39,7 @@ private:
 
   std::vector<double> impulse_, trial_;
   NewtonPolish polish_;
+  SweepWatch watch_;
 };
 
 }  // namespace carom

@@ -191,6 +191,30 @@ TEST_F(SolveContactProgram, BrokenNumbersAreShown) {
   EXPECT_EQ(nlohmann::json::parse(json.text)["answers"][0]["residual"], "inf");
 }
 
+TEST_F(SolveContactProgram, WritesResidualsBySweep) {
+  save_gaining();
+  const std::string table = path_ + ".csv";
+  const auto lines_of = [&](const std::string& arguments) {
+    std::filesystem::remove(table);
+    const Outcome outcome = run(file() + " --history '" + table + "' " + arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    std::vector<std::string> lines;
+    std::ifstream in(table);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  };
+  const std::vector<std::string> chain = lines_of("");
+  ASSERT_EQ(chain.size(), 2U);
+  EXPECT_TRUE(chain[1].starts_with("single contact,answer,solved,")) << chain[1];
+  const std::vector<std::string> projection = lines_of("--solver projection --json");
+  ASSERT_GT(projection.size(), 2U);
+  EXPECT_TRUE(projection[1].starts_with("projection,sweep,,1,")) << projection[1];
+  EXPECT_TRUE(projection.back().starts_with("projection,answer,solved,")) << projection.back();
+  // Five exact solvers have an answer, one of which sweeps.
+  EXPECT_EQ(lines_of("--solver=all").size(), 1 + 4 + (projection.size() - 1));
+  std::filesystem::remove(table);
+}
+
 TEST_F(SolveContactProgram, WrongCallsAndFilesAreNamed) {
   const auto expect = [](const std::string& arguments, const std::vector<std::string>& texts) {
     const Outcome outcome = run(arguments);
@@ -202,7 +226,12 @@ TEST_F(SolveContactProgram, WrongCallsAndFilesAreNamed) {
   expect("", {"no file was given", "usage:"});
   expect(file(), {path_, "cannot be read"});
   expect(file() + " --solver newton", {"--solver is 'newton'; allowed: chain, all, single-contact", "lemke"});
-  expect(file() + " --solver", {"--solver needs a name"});
+  expect(file() + " --solver", {"--solver needs a value"});
+  expect(file() + " --history=", {"--history needs a value"});
+  for (const std::string sweeps : {"0", "ten", "3x"}) {
+    expect(file() + " --sweeps " + sweeps,
+           {"--sweeps is '" + sweeps + "'; allowed: a whole number, at least 1"});
+  }
   expect(file() + " --fast", {"unknown option '--fast'"});
   expect(file() + " other.json", {"one file at a time", "other.json"});
   std::ofstream(path_) << "{}";
