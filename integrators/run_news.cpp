@@ -31,7 +31,8 @@ void write_doubtful(Log& log, const std::string& when, const StepReport& report,
   log.write(LogLevel::warning, when + std::to_string(capped) +
                                    " contacts have an answer accepted at the cap of " +
                                    "sweeps, residual up to " + to_text(worst->residual) + " with that of " +
-                                   detector.name(worst->key) + "; if some of them jam it does not show");
+                                   detector.name(worst->key) + "; if some of them jam it does not show" +
+                                   (report.capped_problem.empty() ? "" : "; see " + report.capped_problem));
 }
 
 }  // namespace

@@ -19,9 +19,8 @@ void check_failure_directory(const std::string& directory, const std::string& mo
   if (!fs::is_directory(directory, error)) refuse("an existing directory, or none");
 }
 
-std::string write_failure(const std::string& directory, const SolverFailure& failure,
-                          const std::string& message) {
-  if (directory.empty() || failure.problem == nullptr) return {};
+std::string save_problem_of(const SolverFailure& failure, const std::string& directory,
+                            const std::string& comment) {
   const std::string stem = "contact_problem_t" + to_text(failure.time);
   fs::path path = fs::path(directory) / (stem + ".json");
   std::error_code error;
@@ -29,14 +28,20 @@ std::string write_failure(const std::string& directory, const SolverFailure& fai
   for (int i = 2; fs::exists(path, error); ++i) {
     path = fs::path(directory) / (stem + "_" + std::to_string(i) + ".json");
   }
-  ProblemNotes notes{.comment = message, .time = failure.time, .contacts = {}};
+  ProblemNotes notes{.comment = comment, .time = failure.time, .contacts = {}};
   if (failure.parts.size() == failure.problem->groups().size()) notes.contacts = failure.parts;
+  save_problem(path.string(), *failure.problem, notes);
+  return path.string();
+}
+
+std::string write_failure(const std::string& directory, const SolverFailure& failure,
+                          const std::string& message) {
+  if (directory.empty() || failure.problem == nullptr) return {};
   try {
-    save_problem(path.string(), *failure.problem, notes);
+    return "; the problem is in '" + save_problem_of(failure, directory, message) + "'";
   } catch (const FileError& problem) {
     return std::string("; ") + problem.what();
   }
-  return "; the problem is in '" + path.string() + "'";
 }
 
 }  // namespace carom

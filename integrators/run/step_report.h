@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -97,6 +98,9 @@ struct StepReport : StepNumbers {
   std::vector<JointImpulse> joint_impulses;
   /// Findings of System::check() in the model, at the start or the last edit; the same in every step.
   std::vector<ModelFinding> findings;
+  /// File of the contact problem with the largest residual that was accepted at the cap of its sweeps, where
+  /// TimeStepping::failure_directory is given and none before was worse; where it could not be written, why.
+  std::string capped_problem;
 };
 
 /// Steps since the start, and how they were solved.

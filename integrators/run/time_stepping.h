@@ -121,7 +121,8 @@ struct TimeStepping {
   int threads = 1;
 
   /// An existing directory where the contact problem of a SolverError is written to a file, whose name is in
-  /// the message (docs/contact_problems.md). Empty: nothing is written.
+  /// the message (docs/contact_problems.md); and of answers that are accepted at the cap of their sweeps the
+  /// problem, if none before had a larger residual (StepReport::capped_problem). Empty: nothing is written.
   std::string failure_directory{};
 
   /// Of contact problems of many constraints (from factored_constraints on, contact/island_problem.h), which

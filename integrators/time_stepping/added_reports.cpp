@@ -19,6 +19,7 @@ void add(const StepReport& part, StepReport& sum) {
   sum.energy_gain += part.energy_gain;
   sum.lasting_gain += part.lasting_gain;
   sum.projected = std::max(sum.projected, part.projected);
+  if (!part.capped_problem.empty()) sum.capped_problem = part.capped_problem;  // worse than those before
   sum.contacts.insert(sum.contacts.end(), part.contacts.begin(), part.contacts.end());
   for (std::size_t i = 0; i < sum.joint_impulses.size(); ++i) {
     JointImpulse& to = sum.joint_impulses[i];

@@ -46,6 +46,8 @@ public:
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;
   /// Constraints join components with joints, which are not solved together.
   [[noreturn]] void fail_joined(std::span<const Constraint> constraints) const;
+  /// What is known of a contact problem: its parts by name, its residual, a copy of it.
+  [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
   /// An energy is not finite.
   [[noreturn]] void fail_account() const;
   /// The internal variables of an element cannot be advanced.
@@ -63,7 +65,6 @@ private:
   void demand_finite_loads(const StateView& at) const;
   void find_cause(bool implicit) const;
   [[nodiscard]] SolverFailure failure() const;
-  [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
   [[nodiscard]] const System& system() const { return in_.assembly.system(); }
 
   const StepInput& in_;

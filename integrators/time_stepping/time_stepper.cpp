@@ -18,7 +18,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       iteration_(parts_, stop),
       balance_(assembly, options),
       projection_(parts_),
-      couplings_(assembly) {
+      couplings_(assembly),
+      capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
   if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   memory_.joints = &parts_.joints;
@@ -70,6 +71,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
+    report.capped_problem = capped_.write();
   } catch (const SolverError& error) {
     give_up(in, companion);
     throw with_file(with_place(error, in), parts_.options);
@@ -97,6 +99,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   advance_all(in);
   while (turning_ != nullptr && turning_->turn(in, parts_.trial, islands)) {
     balance_.begin(in);
+    capped_.begin();
     memory_.iterations.clear();
     advance_all(in);
   }
@@ -111,6 +114,7 @@ void TimeStepper::advance_all(const StepInput& in) {
 /// Motions that are given, and rotations at the start.
 void TimeStepper::prepare(const StepInput& in) {
   balance_.begin(in);
+  capped_.begin();
   memory_.iterations.clear();
   try {
     prescribed_.demand_continuous(in.start.time, in.end_time);
@@ -283,10 +287,12 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 void TimeStepper::book_contact_problem(const IslandProblem& problem, const double* after, double time,
                                        const StepInput& in) {
   const double gain = balance_.book_contacts(problem, after, time, in, parts_.trial);
-  if (gain > 0.0 && parts_.options.impact_rules.energy_gain == EnergyGain::refuse) {
-    parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()))
-        .refuse_gain(problem, gain);
-  }
+  const bool refused = gain > 0.0 && parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
+  const bool kept = capped_.wants(problem);
+  if (!refused && !kept) return;
+  const StepErrors errors = parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()));
+  if (refused) errors.refuse_gain(problem, gain);
+  capped_.keep(errors.failure_of(problem));
 }
 
 /// Loads at the start, where the last step did not leave them: a function of the state.

@@ -22,6 +22,7 @@
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/capped_problem.h>
 #include <carom/integrators/time_stepping/contact_turning.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
@@ -84,6 +85,7 @@ private:
   StepMemory memory_;
   StepProjection projection_;
   CouplingWatch couplings_;
+  CappedProblem capped_;
 };
 
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <carom/contact/solvers/contact_report.h>
 #include <carom/contact/solvers/problem_file.h>
 #include <carom/contact/solvers/residual.h>
+#include <carom/contact/solvers/residual_history.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 
@@ -19,6 +20,10 @@ using namespace carom;
 
 template <>
 struct Convert<RowSet> : BoundRecord<RowSet> {};
+template <>
+struct Convert<HistoryPoint> : BoundRecord<HistoryPoint> {};
+template <>
+struct Convert<ResidualHistory> : BoundRecord<ResidualHistory> {};
 
 namespace {
 
@@ -189,11 +194,42 @@ void bind_solvers(nb::module_& core) {
       "impulses can be increased without bound.");
 }
 
+void bind_histories(nb::module_& core) {
+  bind_record<HistoryPoint>(core, "HistoryPoint", {"HistoryPoint"}, false, [](auto& fields) {
+    fields("iterations", &HistoryPoint::iterations)("seconds", &HistoryPoint::seconds)(
+        "residual", &HistoryPoint::residual);
+  });
+  bind_record<ResidualHistory>(core, "ResidualHistory", {"ResidualHistory"}, false, [](auto& fields) {
+    using P = ResidualHistory;
+    fields("solver", &P::solver)("outcome", &P::outcome)("sweeps", &P::sweeps)("answer", &P::answer);
+  });
+  core.def(
+      "residual_history",
+      [](const ContactProblem& problem, nb::handle solver, const SweepBudget& budget) {
+        return residual_history(problem, read<SolverId>(solver, "residual_history(): solver"), budget);
+      },
+      nb::arg("problem"), nb::arg("solver"), nb::arg("budget") = SweepBudget{},
+      nb::sig("def residual_history(problem: ContactProblem, solver: SolverId | str, budget: SweepBudget = "
+              "...) -> ResidualHistory"),
+      doc("residual_history"));
+  core.def(
+      "write_histories",
+      [](nb::handle path, nb::handle histories) {
+        const auto list = read<std::vector<ResidualHistory>>(histories, "write_histories(): histories");
+        write_histories(path_of(path), list);
+      },
+      nb::arg("path"), nb::arg("histories"),
+      nb::sig("def write_histories(path: str | os.PathLike[str], histories: "
+              "collections.abc.Sequence[ResidualHistory]) -> None"),
+      doc("write_histories"));
+}
+
 }  // namespace
 
 void bind_problems(nb::module_& core) {
   bind_problem(core);
   bind_solvers(core);
+  bind_histories(core);
 }
 
 }  // namespace carom_python

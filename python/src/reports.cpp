@@ -95,7 +95,8 @@ void bind_steps(nb::module_& core) {
         "iteration", &P::iteration)("fallbacks", &P::fallbacks)("sweeps", &P::sweeps)(
         "local_sweeps", &P::local_sweeps)("contraction", &P::contraction)(
         "worst_coupling", &P::worst_coupling)("worst_coupling_rate", &P::worst_coupling_rate)(
-        "contacts", &P::contacts)("joint_impulses", &P::joint_impulses)("findings", &P::findings);
+        "contacts", &P::contacts)("joint_impulses", &P::joint_impulses)("findings", &P::findings)(
+        "capped_problem", &P::capped_problem);
   });
 }
 

@@ -173,6 +173,22 @@ def test_contact_problem_is_solved():
     assert carom.residual(problem, impulse) == 0.0
 
 
+def test_residuals_of_a_solver_by_sweep(tmp_path):
+    friction = carom.RowSet(kind="bounded_interval", bound=0, coefficient=0.3)
+    problem = carom.ContactProblem([[2.0, -0.5], [-0.5, 3.0]], [-1.0, 0.5], [carom.RowSet(), friction])
+    history = carom.residual_history(problem, "projection")
+    assert history.solver == "projection" and history.outcome == carom.Outcome.solved
+    assert [point.iterations for point in history.sweeps] == list(range(1, len(history.sweeps) + 1))
+    assert history.answer.residual < 1e-15 and history.answer.seconds >= 0.0
+    carom.write_histories(tmp_path / "history.csv", [history, carom.residual_history(problem, "lemke")])
+    lines = (tmp_path / "history.csv").read_text().splitlines()
+    assert lines[0] == "solver,kind,outcome,iterations,seconds,residual"
+    assert len(lines) == len(history.sweeps) + 3
+    assert lines[-1].startswith("Lemke,answer,solved,")
+    with pytest.raises(TypeError, match="residual_history.*solver"):
+        carom.residual_history(problem, 7)
+
+
 def test_inverse_dynamics_of_a_driven_bar():
     system = System()
     bar = system.add(RigidBody(mass=planar.rod(2.0, 1.0), position=(0.5, 0.0)))

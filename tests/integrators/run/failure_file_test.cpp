@@ -1,13 +1,16 @@
 // Files that a failed step leaves behind, and counts of the contact solvers on the way.
 
+#include "examples/scenes/discs.h"
 #include "tests/integrators/throws.h"
 
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -74,6 +77,67 @@ TEST_F(FailureFile, AlsoOfARefusedGain) {
                                              .failure_directory = directory_.string()});
   EXPECT_THROWS(SolverError, simulation.step(), "no gain", "the problem is in '");
   EXPECT_EQ(files(), 1u);
+}
+
+/// Sweeps of a collapse that end early.
+TimeStepping hasty(const std::string& directory) {
+  TimeStepping options{.step = 1e-3, .failure_directory = directory};
+  options.contact_budget.sweeps = 4;
+  return options;
+}
+
+TEST_F(FailureFile, AnswersAtTheCapLeaveTheWorstProblemsOnly) {
+  System system;
+  scenes::add_discs(system, {.count = 64, .width = 1.0});
+  Simulation simulation(system, hasty(directory_.string()));
+  std::vector<std::string> named;
+  std::size_t capped_steps = 0, warned = 0;
+  double worst = 0.0;
+  simulation.log() = Log(
+      [&](LogLevel, std::string_view text) {
+        warned += text.find("see " + directory_.string()) != std::string_view::npos ? 1 : 0;
+      },
+      LogLevel::warning);
+  simulation.observe([&](const Simulation& now) {
+    double residual = 0.0;
+    for (const ContactRecord& contact : now.report().contacts) {
+      if (contact.outcome == Outcome::accepted_at_cap) residual = std::max(residual, contact.residual);
+    }
+    capped_steps += residual > 0.0 ? 1 : 0;
+    EXPECT_EQ(now.report().capped_problem.empty(), !(residual > worst)) << now.time();
+    worst = std::max(worst, residual);
+    if (now.report().capped_problem.empty()) return;
+    named.push_back(now.report().capped_problem);
+    // Of the step that was made, with the names of its contacts.
+    const ProblemFile read = load_problem(named.back());
+    EXPECT_EQ(read.notes.contacts.size(), read.problem.groups().size());
+    ASSERT_TRUE(read.notes.time.has_value());
+    EXPECT_NEAR(*read.notes.time, now.time() - 1e-3, 1e-12);
+    EXPECT_NE(read.notes.comment.find("accepted at the cap of sweeps"), std::string::npos);
+    // With as many sweeps as it takes it has an answer.
+    SolverChain chain;
+    chain.set_budget({.sweeps = 5000});
+    std::vector<double> impulse(static_cast<std::size_t>(read.problem.rows()));
+    EXPECT_EQ(chain.solve(read.problem, impulse).outcome, Outcome::solved);
+  });
+  simulation.run_until(0.3);
+  EXPECT_GE(named.size(), 1U);
+  EXPECT_GT(capped_steps, 2 * named.size());
+  EXPECT_EQ(files(), named.size());
+  EXPECT_EQ(warned, named.size());
+}
+
+TEST_F(FailureFile, AProblemThatCannotBeWrittenIsTold) {
+  System system;
+  scenes::add_discs(system, {.count = 64, .width = 1.0});
+  Simulation simulation(system, hasty(directory_.string()));
+  std::filesystem::remove_all(directory_);
+  std::string told;
+  while (told.empty() && simulation.time() < 0.3) {
+    simulation.step();
+    told = simulation.report().capped_problem;
+  }
+  EXPECT_NE(told.find("cannot be written"), std::string::npos) << told;
 }
 
 TEST_F(FailureFile, IsNotWrittenUnasked) {
