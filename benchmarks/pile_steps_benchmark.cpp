@@ -1,7 +1,9 @@
 // Whole steps of time stepping for discs in a box: detection, contact, account and report.
 //
-// Names: settled/<N> for N discs that have come to rest (3 s), collapse/<N> for the second half of their
-// fall. Counters: residual (the largest of the steps timed), contacts.
+// Names: settled/<N> for N discs that have come to rest (3 s), with the residual of contact by default, and
+// settled_to_<residual>; collapse/<N> for the second half of their fall; pouring/<N> for rows that fall one
+// by one onto those that lie already, all but the last quarter; <name>_two_threads. Counters: residual (the
+// largest of the steps timed), contacts.
 
 #include <carom/carom.h>
 
@@ -16,17 +18,17 @@ namespace {
 
 constexpr double step = 1e-3;  // [s]
 
-/// A box as high as wide when it is full, of 2 m at most.
+/// A box as high as wide when it is full; of 2 m at most for up to 2,000 discs.
 scenes::Discs scene(int count) {
-  scenes::Discs discs{.count = count};
-  discs.width = std::min(2.0, 0.1 * std::sqrt(static_cast<double>(count)));
-  return discs;
+  const double square = 0.1 * std::sqrt(static_cast<double>(count));
+  return {.count = count, .width = count <= 2000 ? std::min(2.0, square) : square};
 }
 
-void time_steps(benchmark::State& state, double from) {
+void time_steps(benchmark::State& state, const scenes::Discs& discs, const carom::TimeStepping& options,
+                double from) {
   carom::System system;
-  scenes::add_discs(system, scene(static_cast<int>(state.range(0))));
-  carom::Simulation simulation(system, carom::TimeStepping{.step = step});
+  scenes::add_discs(system, discs);
+  carom::Simulation simulation(system, options);
   simulation.run_until(from);
   double residual = 0.0;
   for (auto _ : state) {
@@ -39,11 +41,47 @@ void time_steps(benchmark::State& state, double from) {
   state.counters["contacts"] = static_cast<double>(simulation.report().contacts.size());
 }
 
-void settled(benchmark::State& state) { time_steps(state, 3.0); }
-void collapse(benchmark::State& state) { time_steps(state, 0.4); }
+constexpr double at_rest = 3.0, falling = 0.4;  // times from which on steps are timed [s]
+
+int count_of(const benchmark::State& state) { return static_cast<int>(state.range(0)); }
+
+void settled(benchmark::State& state) { time_steps(state, scene(count_of(state)), {.step = step}, at_rest); }
+void settled_to(benchmark::State& state, double residual) {
+  carom::TimeStepping options{.step = step};
+  options.contact_budget.residual = residual;
+  time_steps(state, scene(count_of(state)), options, at_rest);
+}
+void settled_two_threads(benchmark::State& state) {
+  time_steps(state, scene(count_of(state)), {.step = step, .threads = 2}, at_rest);
+}
+void collapse(benchmark::State& state) { time_steps(state, scene(count_of(state)), {.step = step}, falling); }
+void collapse_two_threads(benchmark::State& state) {
+  time_steps(state, scene(count_of(state)), {.step = step, .threads = 2}, falling);
+}
+
+/// Rows so far apart that when half of the discs lie the other half still falls.
+void pouring(benchmark::State& state) {
+  scenes::Discs discs = scene(count_of(state));
+  discs.rows_apart = 12.0;
+  const double rows = discs.count / (discs.width / (2.4 * discs.radius));
+  const double height = discs.rows_apart * discs.radius * rows;
+  const double end = std::sqrt(2.0 * height / scenes::discs_gravity);  // the last row lands
+  time_steps(state, discs, {.step = step}, 0.75 * end - 0.5);
+}
 
 // Steps go on in time: as many as are timed at rest, and of the collapse those of half a second.
-BENCHMARK(settled)->Arg(100)->Arg(500)->Arg(2000)->Iterations(500)->Unit(benchmark::kMillisecond);
-BENCHMARK(collapse)->Arg(100)->Arg(500)->Arg(2000)->Iterations(500)->Unit(benchmark::kMillisecond);
+void sizes(benchmark::internal::Benchmark* of) {
+  of->Arg(100)->Arg(500)->Arg(2000)->Arg(10000)->Iterations(500)->Unit(benchmark::kMillisecond);
+}
+BENCHMARK(settled)->Apply(sizes);
+BENCHMARK_CAPTURE(settled_to, 1e-8, 1e-8)->Apply(sizes);
+BENCHMARK_CAPTURE(settled_to, 1e-4, 1e-4)->Apply(sizes);
+BENCHMARK(collapse)->Apply(sizes);
+BENCHMARK(pouring)->Apply(sizes);
+// The wall clock, as the processor time of both threads is the sum.
+BENCHMARK(settled)->Name("settled_one_thread")->Arg(2000)->Iterations(500)->UseRealTime();
+BENCHMARK(settled_two_threads)->Arg(2000)->Iterations(500)->UseRealTime();
+BENCHMARK(collapse)->Name("collapse_one_thread")->Arg(2000)->Iterations(500)->UseRealTime();
+BENCHMARK(collapse_two_threads)->Arg(2000)->Iterations(500)->UseRealTime();
 
 }  // namespace

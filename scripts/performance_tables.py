@@ -8,13 +8,12 @@ usage: performance_tables.py <folder of results> <page> <compiler>
 import sys
 from pathlib import Path
 
+from performance_contact_tables import (broad_phase_table, gap_table, pile_aims_table, pile_table,
+                                        uncoupled_table)
 from performance_figures import figure, load, machine, replace_parts, seconds, table
 
 SIZES = [10, 30, 100, 300, 1000]
 WHEELS = [500, 4000]
-DISCS = [100, 2000, 10000]
-PILES = [100, 500, 2000, 10000]
-BOXES = [100, 1000, 10000, 100000]
 PLAIN = "plain_sweep"
 NET_ROWS = [
     (PLAIN, "plain explicit sweep"),
@@ -243,59 +242,6 @@ def stiff_table(flow):
     return table(["0.02 s of motion", "unknowns", "steps", "ms", "ns per step and unknown"], rows)
 
 
-def uncoupled_table(uncoupled):
-    rows = []
-    for key, title in (("by_hand", "one loop by hand: motion, energies, work"),
-                       ("by_hand_with_gaps", "the same, and the gaps over the floor"),
-                       ("uncoupled", "library: discs in free fall"),
-                       ("uncoupled_rolling", "library: every disc in contact with the floor"),
-                       ("one_component", "library: joined by springs to one component, in free fall")):
-        cells = [title]
-        for count in DISCS:
-            case = uncoupled.get(f"{key}/{count}")
-            ratio = case and case["per_disc"] / uncoupled[f"by_hand_with_gaps/{count}"]["per_disc"]
-            cells.append(f"{figure(1e9 * case['per_disc'])} ({ratio:.2f})" if case else "")
-        rows.append(cells)
-    return table(["ns per disc and step (ratio to the loop with gaps)"] + [f"{count:,} discs" for count in DISCS], rows)
-
-
-def gap_table(gap):
-    rows = [[title, figure(1e9 / gap[key]["items_per_second"])]
-            for key, title in (("two_discs", "two discs"), ("disc_and_box", "disc and box"),
-                               ("two_capsules", "two capsules"), ("two_boxes", "two boxes"),
-                               ("two_polygons_of_16", "two polygons of 16 vertices"))]
-    return table(["gap of", "ns"], rows)
-
-
-def broad_phase_table(broad):
-    rows = []
-    for key, title in (("equal_slow", "boxes of one size, slow"), ("equal_few_fast", "a hundredth of them fast"),
-                       ("equal_fast", "all fast"), ("equal_plain", "grid by hand, all anew"),
-                       ("mixed_slow", "sizes from 1 to 100, slow"), ("mixed_fast", "the same, fast"),
-                       ("few_large_fast", "one in a thousand large, fast")):
-        cells = [title]
-        for count in BOXES:
-            case = broad.get(f"{key}/{count}")
-            cells.append(figure(1e9 * case["per_box"]) if case else "")
-        rows.append(cells)
-    return table(["ns per box and call"] + [f"{count:,} boxes" for count in BOXES], rows)
-
-
-def pile_table(pile, steps):
-    """Time of a step and its residual: of the contact problem alone, and of whole steps, where measured."""
-    rows = []
-    for cases, clock, what in ((pile, "/manual_time", "contact problem alone"), (steps, "", "whole step")):
-        for key in ("settled", "collapse"):
-            found = [cases.get(f"{key}/{count}{clock}") for count in PILES]
-            if not any(found):
-                continue
-            times = [figure(case["ms"] if "ms" in case else 1e3 * seconds(case)) if case else "" for case in found]
-            rows.append([f"{key}, {what}: ms"] + times)
-            rows.append([f"{key}, {what}: residual"]
-                        + [f"{case['residual']:.1e}" if case else "" for case in found])
-    return table(["one step"] + [f"{count:,} discs" for count in PILES], rows)
-
-
 # Of each section: the programs that must have run, the mark of the machine of the first, what began when its load was
 # looked at, and the tables by their marks.
 SECTIONS = (
@@ -307,7 +253,7 @@ SECTIONS = (
     (("uncoupled",), "uncoupled_machine", "the discs", {"uncoupled": uncoupled_table}),
     (("gap",), "gap_machine", "the gaps", {"gap": gap_table}),
     (("broad_phase",), "broad_phase_machine", "the boxes", {"broad_phase": broad_phase_table}),
-    (("pile", "pile_steps"), "pile_machine", "the piles", {"pile": pile_table}),
+    (("pile", "pile_steps"), "pile_machine", "the piles", {"pile": pile_table, "pile_aims": pile_aims_table}),
     (("event",), "event_machine", "the events",
      {"bounce": bounce_table, "balls": balls_table, "lasting": lasting_table, "friction": friction_table}),
     (("flow",), "flow_machine", "the stiff motion", {"stiff": stiff_table}),

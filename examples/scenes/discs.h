@@ -20,6 +20,7 @@ struct Discs {
   double density = 1000.0;  ///< of the discs, one metre thick [kg/m^3]
   double friction = 0.5;
   double restitution = 0.0;  ///< in both directions
+  double rows_apart = 2.4;   ///< distance of the rows at the start, in radii; far apart they fall one by one
 };
 
 inline constexpr double discs_gravity = 9.81;  ///< [m/s^2]
@@ -48,7 +49,7 @@ inline std::vector<carom::BodyId> add_discs(carom::System& system, const Discs& 
   for (int i = 0; i < discs.count; ++i) {
     const double radius = discs.radius * (1.0 + discs.spread * scattered(i));
     const carom::Vec<2> place((0.5 + i % in_a_row) * pitch + 0.08 * discs.radius * scattered(3 * i + 1),
-                              (0.5 + i / in_a_row) * pitch);
+                              0.5 * pitch + i / in_a_row * discs.rows_apart * discs.radius);
     const double mass = discs.density * pi * radius * radius;
     all.push_back(system.add(RigidBody{.mass = disc(mass, radius), .position = place}));
     system.add(Disc{.body = all.back(), .radius = radius});
