@@ -43,13 +43,13 @@ inline std::vector<carom::BodyId> add_discs(carom::System& system, const Discs& 
   system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
   system.add(HalfPlane{.normal = {1.0, 0.0}}, "left wall");
   system.add(HalfPlane{.point = {discs.width, 0.0}, .normal = {-1.0, 0.0}}, "right wall");
-  const double pitch = 2.4 * discs.radius;
+  const double pitch = 2.4 * discs.radius, rows_apart = discs.rows_apart * discs.radius;
   const int in_a_row = static_cast<int>(discs.width / pitch);
   std::vector<carom::BodyId> all;
   for (int i = 0; i < discs.count; ++i) {
     const double radius = discs.radius * (1.0 + discs.spread * scattered(i));
     const carom::Vec<2> place((0.5 + i % in_a_row) * pitch + 0.08 * discs.radius * scattered(3 * i + 1),
-                              0.5 * pitch + i / in_a_row * discs.rows_apart * discs.radius);
+                              (0.5 + i / in_a_row) * rows_apart);
     const double mass = discs.density * pi * radius * radius;
     all.push_back(system.add(RigidBody{.mass = disc(mass, radius), .position = place}));
     system.add(Disc{.body = all.back(), .radius = radius});
