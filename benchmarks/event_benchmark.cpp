@@ -186,10 +186,10 @@ void bounce_by_hand(benchmark::State& state) {
   state.counters["evaluations"] = body.evaluations() / body.impacts();
 }
 
-void bounce(benchmark::State& state, FlowMethod method, bool in_air) {
+void bounce(benchmark::State& state, const EventDriven& chosen, bool in_air) {
   ByHand by_hand;
   by_hand.run(bouncing_end);
-  Simulation simulation(bouncing_disc(in_air), options(method));
+  Simulation simulation(bouncing_disc(in_air), chosen);
   simulation.run_until(bouncing_end);
   if (count_events(simulation) != by_hand.impacts()) throw std::logic_error("an impact is missing");
   const State& there = simulation.state();
@@ -197,17 +197,20 @@ void bounce(benchmark::State& state, FlowMethod method, bool in_air) {
   const double apart =
       std::hypot(there.q[0] - here[0], there.q[1] - here[1], radius * (there.q[2] - here[2]));
   if (!(apart <= 1e-3)) throw std::logic_error("the two bouncing discs are not in one place");
-  time_run(state, options(method), bouncing_end, [in_air] { return bouncing_disc(in_air); });
+  time_run(state, chosen, bouncing_end, [in_air] { return bouncing_disc(in_air); });
   state.counters["apart"] = apart;
 }
 
 BENCHMARK(bounce_by_hand)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(bounce, in_flight, FlowMethod::explicit_runge_kutta, false)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(bounce, explicit_runge_kutta, FlowMethod::explicit_runge_kutta, true)
+BENCHMARK_CAPTURE(bounce, in_flight, options(FlowMethod::explicit_runge_kutta), false)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(bounce, adams, FlowMethod::adams, true)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(bounce, bdf, FlowMethod::bdf, true)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(bounce, one_step, FlowMethod::one_step, true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, by_default, EventDriven{}, false)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, in_air_by_default, EventDriven{}, true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, explicit_runge_kutta, options(FlowMethod::explicit_runge_kutta), true)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, adams, options(FlowMethod::adams), true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, bdf, options(FlowMethod::bdf), true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(bounce, one_step, options(FlowMethod::one_step), true)->Unit(benchmark::kMicrosecond);
 
 // Balls side by side, dropped from 0.02 to 0.1 m: 3 s, in which their impacts accumulate and they lie still.
 System balls(int count) {
@@ -273,6 +276,9 @@ void lasting(benchmark::State& state, Make make) {
 void lasting_one_step(benchmark::State& state, Make make) {
   time_run(state, options(FlowMethod::one_step), lasting_end, make, false);
 }
+void lasting_by_default(benchmark::State& state, Make make) {
+  time_run(state, EventDriven{}, lasting_end, make, false);
+}
 void lasting_stepped(benchmark::State& state, Make make) {
   time_run(state, TimeStepping{.step = 1e-3}, lasting_end, make, false);
 }
@@ -282,6 +288,9 @@ BENCHMARK_CAPTURE(lasting, rolling_disc, rolling_disc)->Unit(benchmark::kMicrose
 BENCHMARK_CAPTURE(lasting_one_step, brick, lying_brick)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(lasting_one_step, shaken_brick, shaken_brick)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(lasting_one_step, rolling_disc, rolling_disc)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(lasting_by_default, brick, lying_brick)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(lasting_by_default, shaken_brick, shaken_brick)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(lasting_by_default, rolling_disc, rolling_disc)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(lasting_stepped, brick, lying_brick)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(lasting_stepped, shaken_brick, shaken_brick)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(lasting_stepped, rolling_disc, rolling_disc)->Unit(benchmark::kMicrosecond);
@@ -311,17 +320,19 @@ System on_a_belt() {
   return system;
 }
 
-void slide(benchmark::State& state, FlowMethod method) { time_run(state, options(method), 32.0, slider); }
-void belt(benchmark::State& state, FlowMethod method) { time_run(state, options(method), 30.0, on_a_belt); }
-BENCHMARK_CAPTURE(slide, explicit_runge_kutta, FlowMethod::explicit_runge_kutta)
+void slide(benchmark::State& state, const EventDriven& chosen) { time_run(state, chosen, 32.0, slider); }
+void belt(benchmark::State& state, const EventDriven& chosen) { time_run(state, chosen, 30.0, on_a_belt); }
+BENCHMARK_CAPTURE(slide, by_default, EventDriven{})->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(slide, explicit_runge_kutta, options(FlowMethod::explicit_runge_kutta))
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(slide, adams, FlowMethod::adams)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(slide, bdf, FlowMethod::bdf)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(slide, one_step, FlowMethod::one_step)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(belt, explicit_runge_kutta, FlowMethod::explicit_runge_kutta)
+BENCHMARK_CAPTURE(slide, adams, options(FlowMethod::adams))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(slide, bdf, options(FlowMethod::bdf))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(slide, one_step, options(FlowMethod::one_step))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(belt, by_default, EventDriven{})->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(belt, explicit_runge_kutta, options(FlowMethod::explicit_runge_kutta))
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(belt, adams, FlowMethod::adams)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(belt, bdf, FlowMethod::bdf)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(belt, one_step, FlowMethod::one_step)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(belt, adams, options(FlowMethod::adams))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(belt, bdf, options(FlowMethod::bdf))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(belt, one_step, options(FlowMethod::one_step))->Unit(benchmark::kMicrosecond);
 
 }  // namespace

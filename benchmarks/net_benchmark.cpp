@@ -27,9 +27,10 @@ using benchmarks::PlainNet;
 
 // Motion of the net while its steps are timed.
 enum class Phase {
-  falling,  // free fall, no spring works
-  working,  // free fall, springs stretched by 1 % at the start: it draws together from its border inwards
-  resting   // lies with its lowest row along the plane
+  falling,     // free fall, no spring works
+  working,     // free fall, springs stretched by 1 % at the start: it draws together from its border inwards
+  by_default,  // the same with the options as they come
+  resting      // lies with its lowest row along the plane
 };
 
 constexpr double tolerance = 1e-10;  // [m]
@@ -38,12 +39,18 @@ constexpr double longest = 0.02;     // then a run starts anew: what a step cost
 
 scenes::Net net_of(Phase phase, int k) {
   scenes::Net net{.k = k};
-  if (phase == Phase::working) net.prestress = 0.01;
+  if (phase == Phase::working || phase == Phase::by_default) net.prestress = 0.01;
   if (phase == Phase::resting) {
     net.tilt = net.slope;
     net.height = -1e-9;  // so that rounding of positions leaves no particle above the plane
   }
   return net;
+}
+
+carom::TimeStepping options_of(Phase phase) {
+  carom::TimeStepping options{.step = scenes::net_step};
+  if (phase != Phase::by_default) options.tolerance = tolerance;
+  return options;
 }
 
 carom::System system_of(const scenes::Net& net) {
@@ -57,9 +64,8 @@ struct Run {
   carom::Simulation simulation;
   carom::State begin;
 
-  explicit Run(const scenes::Net& net)
-      : simulation(system_of(net), carom::TimeStepping{.step = scenes::net_step, .tolerance = tolerance}),
-        begin(simulation.state()) {
+  explicit Run(Phase phase, int k)
+      : simulation(system_of(net_of(phase, k)), options_of(phase)), begin(simulation.state()) {
     settle();
   }
   void settle() {
@@ -74,7 +80,7 @@ struct Run {
 Run& run(Phase phase, int k) {
   static std::map<std::pair<Phase, int>, std::unique_ptr<Run>> runs;
   auto& entry = runs[{phase, k}];
-  if (!entry) entry = std::make_unique<Run>(net_of(phase, k));
+  if (!entry) entry = std::make_unique<Run>(phase, k);
   return *entry;
 }
 
@@ -213,6 +219,7 @@ void time_steps(benchmark::State& state, Phase phase) {
 
 void step_falling(benchmark::State& state) { time_steps(state, Phase::falling); }
 void step_working(benchmark::State& state) { time_steps(state, Phase::working); }
+void step_by_default(benchmark::State& state) { time_steps(state, Phase::by_default); }
 void step_resting(benchmark::State& state) { time_steps(state, Phase::resting); }
 
 // The stretched net on several threads: range(1) of them, by the clock on the wall. `per_particle` is its.
@@ -319,6 +326,7 @@ BENCHMARK(forces)->Apply(sizes);
 BENCHMARK(step_falling)->Apply(sizes);
 BENCHMARK(step_working)->Apply(sizes);
 BENCHMARK(step_resting)->Apply(sizes);
+BENCHMARK(step_by_default)->Apply(sizes);
 
 BENCHMARK(plain_sweep)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(plain_sweep_avx2)->Arg(million)->Iterations(2)->Repetitions(3)->Unit(benchmark::kMillisecond);

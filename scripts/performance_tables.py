@@ -24,6 +24,7 @@ NET_ROWS = [
     ("forces", "library: force sweep"),
     ("step_falling", "library: step, free fall at rest"),
     ("step_working", "library: step, springs stretched"),
+    ("step_by_default", "the same, options by default (converged to 1e-12)"),
     ("step_resting", "library: step, lowest row in contact"),
     ("first_step", "library: first step of a run"),
 ]
@@ -137,7 +138,8 @@ def bounce_table(event):
     hand = event["bounce_by_hand"]
     rows = [["loop by hand, Runge-Kutta 4 in steps of 0.1 s", figure(1e6 * hand["per_event"]), "1.00",
              f"{hand['steps']:.3g}", f"{hand['evaluations']:.3g}", ""]]
-    cases = [("in_flight", "library")] + [(key, f"library, in air, {title}") for key, title in FLOWS]
+    cases = [("by_default", "library, options by default"), ("in_flight", "library"),
+             ("in_air_by_default", "library, in air, options by default")] + [(key, f"library, in air, {title}") for key, title in FLOWS]
     for key, title in cases:
         case = event[f"bounce/{key}"]
         rows.append([title, figure(1e6 * case["per_event"]),
@@ -157,7 +159,8 @@ def balls_table(event):
 def lasting_table(event):
     scenes = (("brick", "brick at rest"), ("shaken_brick", "brick on a shaking plane"), ("rolling_disc", "rolling disc"))
     rows = []
-    for key, title in (("lasting", f"event-driven, {FLOWS[0][1]}"), ("lasting_one_step", f"event-driven, {FLOWS[1][1]}"),
+    for key, title in (("lasting_by_default", "event-driven, options by default"),
+                       ("lasting", f"event-driven, {FLOWS[0][1]}"), ("lasting_one_step", f"event-driven, {FLOWS[1][1]}"),
                        ("lasting_stepped", "time stepping, h = 1e-3 s")):
         cells = [title]
         for scene, _ in scenes:
@@ -172,7 +175,7 @@ def lasting_table(event):
 
 def friction_table(event):
     rows = []
-    for key, title in FLOWS:
+    for key, title in (("by_default", "options by default"), *FLOWS):
         cells = [title]
         for scene in ("slide", "belt"):
             case = event[f"{scene}/{key}"]
