@@ -66,7 +66,7 @@ public:
   /// Any other derivative: of the load on velocity coordinate `row` along velocity coordinate `column`
   /// (BodySlot::v of the assembly's layout and following).
   void entry(Index row, Index column, double by_position, double by_velocity) {
-    out_->push_back({row, column, by_position, by_velocity});
+    append(*out_, {row, column, by_position, by_velocity});
   }
 
 private:
