@@ -9,6 +9,7 @@
 #include <carom/core/force_kind.h>
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 namespace carom {
@@ -66,7 +67,7 @@ public:
   /// Any other derivative: of the load on velocity coordinate `row` along velocity coordinate `column`
   /// (BodySlot::v of the assembly's layout and following).
   void entry(Index row, Index column, double by_position, double by_velocity) {
-    append(*out_, {row, column, by_position, by_velocity});
+    out_->push_back({row, column, by_position, by_velocity});
   }
 
 private:
@@ -127,8 +128,11 @@ private:
     if (point.turns()) entry(point.at.v + D, point.at.v + D, -point.lever.dot(force), 0.0);
   }
 
+  // LoadDerivative, by a name that depends on D: programs that call nothing here do not compile the list.
+  using Entry = std::conditional_t<(D > 0), LoadDerivative, void>;
+
   const ElementView<D>* view_;
-  std::vector<LoadDerivative>* out_;
+  std::vector<Entry>* out_;
 };
 
 }  // namespace carom

@@ -29,6 +29,4 @@ void ForceKind::derivatives(const EvaluationContext& at, Index element,
   difference_derivatives(*this, at, element, out);
 }
 
-void append(std::vector<LoadDerivative>& to, const LoadDerivative& derivative) { to.push_back(derivative); }
-
 }  // namespace carom

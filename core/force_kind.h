@@ -59,8 +59,6 @@ struct LoadDerivative {
   double by_position = 0.0;  ///< d load / d position along that coordinate
   double by_velocity = 0.0;  ///< d load / d velocity
 };
-/// Appends one.
-CAROM_API void append(std::vector<LoadDerivative>& to, const LoadDerivative& derivative);
 
 /// All elements of one kind.
 class CAROM_API ForceKind {

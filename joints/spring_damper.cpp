@@ -342,7 +342,6 @@ template <int D>
 PartType<ForceKind> SpringDamper<D>::part_type() {
   return PartType<ForceKind>::of<SpringDamperKind<D>, SpringDamper>();
 }
-
 template PartType<ForceKind> SpringDamper<2>::part_type();
 template PartType<ForceKind> SpringDamper<3>::part_type();
 template class SpringDamperKind<2>;
