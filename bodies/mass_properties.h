@@ -21,7 +21,7 @@ template <>
 struct MassProperties<2> {
   double mass = std::numeric_limits<double>::quiet_NaN();     ///< [kg]
   double inertia = std::numeric_limits<double>::quiet_NaN();  ///< about the centre of mass [kg m^2]
-  Vec<2> centre = Vec<2>::Zero();  ///< centre of mass in the frame in which the body was described [m]
+  Vec<2> centre = filled<2>(0.0);  ///< centre of mass in the frame in which the body was described [m]
 };
 
 namespace planar {

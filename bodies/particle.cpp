@@ -1,5 +1,4 @@
-#include <carom/bodies/particle.h>
-
+#include <carom/bodies/particle_kind.h>
 #include <carom/core/numerics/pair.h>
 
 #include <algorithm>
@@ -128,6 +127,13 @@ void ParticleKind<D>::fingerprint(Fingerprint& print) const {
   }
 }
 
+template <int D>
+PartType<BodyKind> Particle<D>::part_type() {
+  return PartType<BodyKind>::of<ParticleKind<D>, Particle>();
+}
+
+template PartType<BodyKind> Particle<2>::part_type();
+template PartType<BodyKind> Particle<3>::part_type();
 template class ParticleKind<2>;
 template class ParticleKind<3>;
 

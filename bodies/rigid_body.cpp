@@ -1,5 +1,4 @@
-#include <carom/bodies/rigid_body.h>
-
+#include <carom/bodies/rigid_body_kind.h>
 #include <carom/core/numerics/pair.h>
 
 #include <algorithm>
@@ -7,6 +6,8 @@
 #include <limits>
 
 namespace carom::generic {
+
+PartType<BodyKind> RigidBody<2>::part_type() { return PartType<BodyKind>::of<RigidBodyKind<2>, RigidBody>(); }
 
 void RigidBodyKind<2>::add(const RigidBody<2>& part, const PartCheck& check) {
   check.positive(part.mass.mass, "mass", "kg");

@@ -3,6 +3,7 @@
 /// \file
 /// Storage of planar shapes that touch a half-plane with rounded points, and each other with convex outlines.
 
+#include <carom/core/export.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
 #include <carom/core/shape_kind.h>
@@ -10,6 +11,9 @@
 #include <vector>
 
 namespace carom::generic {
+
+/// Adds bodies, materials and rounded points of all shapes of a kind.
+CAROM_API void add_features(Fingerprint& print, const ShapeKind& shapes);
 
 /// All shapes of one description. `P` has body, material, label, check(PartCheck),
 /// features(std::vector<RoundedPoint>&) and, if it touches other bodies, Outline outline(PartCheck); it may
@@ -50,20 +54,7 @@ public:
   void outlines(Index slot, const PartCheck& check, std::vector<Outline>& out) const override {
     if constexpr (requires { parts_[slot].outline(check); }) out.push_back(parts_[slot].outline(check));
   }
-  void fingerprint(Fingerprint& print) const override {
-    std::vector<RoundedPoint> points;
-    for (const P& part : parts_) {
-      print.add(std::uint64_t{part.body.serial});
-      print.add(std::uint64_t{part.material.serial});
-      points.clear();
-      part.features(points);
-      print.add(std::uint64_t{points.size()});
-      for (const RoundedPoint& point : points) {
-        print.add(point.centre);
-        print.add(point.radius);
-      }
-    }
-  }
+  void fingerprint(Fingerprint& print) const override { add_features(print, *this); }
 
 private:
   std::vector<P> parts_;

@@ -3,7 +3,9 @@
 /// \file
 /// A point of a body.
 
-#include <carom/bodies/shape_features.h>
+#include <carom/core/export.h>
+#include <carom/core/part.h>
+#include <carom/core/shape_kind.h>
 #include <carom/core/space.h>
 
 #include <string_view>
@@ -12,25 +14,24 @@
 namespace carom::planar {
 
 /// A point of a body. Fixed to a planar rigid body.
-struct Point {
+struct CAROM_API Point {
   static constexpr Role role = Role::shape;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "point";
-  using Kind = generic::FeatureShapeKind<Point>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ShapeKind> part_type();
 
   BodyId body{};                     ///< the body (required)
-  Vec<2> position = Vec<2>::Zero();  ///< in the body's frame, from the centre of mass [m]
+  Vec<2> position = filled<2>(0.0);  ///< in the body's frame, from the centre of mass [m]
   MaterialId material{};             ///< for laws between materials
   ContactFilter filter{};            ///< what it may touch
 
   /// Throws ModelError for invalid values.
-  void check(const PartCheck& check) const { check.finite({position.data(), 2}, "position", "m"); }
+  void check(const PartCheck& check) const;
   /// Appends the points that can touch a half-plane.
-  void features(std::vector<RoundedPoint>& out) const {
-    out.push_back({{position[0], position[1], 0.0}, 0.0});
-  }
+  void features(std::vector<RoundedPoint>& out) const;
   /// Set with which it touches other bodies.
-  [[nodiscard]] Outline outline(const PartCheck& /*check*/) const { return {{position}, 0.0}; }
+  [[nodiscard]] Outline outline(const PartCheck& check) const;
 };
 
 }  // namespace carom::planar

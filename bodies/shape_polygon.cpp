@@ -1,3 +1,4 @@
+#include <carom/bodies/shape_features.h>
 #include <carom/bodies/shape_polygon.h>
 #include <carom/core/vector_length.h>
 
@@ -96,6 +97,21 @@ Outline Polygon::outline(const PartCheck& check) const {
   // All turn to the left, but perhaps around more than once, as a pentagram does.
   if (turning > 3.0 * std::numbers::pi) check.refuse("vertices", "crossing themselves", allowed);
   return outline;
+}
+
+PartType<ShapeKind> Polygon::part_type() {
+  return PartType<ShapeKind>::of<generic::FeatureShapeKind<Polygon>, Polygon>();
+}
+
+void Polygon::check(const PartCheck& check) const {
+  if (vertices.size() < 3) check.refuse("number of vertices", std::to_string(vertices.size()), "at least 3");
+  for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
+  check.non_negative(radius, "radius", "m");
+  check_area(check);
+}
+
+void Polygon::features(std::vector<RoundedPoint>& out) const {
+  for (const Vec<2>& vertex : vertices) out.push_back({{vertex[0], vertex[1], 0.0}, radius});
 }
 
 }  // namespace carom::planar

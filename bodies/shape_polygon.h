@@ -3,11 +3,11 @@
 /// \file
 /// A polygon, sharp or rounded: its vertices touch a half-plane, all of it touches other bodies.
 
-#include <carom/bodies/shape_features.h>
 #include <carom/core/export.h>
+#include <carom/core/part.h>
+#include <carom/core/shape_kind.h>
 #include <carom/core/space.h>
 
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,11 +15,12 @@ namespace carom::planar {
 
 /// A polygon, in either orientation. Its vertices touch half-planes, whatever its form; to touch other bodies
 /// it must be convex. Fixed to a planar rigid body.
-struct Polygon {
+struct CAROM_API Polygon {
   static constexpr Role role = Role::shape;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "polygon";
-  using Kind = generic::FeatureShapeKind<Polygon>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ShapeKind> part_type();
 
   BodyId body{};                   ///< the body (required)
   std::vector<Vec<2>> vertices{};  ///< at least three, in the body's frame [m]
@@ -28,23 +29,15 @@ struct Polygon {
   ContactFilter filter{};          ///< what it may touch
 
   /// Throws ModelError for invalid values.
-  void check(const PartCheck& check) const {
-    if (vertices.size() < 3)
-      check.refuse("number of vertices", std::to_string(vertices.size()), "at least 3");
-    for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
-    check.non_negative(radius, "radius", "m");
-    check_area(check);
-  }
+  void check(const PartCheck& check) const;
   /// Throws ModelError for vertices that all lie on one line but for rounding: a polygon has an area.
-  CAROM_API void check_area(const PartCheck& check) const;
+  void check_area(const PartCheck& check) const;
   /// Appends the points that can touch a half-plane.
-  void features(std::vector<RoundedPoint>& out) const {
-    for (const Vec<2>& vertex : vertices) out.push_back({{vertex[0], vertex[1], 0.0}, radius});
-  }
+  void features(std::vector<RoundedPoint>& out) const;
   /// Set with which it touches other bodies: counter-clockwise, beginning with the first vertex that is a
   /// corner, without those that repeat another one or lie between their neighbours on one line. Throws
   /// ModelError if it is not convex or crosses itself.
-  [[nodiscard]] CAROM_API Outline outline(const PartCheck& check) const;
+  [[nodiscard]] Outline outline(const PartCheck& check) const;
 };
 
 }  // namespace carom::planar

@@ -67,6 +67,7 @@ set(carom_public_headers
     core/numerics/time_difference.h
     core/part.h
     core/part_check.h
+    core/part_type.h
     core/registry.h
     core/row_set.h
     core/serial_list.h
@@ -74,7 +75,6 @@ set(carom_public_headers
     core/space.h
     core/state.h
     core/surface.h
-    core/surface_table.h
     core/system.h
     core/text_table.h
     core/time_course.h
@@ -110,7 +110,6 @@ set(carom_public_headers
     joints/maxwell.h
     joints/mean_line.h
     joints/nonlinear_spring.h
-    joints/on_coordinate.h
     joints/one_sided_spring.h
     joints/prismatic.h
     joints/revolute.h

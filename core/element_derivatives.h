@@ -9,6 +9,7 @@
 #include <carom/core/force_kind.h>
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 namespace carom {
@@ -127,8 +128,11 @@ private:
     if (point.turns()) entry(point.at.v + D, point.at.v + D, -point.lever.dot(force), 0.0);
   }
 
+  // LoadDerivative, by a name that depends on D: programs that call nothing here do not compile the list.
+  using Entry = std::conditional_t<(D > 0), LoadDerivative, void>;
+
   const ElementView<D>* view_;
-  std::vector<LoadDerivative>* out_;
+  std::vector<Entry>* out_;
 };
 
 }  // namespace carom

@@ -23,7 +23,7 @@ struct End {
   End(BodyId on, const Vec<D>& at) : body(on), point(at) {}
 
   BodyId body;                    ///< invalid until given
-  Vec<D> point = Vec<D>::Zero();  ///< in the body's frame, from its centre of mass [m]
+  Vec<D> point = filled<D>(0.0);  ///< in the body's frame, from its centre of mass [m]
 };
 
 /// Demands a valid end: a body of this system (or ground), a finite point, and away from the centre of mass
@@ -37,7 +37,7 @@ struct Attachment {
   Index q = none;                 ///< first coordinate of the body, `none` on the ground
   Index v = none;                 ///< first velocity of the body
   Index rotation = none;          ///< its rotation, `none` if the end is at its centre
-  Vec<D> local = Vec<D>::Zero();  ///< point in the body's frame (fixed frame on the ground) [m]
+  Vec<D> local = filled<D>(0.0);  ///< point in the body's frame (fixed frame on the ground) [m]
 
   /// At the origin of the ground, or at a given end.
   Attachment() = default;
@@ -54,7 +54,7 @@ struct Attachment {
     if constexpr (Space<D>::has_orientation) {
       if (rotation != none) return Space<D>::rotate(evaluation.rotation.data() + rotation, local);
     }
-    return Vec<D>::Zero();
+    return filled<D>(0.0);
   }
   /// Position [m].
   [[nodiscard]] Vec<D> position(const StateView& state, const Vec<D>& lever) const {
@@ -63,7 +63,7 @@ struct Attachment {
   }
   /// Velocity [m/s].
   [[nodiscard]] Vec<D> velocity(const StateView& state, const Vec<D>& lever) const {
-    if (q == none) return Vec<D>::Zero();
+    if (q == none) return filled<D>(0.0);
     Vec<D> result = Eigen::Map<const Vec<D>>(state.v + v);
     if constexpr (Space<D>::has_orientation) {
       if (rotation != none) result += Space<D>::lever_velocity(state.v + v + D, lever);

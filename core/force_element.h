@@ -60,6 +60,7 @@
 #include <carom/core/element_derivatives.h>
 #include <carom/core/element_loads.h>
 #include <carom/core/element_view.h>
+#include <carom/core/export.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/guard_motion.h>
 #include <carom/core/internal_step.h>
@@ -76,9 +77,25 @@
 
 namespace carom {
 
+/// Elements without their own kind: all that does not depend on their type.
+class CAROM_API ForceElements : public ForceKind {
+public:
+  void place_internal(std::span<const Index> first) override;
+
+protected:
+  /// Demands bodies of this system, or ground, one of them a body. Throws ModelError.
+  static void check_bodies(const PartCheck& check, const std::vector<BodyId>& bodies);
+  /// Appends bodies.
+  static void append(const std::vector<BodyId>& bodies, std::vector<BodyId>& out);
+  /// Adds the number of bodies and who they are.
+  static void add_bodies(Fingerprint& print, const std::vector<BodyId>& bodies);
+
+  std::vector<Index> internal_;  ///< first internal variable of each element, empty if they have none
+};
+
 /// The kind that stores elements without their own kind and calls their functions.
 template <class P>
-class ForceElementKind final : public ForceKind {
+class ForceElementKind final : public ForceElements {
 public:
   static constexpr int D = P::dimension;
 
@@ -96,14 +113,7 @@ public:
   void add(const P& part, const PartCheck& check) {
     // Its own check first: it knows the names of its ends.
     if constexpr (requires { part.check(check); }) part.check(check);
-    const std::vector<BodyId> bodies = part.bodies();
-    if (bodies.empty()) check.refuse("number of bodies", "0", "at least one");
-    bool only_ground = true;
-    for (const BodyId body : bodies) {
-      check.body(body, "body", true);
-      only_ground = only_ground && body == ground;
-    }
-    if (only_ground) check.refuse("body", "ground", "at least one body of this system");
+    check_bodies(check, part.bodies());
     if constexpr (has_breaks) check.breaks(part.breaks, "breaks");
     parts_.push_back(part);
   }
@@ -122,10 +132,7 @@ public:
   [[nodiscard]] std::string_view label() const override { return part_label(); }
   [[nodiscard]] int dimension() const override { return D; }
   [[nodiscard]] Index size() const override { return static_cast<Index>(parts_.size()); }
-  void ends(Index element, std::vector<BodyId>& out) const override {
-    const std::vector<BodyId> bodies = parts_[element].bodies();
-    out.insert(out.end(), bodies.begin(), bodies.end());
-  }
+  void ends(Index element, std::vector<BodyId>& out) const override { append(parts_[element].bodies(), out); }
   [[nodiscard]] StoredEnergy stored_as() const override {
     if constexpr (requires { P::stored; }) {
       return P::stored;
@@ -161,7 +168,6 @@ public:
   }
 
   [[nodiscard]] Index internal_size() const override { return static_cast<Index>(N); }
-  void place_internal(std::span<const Index> first) override { internal_.assign(first.begin(), first.end()); }
   void initial_internal(Index element, double* z) const override {
     if constexpr (requires(const P& part) { part.initial_internal(z); }) {
       parts_[element].initial_internal(z);
@@ -270,9 +276,7 @@ public:
   }
   void fingerprint(Fingerprint& print) const override {
     for (const P& part : parts_) {
-      const std::vector<BodyId> bodies = part.bodies();
-      print.add(std::uint64_t{bodies.size()});
-      for (const BodyId body : bodies) print.add(std::uint64_t{body.serial});
+      add_bodies(print, part.bodies());
       if constexpr (requires { part.fingerprint(print); }) part.fingerprint(print);
       if constexpr (has_breaks) {
         if (!part.breaks.empty()) print.add(part.breaks);
@@ -326,7 +330,6 @@ private:
   };
 
   std::vector<P> parts_;
-  std::vector<Index> internal_;  // first internal variable of each element, empty if they have none
 };
 
 }  // namespace carom

@@ -33,7 +33,7 @@ public:
   /// Acceleration of an end [m/s^2].
   [[nodiscard]] Vec<D> acceleration(const End<D>& end) const {
     const Attachment<D> at = this->attach(end);
-    if (at.q == none) return Vec<D>::Zero();
+    if (at.q == none) return filled<D>(0.0);
     Vec<D> result = Eigen::Map<const Vec<D>>(acceleration_ + at.v);
     if constexpr (Space<D>::has_orientation) {
       if (at.rotation != none) {

@@ -92,6 +92,16 @@ private:
   spdlog::logger logger_;
 };
 
+Log::Log(const Log&) = default;
+Log::Log(Log&& other) noexcept
+    : level_(std::exchange(other.level_, LogLevel::off)), logger_(std::move(other.logger_)) {}
+Log& Log::operator=(Log other) noexcept {
+  std::swap(level_, other.level_);
+  std::swap(logger_, other.logger_);
+  return *this;
+}
+Log::~Log() = default;
+
 Log::Log(LogSink sink, LogLevel level) {
   if (level > LogLevel::off) {
     throw ModelError("log: level is " + std::to_string(static_cast<int>(level)) +

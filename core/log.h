@@ -37,16 +37,11 @@ public:
   /// \param level the lowest level that passes
   /// Throws ModelError for a value that is no level.
   explicit Log(LogSink sink, LogLevel level = LogLevel::info);
-  Log(const Log&) = default;
+  Log(const Log&);
   /// A log that was moved from is quiet.
-  Log(Log&& other) noexcept
-      : level_(std::exchange(other.level_, LogLevel::off)), logger_(std::move(other.logger_)) {}
-  Log& operator=(Log other) noexcept {
-    std::swap(level_, other.level_);
-    std::swap(logger_, other.logger_);
-    return *this;
-  }
-  ~Log() = default;
+  Log(Log&& other) noexcept;
+  Log& operator=(Log other) noexcept;
+  ~Log();
 
   /// The lowest level that passes; `off` for a quiet log.
   [[nodiscard]] LogLevel level() const { return level_; }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Requirements on a struct that is a part of a system: it has a role, and may have its own kind.
+/// Requirements on a struct that is a part of a system: it has a role, and says its type or has a kind.
 
 #include <carom/core/body_kind.h>
 #include <carom/core/force_kind.h>
@@ -9,6 +9,7 @@
 #include <carom/core/ids.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/part_check.h>
+#include <carom/core/part_type.h>
 #include <carom/core/shape_kind.h>
 
 #include <concepts>
@@ -74,13 +75,35 @@ struct KindOf<P> {
   using type = ForceElementKind<P>;
 };
 
-/// A part: has a role and a kind that takes it.
+/// A part that says its type itself, by `static PartType<...> part_type()`. Those of the library do: their
+/// kinds are compiled in the library alone, not in every program that adds such a part.
+template <class P>
+concept TypedPart = requires {
+  { P::part_type() } -> std::same_as<PartType<typename RoleTraits<P::role>::Interface>>;
+};
+
+/// A part whose kind takes it.
+template <class P>
+concept StoredPart = requires(typename KindOf<P>::type& kind, const P& part, const PartCheck& check) {
+  kind.add(part, check);
+};
+
+/// A part: has a role, and says its type or has a kind.
 template <class P>
 concept Part = requires {
   { P::role } -> std::convertible_to<Role>;
-  typename KindOf<P>::type;
 }
-&&requires(typename KindOf<P>::type& kind, const P& part, const PartCheck& check) { kind.add(part, check); };
+&&(TypedPart<P> || StoredPart<P>);
+
+/// The type of a part.
+template <Part P>
+[[nodiscard]] PartType<typename RoleTraits<P::role>::Interface> type_of_part() {
+  if constexpr (TypedPart<P>) {
+    return P::part_type();
+  } else {
+    return PartType<typename RoleTraits<P::role>::Interface>::template of<typename KindOf<P>::type, P>();
+  }
+}
 
 /// Identity that a system gives to a part.
 template <class P>

@@ -4,51 +4,29 @@
 /// Serial numbers of the parts of one kind. They grow with the slot and mostly come in unbroken runs, which
 /// is how they are stored.
 
+#include <carom/core/export.h>
 #include <carom/core/ids.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace carom {
 
 /// An increasing list of serial numbers, by slot.
-class SerialList {
+class CAROM_API SerialList {
 public:
   /// Number of serial numbers.
   [[nodiscard]] Index size() const { return size_; }
   /// True if there is none.
   [[nodiscard]] bool empty() const { return size_ == 0; }
   /// Serial number at a slot.
-  [[nodiscard]] Index operator[](Index slot) const {
-    const Run& run = *(
-        std::upper_bound(runs_.begin(), runs_.end(), slot, [](Index s, const Run& r) { return s < r.slot; }) -
-        1);
-    return run.serial + (slot - run.slot);
-  }
+  [[nodiscard]] Index operator[](Index slot) const;
   /// Slot of a serial number, `none` if it is not in the list.
-  [[nodiscard]] Index find(Index serial) const {
-    const auto next = std::upper_bound(runs_.begin(), runs_.end(), serial,
-                                       [](Index s, const Run& r) { return s < r.serial; });
-    if (next == runs_.begin()) return none;
-    const Index slot = (next - 1)->slot + (serial - (next - 1)->serial);
-    return slot < (next == runs_.end() ? size_ : next->slot) ? slot : none;
-  }
+  [[nodiscard]] Index find(Index serial) const;
 
   /// Appends a serial number greater than all in the list.
-  void push_back(Index serial) {
-    if (runs_.empty() || serial != runs_.back().serial + (size_ - runs_.back().slot)) {
-      runs_.push_back({size_, serial});
-    }
-    ++size_;
-  }
+  void push_back(Index serial);
   /// Removes a slot; later ones move up.
-  void erase(Index slot) {
-    SerialList rest;
-    for (Index i = 0; i < size_; ++i) {
-      if (i != slot) rest.push_back((*this)[i]);
-    }
-    *this = std::move(rest);
-  }
+  void erase(Index slot);
 
 private:
   // The first slot of a run and its serial number.

@@ -24,6 +24,22 @@ using Vec = Eigen::Matrix<double, D, 1, Eigen::DontAlign>;
 template <int Rows, int Columns = Rows>
 using Mat = Eigen::Matrix<double, Rows, Columns, Eigen::DontAlign>;
 
+/// A vector of equal numbers, as a default of members. Eigen's own, Vec<D>::Constant(), is an expression that
+/// every program would compile anew.
+template <int D>
+[[nodiscard]] Vec<D> filled(double value) {
+  Vec<D> vector;
+  for (int i = 0; i < D; ++i) vector.data()[i] = value;
+  return vector;
+}
+/// Likewise a matrix.
+template <int D>
+[[nodiscard]] Mat<D> filled_matrix(double value) {
+  Mat<D> matrix;
+  for (int i = 0; i < D * D; ++i) matrix.data()[i] = value;
+  return matrix;
+}
+
 template <int D>
 struct Space;
 

@@ -1,7 +1,9 @@
-#include <carom/core/system.h>
+#include <carom/core/system_notes.h>
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
+#include <utility>
 
 namespace carom {
 
@@ -17,11 +19,36 @@ Index next_token() {
 
 System::System() : token_(next_token()) {}
 // Here, so that programs do not compile them: they copy and destroy all kinds of parts.
-System::System(const System& other) = default;
+System::System(const System& other)
+    : token_(other.token_),
+      dimension_(other.dimension_),
+      bodies_(other.bodies_),
+      forces_(other.forces_),
+      joints_(other.joints_),
+      shapes_(other.shapes_),
+      ground_shapes_(other.ground_shapes_),
+      notes_(other.notes_ ? std::make_unique<Notes>(*other.notes_) : nullptr) {}
 System::System(System&& other) noexcept = default;
-System& System::operator=(const System& other) = default;
+System& System::operator=(const System& other) {
+  System copy(other);
+  *this = std::move(copy);
+  return *this;
+}
 System& System::operator=(System&& other) noexcept = default;
 System::~System() = default;
+
+const System::Notes& System::notes() const {
+  static const Notes nothing;
+  return notes_ ? *notes_ : nothing;
+}
+System::Notes& System::notes() {
+  if (!notes_) notes_ = std::make_unique<Notes>();
+  return *notes_;
+}
+
+const std::map<std::pair<Index, Index>, bool>& System::contact_decisions() const {
+  return notes().contact_decisions;
+}
 
 template <class Identity, class K>
 std::vector<Identity> System::identities(const Registry<K>& registry) const {
@@ -42,9 +69,9 @@ std::string System::name_in(Role role, const Registry<K>& registry, Identity id)
   if (id.token != token_) return "part of another system";
   const K* const kind = registry.kind_ever(id.serial);
   if (kind == nullptr) return "part that was never given";
-  const auto names = names_.find(role);
+  const auto names = notes().names.find(role);
   std::string given;
-  if (names != names_.end()) {
+  if (names != notes().names.end()) {
     if (const auto found = names->second.find(id.serial); found != names->second.end()) given = found->second;
   }
   return describe(kind->label(), given, id.serial);
@@ -63,14 +90,14 @@ std::string System::given_name(BodyId id) const {
   if (id.token != token_ || bodies_.kind_ever(id.serial) == nullptr) {
     PartCheck("name of a body", *this).body(id, "body", false);
   }
-  const auto names = names_.find(Role::body);
-  if (names == names_.end()) return {};
+  const auto names = notes().names.find(Role::body);
+  if (names == notes().names.end()) return {};
   const auto found = names->second.find(id.serial);
   return found == names->second.end() ? std::string{} : found->second;
 }
 
 Index System::by_name(Role role, std::string_view name, std::string_view what) const {
-  if (const auto names = serials_by_name_.find(role); names != serials_by_name_.end()) {
+  if (const auto names = notes().serials_by_name.find(role); names != notes().serials_by_name.end()) {
     if (const auto found = names->second.find(name); found != names->second.end()) return found->second;
   }
   throw ModelError(std::string(what) + " '" + std::string(name) +
@@ -99,13 +126,15 @@ bool System::contains(ShapeId id) const { return id.token == token_ && shapes_.c
 bool System::contains(ObstacleId id) const {
   return id.token == token_ && ground_shapes_.contains(id.serial);
 }
-bool System::contains(MaterialId id) const { return id.token == token_ && id.serial < surfaces_.size(); }
+bool System::contains(MaterialId id) const {
+  return id.token == token_ && id.serial < notes().surfaces.size();
+}
 
 BodyId System::body_of(ShapeId shape) const {
   if (shape.token == token_) {
     if (const auto place = shapes_.place(shape.serial); place.slot != none)
       return shapes_.entries()[place.entry].kind->body(place.slot);
-    if (const auto found = former_carriers_.find(shape.serial); found != former_carriers_.end())
+    if (const auto found = notes().former_carriers.find(shape.serial); found != notes().former_carriers.end())
       return found->second;
   }
   throw ModelError("body of a shape: shape is " + name(shape) + "; allowed: a shape of this system");
@@ -120,8 +149,8 @@ void System::remove_from(Role role, Registry<K>& registry, Identity id, std::str
   }
   registry.remove(id.serial);
   // The part keeps its name in messages; another one may take it.
-  if (const auto found = names_[role].find(id.serial); found != names_[role].end()) {
-    serials_by_name_[role].erase(found->second);
+  if (const auto found = notes().names[role].find(id.serial); found != notes().names[role].end()) {
+    notes().serials_by_name[role].erase(found->second);
   }
 }
 
@@ -154,8 +183,8 @@ void System::remove(BodyId id) {
     }
   }
   remove_from(Role::body, bodies_, id, "body");
-  kept_.erase(id.serial);
-  std::erase_if(contact_decisions_, [&](const auto& decision) {
+  notes().kept.erase(id.serial);
+  std::erase_if(notes().contact_decisions, [&](const auto& decision) {
     return decision.first.first == id.serial || decision.first.second == id.serial;
   });
 }
@@ -181,25 +210,25 @@ void System::remove(JointId id) {
 void System::remove(ShapeId id) {
   const BodyId carrier = contains(id) ? body_of(id) : BodyId{};
   remove_from(Role::shape, shapes_, id, "shape");
-  former_carriers_.emplace(id.serial, carrier);
+  notes().former_carriers.emplace(id.serial, carrier);
 }
 void System::remove(ObstacleId id) {
   remove_from(Role::obstacle, ground_shapes_, id, "obstacle");
-  surfaces_.remove_own(id.serial);
+  notes().surfaces.remove_own(id.serial);
 }
 
 void System::keep_place(BodyId body, bool keep) {
   PartCheck("place to keep", *this).body(body, "body", false);
   if (keep) {
-    kept_.insert(body.serial);
+    notes().kept.insert(body.serial);
   } else {
-    kept_.erase(body.serial);
+    notes().kept.erase(body.serial);
   }
 }
 
 bool System::keeps_place(BodyId body) const {
   PartCheck("place to keep", *this).body(body, "body", false);
-  return kept_.contains(body.serial);
+  return notes().kept.contains(body.serial);
 }
 
 std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
@@ -212,39 +241,40 @@ std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
 void System::allow_contact(BodyId a, BodyId b, std::optional<bool> allowed) {
   const std::pair<Index, Index> pair = two_bodies(a, b);
   if (allowed) {
-    contact_decisions_.insert_or_assign(pair, *allowed);
+    notes().contact_decisions.insert_or_assign(pair, *allowed);
   } else {
-    contact_decisions_.erase(pair);
+    notes().contact_decisions.erase(pair);
   }
 }
 
 std::optional<bool> System::is_contact_allowed(BodyId a, BodyId b) const {
-  const auto found = contact_decisions_.find(two_bodies(a, b));
-  return found == contact_decisions_.end() ? std::nullopt : std::optional(found->second);
+  const auto found = notes().contact_decisions.find(two_bodies(a, b));
+  return found == notes().contact_decisions.end() ? std::nullopt : std::optional(found->second);
 }
 
 MaterialId System::material(std::string_view name) {
   if (name.empty()) throw ModelError("material: name is empty; allowed: a name");
-  return {surfaces_.material(name), token_};
+  return {notes().surfaces.material(name), token_};
 }
 
 void System::between(MaterialId a, MaterialId b, const Surface& surface) {
   for (const MaterialId id : {a, b}) {
     if (!contains(id)) throw ModelError("surface: material is unknown; allowed: a material of this system");
   }
-  PartCheck("surface between '" + surfaces_.name(a.serial) + "' and '" + surfaces_.name(b.serial) + "'",
+  PartCheck("surface between '" + notes().surfaces.name(a.serial) + "' and '" +
+                notes().surfaces.name(b.serial) + "'",
             *this)
       .surface(surface);
-  surfaces_.set(a.serial, b.serial, surface);
+  notes().surfaces.set(a.serial, b.serial, surface);
 }
 
 void System::set_default_law(const Surface& surface) {
   PartCheck("default law of contact", *this).surface(surface);
-  surfaces_.set_default(surface);
+  notes().surfaces.set_default(surface);
 }
 
 std::optional<Surface> System::find_law(const ContactSide& a, const ContactSide& b) const {
-  const Surface* const found = surfaces_.find(a, b);
+  const Surface* const found = notes().surfaces.find(a, b);
   return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
@@ -294,9 +324,9 @@ std::uint64_t System::fingerprint() const {
   add_kinds(joints_, nothing_more);
   add_kinds(shapes_, add_filters);
   add_kinds(ground_shapes_, add_filters);
-  surfaces_.fingerprint(print);
-  if (!contact_decisions_.empty()) print.add("contacts of two bodies");
-  for (const auto& [pair, allowed] : contact_decisions_) {
+  notes().surfaces.fingerprint(print);
+  if (!notes().contact_decisions.empty()) print.add("contacts of two bodies");
+  for (const auto& [pair, allowed] : notes().contact_decisions) {
     for (const Index number : {pair.first, pair.second, Index{allowed}}) print.add(std::uint64_t{number});
   }
   return print.value();

@@ -11,17 +11,18 @@
 #include <carom/core/part.h>
 #include <carom/core/registry.h>
 #include <carom/core/surface.h>
-#include <carom/core/surface_table.h>
 
 #include <map>
+#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace carom {
+
+struct ContactSide;
 
 /// Describes a model; it has no state. Parts are checked when they are added. Copies are independent and keep
 /// the identities of their parts.
@@ -41,7 +42,7 @@ public:
   template <Part P>
   IdOf<P> add(const P& part, std::string name = {}) {
     auto& registry = registry_of<P::role>();
-    return {add_to(registry, P::role, type_of<P>(registry), &part, std::move(name)), token_};
+    return {add_to(registry, P::role, type_of_part<P>(), &part, std::move(name)), token_};
   }
 
   /// Adds a shape on ground with its contact law. Short for a material of its own that has this law with
@@ -49,9 +50,9 @@ public:
   template <Part P>
     requires(P::role == Role::obstacle)
   ObstacleId add(const P& part, const Surface& surface, std::string name = {}) {
-    check_surface(surface, type_of<P>(ground_shapes_).label, name);
+    check_surface(surface, type_of_part<P>().label, name);
     const ObstacleId id = add(part, std::move(name));
-    surfaces_.set_own(id.serial, surface);
+    set_own_law(id, surface);
     return id;
   }
 
@@ -76,9 +77,7 @@ public:
   /// As decided; empty if it is not. Throws ModelError likewise.
   [[nodiscard]] std::optional<bool> is_contact_allowed(BodyId a, BodyId b) const;
   /// All decisions, by serial numbers of bodies, the lesser first.
-  [[nodiscard]] const std::map<std::pair<Index, Index>, bool>& contact_decisions() const {
-    return contact_decisions_;
-  }
+  [[nodiscard]] const std::map<std::pair<Index, Index>, bool>& contact_decisions() const;
 
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);
@@ -169,18 +168,18 @@ private:
       return ground_shapes_;
     }
   }
-  template <Part P, class K>
-  [[nodiscard]] static PartType<K> type_of(const Registry<K>&) {
-    return PartType<K>::template of<typename KindOf<P>::type, P>();
-  }
   template <class K>
   Index add_to(Registry<K>& registry, Role role, const PartType<K>& type, const void* part, std::string name);
+  void set_own_law(ObstacleId id, const Surface& surface);
   void check_surface(const Surface& surface, std::string_view label, const std::string& name) const;
   template <class Identity, class K>
   [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const;
 
-  using Names = std::map<Index, std::string>;
+  // Names, laws and decisions: what is written beside the parts.
+  struct Notes;
 
+  [[nodiscard]] const Notes& notes() const;
+  [[nodiscard]] Notes& notes();
   void take_dimension(int dimension, std::string_view label) const;
   void check_name(Role role, const std::string& name, std::string_view label) const;
   [[nodiscard]] static std::string describe(std::string_view label, const std::string& name, Index serial);
@@ -200,12 +199,7 @@ private:
   Registry<JointKind> joints_;
   Registry<ShapeKind> shapes_;
   Registry<GroundShapeKind> ground_shapes_;
-  std::map<Role, Names> names_;
-  std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name_;
-  SurfaceTable surfaces_;
-  std::set<Index> kept_;  // bodies that stay where they are
-  std::map<std::pair<Index, Index>, bool> contact_decisions_;
-  std::map<Index, BodyId> former_carriers_;  // bodies of removed shapes
+  std::unique_ptr<Notes> notes_;  // null: none; ask notes()
 };
 
 }  // namespace carom

@@ -1,7 +1,7 @@
 // Problem: find what a model describes in vain.
 
 #include <carom/core/enum_name.h>
-#include <carom/core/system.h>
+#include <carom/core/system_notes.h>
 
 #include <algorithm>
 #include <array>
@@ -264,11 +264,11 @@ std::vector<ModelFinding> System::check() const {
   const auto is_solid = [&](MaterialId material) {
     return std::find(solid.begin(), solid.end(), material) != solid.end();
   };
-  for (const auto& [pair, law] : surfaces_.pairs()) {
+  for (const auto& [pair, law] : notes().surfaces.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
     if (touch(touching, a, b)) continue;
-    const std::string &given_a = surfaces_.name(a.serial), &given_b = surfaces_.name(b.serial);
+    const std::string &given_a = notes().surfaces.name(a.serial), &given_b = notes().surfaces.name(b.serial);
     const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
     std::string text = "surface between " + name_a + " and " + name_b + ": ";
     if (!is_solid(a) && !is_solid(b)) {
@@ -298,11 +298,11 @@ std::vector<ModelFinding> System::check() const {
     }
     find_bodies_without_shape(*this, found);
   }
-  if (!kept_.empty()) {
+  if (!notes().kept.empty()) {
     std::vector<char> bound(bodies_.next_serial(), 0);
     mark_ends(joints_, bound);
     PartNames kept;
-    for (const Index serial : kept_) {
+    for (const Index serial : notes().kept) {
       if (bound[serial] == 0) kept.push_back(name(BodyId{serial, token_}));
     }
     if (!kept.empty()) {

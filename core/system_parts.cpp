@@ -1,6 +1,6 @@
 // Problem: parts come to a model one by one, each checked before anything is changed.
 
-#include <carom/core/system.h>
+#include <carom/core/system_notes.h>
 
 namespace carom {
 
@@ -17,8 +17,8 @@ void System::take_dimension(int dimension, std::string_view label) const {
 
 void System::check_name(Role role, const std::string& name, std::string_view label) const {
   if (name.empty()) return;
-  const auto names = serials_by_name_.find(role);
-  if (names == serials_by_name_.end() || !names->second.contains(name)) return;
+  const auto names = notes().serials_by_name.find(role);
+  if (names == notes().serials_by_name.end() || !names->second.contains(name)) return;
   throw ModelError(std::string(label) + " '" + name +
                    "': name is taken; allowed: a name no other part of its role has");
 }
@@ -50,11 +50,15 @@ void System::check_surface(const Surface& surface, std::string_view label, const
   PartCheck(describe(label, name, ground_shapes_.next_serial()), *this).surface(surface);
 }
 
+void System::set_own_law(ObstacleId id, const Surface& surface) {
+  notes().surfaces.set_own(id.serial, surface);
+}
+
 void System::added(Role role, int dimension, Index serial, std::string name) {
   if (dimension_ == 0) dimension_ = dimension;
   if (name.empty()) return;
-  serials_by_name_[role].emplace(name, serial);
-  names_[role].emplace(serial, std::move(name));
+  notes().serials_by_name[role].emplace(name, serial);
+  notes().names[role].emplace(serial, std::move(name));
 }
 
 }  // namespace carom

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <charconv>
+#include <utility>
 
 namespace carom {
 
@@ -13,6 +14,8 @@ std::string cell(double value, int digits) {
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
   return {buffer.data(), result.ptr};
 }
+
+TextTable::TextTable(std::vector<std::string> headings) : rows_{std::move(headings)} {}
 
 void TextTable::add(std::vector<std::string> cells) {
   assert(cells.size() == rows_.front().size());

@@ -17,7 +17,7 @@ namespace carom {
 class CAROM_API TextTable {
 public:
   /// A table with these headings.
-  explicit TextTable(std::vector<std::string> headings) : rows_{std::move(headings)} {}
+  explicit TextTable(std::vector<std::string> headings);
 
   /// Appends a row of as many cells as there are headings.
   void add(std::vector<std::string> cells);

@@ -13,10 +13,10 @@ namespace carom {
 /// Contact on one part in one step, in the plane. The event-driven mode records impacts only: forces of
 /// lasting contact are not among its impulses.
 struct PartForce {
-  Vec<2> impulse = Vec<2>::Zero();         ///< sum of all [N s]
+  Vec<2> impulse = filled<2>(0.0);         ///< sum of all [N s]
   double angular_impulse = 0.0;            ///< of them about the origin, with rolling resistance [N m s]
-  Vec<2> impact_impulse = Vec<2>::Zero();  ///< part of the impulse that acted in impacts [N s]
-  Vec<2> mean_force = Vec<2>::Zero();      ///< impulse of lasting contact over the length of the step [N]
+  Vec<2> impact_impulse = filled<2>(0.0);  ///< part of the impulse that acted in impacts [N s]
+  Vec<2> mean_force = filled<2>(0.0);      ///< impulse of lasting contact over the length of the step [N]
   int contacts = 0;                        ///< records that it is the sum of
 };
 

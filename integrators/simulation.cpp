@@ -150,6 +150,8 @@ void Simulation::Impl::write_to_log(std::int64_t told) {
 
 Simulation::Simulation(System system, Mode mode)
     : impl_(std::make_unique<Impl>(std::move(system), std::move(mode))) {}
+Simulation::Simulation(System system, const TimeStepping& mode) : Simulation(std::move(system), Mode(mode)) {}
+Simulation::Simulation(System system, const EventDriven& mode) : Simulation(std::move(system), Mode(mode)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;

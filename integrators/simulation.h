@@ -48,6 +48,9 @@ public:
   /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in shapes on
   /// ground than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
+  /// The same; the variant is made in the library.
+  Simulation(System system, const TimeStepping& mode);
+  Simulation(System system, const EventDriven& mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

@@ -3,12 +3,10 @@
 /// \file
 /// Actuators: forces and torques between two ends by laws of time and motion.
 
-#include <carom/core/difference_derivatives.h>
+#include <carom/core/export.h>
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,27 +17,19 @@ namespace carom {
 using ActuatorLaw = std::function<double(double time, double coordinate, double rate)>;
 
 /// Derivatives of the law of an actuator by its coordinate and rate: as given, else by central differences.
-struct ActuatorSlopes {
+struct CAROM_API ActuatorSlopes {
   /// \param by_coordinate derivative by x, may be empty; then the step is 6e-6 times `size`
   /// \param by_rate derivative by dx/dt, may be empty; then the step is 6e-6 times max(1, |dx/dt|)
   ActuatorSlopes(const ActuatorLaw& law, const ActuatorLaw& by_coordinate, const ActuatorLaw& by_rate,
-                 double time, double x, double rate, double size)
-      : by_x(by_coordinate
-                 ? by_coordinate(time, x, rate)
-                 : difference_quotient([&](double moved) { return law(time, moved, rate); }, x, size)),
-        by_speed(by_rate ? by_rate(time, x, rate)
-                         : difference_quotient([&](double faster) { return law(time, x, faster); }, rate,
-                                               std::max(1.0, std::abs(rate)))) {}
+                 double time, double x, double rate, double size);
 
   double by_x;      ///< df/dx
   double by_speed;  ///< df/d(dx/dt)
 };
 
 /// Demands that a law and its derivatives, where they are given, are finite at the start.
-inline void check_actuator_law(const PartCheck& check, const ActuatorLaw& law, const std::string& name,
-                               const std::string& unit, const std::string& place, double x, double rate) {
-  if (law) check.finite(law(0.0, x, rate), name + " at time 0, " + place, unit);
-}
+CAROM_API void check_actuator_law(const PartCheck& check, const ActuatorLaw& law, const std::string& name,
+                                  const std::string& unit, const std::string& place, double x, double rate);
 
 namespace generic {
 
@@ -50,6 +40,8 @@ struct LinearActuator {
   static constexpr Role role = Role::force;
   static constexpr int dimension = D;
   static constexpr std::string_view label = "linear actuator";
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> from{};  ///< required
   End<D> to{};    ///< required
@@ -117,10 +109,12 @@ using LinearActuator = generic::LinearActuator<2>;  ///< generic::LinearActuator
 /// Rotary actuator between two rigid bodies, or one and the ground: the torque m(t, a, da/dt) on `to`, the
 /// opposite on `from`, a: the angle of `to` relative to `from`, full turns counted. Its work is external
 /// work.
-struct RotaryActuator {
+struct CAROM_API RotaryActuator {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "rotary actuator";
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ForceKind> part_type();
 
   BodyId from{};  ///< a rigid body or ground (required)
   BodyId to{};    ///< a rigid body or ground (required)
@@ -133,38 +127,16 @@ struct RotaryActuator {
   std::vector<double> breaks{};  ///< when `torque` jumps or has a kink in time, ascending [s]
 
   /// The bodies that it connects.
-  [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
+  [[nodiscard]] std::vector<BodyId> bodies() const;
   /// Throws ModelError for invalid bodies or an invalid law. The law is tried at time 0 with the angle and
   /// rate that the bodies are described with.
-  void check(const PartCheck& check) const {
-    check_angular_ends(check, from, to);
-    if (!torque) check.refuse("torque", "not given", "a function of time, angle and rate");
-    const RelativeAngle start(check.system(), from, to);
-    const std::string place =
-        "angle " + to_text(start.angle) + " rad, rate " + to_text(start.rate) + " rad/s";
-    const auto try_law = [&](const ActuatorLaw& law, const char* name, const char* unit) {
-      check_actuator_law(check, law, name, unit, place, start.angle, start.rate);
-    };
-    try_law(torque, "torque", "N m");
-    try_law(torque_by_angle, "torque_by_angle", "N m/rad");
-    try_law(torque_by_rate, "torque_by_rate", "N m s/rad");
-  }
+  void check(const PartCheck& check) const;
   /// Books the loads.
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    const RelativeAngle relative(at, from, to);
-    const double turn = torque(at.time(), relative.angle, relative.rate);
-    out.external_torque(from, -turn);
-    out.external_torque(to, turn);
-  }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const;
   /// Derivatives: the law's.
-  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
-    const RelativeAngle now(at, from, to);
-    const ActuatorSlopes slopes(torque, torque_by_angle, torque_by_rate, at.time(), now.angle, now.rate,
-                                std::max(1.0, std::abs(now.angle)));
-    out.opposite_torques(from, to, slopes.by_x, slopes.by_speed);
-  }
+  void derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const;
   /// Adds nothing to the identities of the bodies (a function cannot be hashed).
-  void fingerprint(Fingerprint&) const {}
+  void fingerprint(Fingerprint&) const;
 };
 
 }  // namespace planar

@@ -3,6 +3,7 @@
 /// \file
 /// Prescribed forces and torques, functions of time.
 
+#include <carom/core/export.h>
 #include <carom/core/force_element.h>
 
 #include <cmath>
@@ -20,6 +21,8 @@ struct AppliedForce {
   static constexpr Role role = Role::force;
   static constexpr int dimension = D;
   static constexpr std::string_view label = "applied force";
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> on{};                                 ///< body, or body and point (required)
   std::function<Vec<D>(double time)> force{};  ///< [N] (required)
@@ -51,31 +54,27 @@ namespace planar {
 using AppliedForce = generic::AppliedForce<2>;  ///< generic::AppliedForce in the plane
 
 /// A torque on a rigid body, a given function of time. Its work is external work.
-struct AppliedTorque {
+struct CAROM_API AppliedTorque {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "applied torque";
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ForceKind> part_type();
 
   BodyId on{};                                  ///< a rigid body (required)
   std::function<double(double time)> torque{};  ///< counter-clockwise [N m] (required)
   std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
   /// The body that it acts on.
-  [[nodiscard]] std::vector<BodyId> bodies() const { return {on}; }
+  [[nodiscard]] std::vector<BodyId> bodies() const;
   /// Throws ModelError for an invalid body or function.
-  void check(const PartCheck& check) const {
-    check.oriented_body(on, "on");
-    if (!torque) check.refuse("torque", "not given", "a function of time");
-    check.finite(torque(0.0), "torque at time 0", "N m");
-  }
+  void check(const PartCheck& check) const;
   /// Books the load.
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    out.external_torque(on, torque(at.time()));
-  }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const;
   /// Derivatives: none, the torque depends on time only.
-  void derivatives(const ElementView<2>&, ElementDerivatives<2>&) const {}
+  void derivatives(const ElementView<2>&, ElementDerivatives<2>&) const;
   /// Adds nothing to the identity of the body (a function cannot be hashed).
-  void fingerprint(Fingerprint&) const {}
+  void fingerprint(Fingerprint&) const;
 };
 
 }  // namespace planar

@@ -222,4 +222,8 @@ void Bushing::fingerprint(Fingerprint& print) const {
   print.add({rest.data(), 3});
 }
 
+PartType<ForceKind> Bushing::part_type() {
+  return PartType<ForceKind>::of<ForceElementKind<Bushing>, Bushing>();
+}
+
 }  // namespace carom::planar

@@ -25,13 +25,15 @@ struct CAROM_API Bushing {
   static constexpr std::string_view label = "bushing";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr bool depends_on_time = false;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ForceKind> part_type();
 
-  End<2> from{};                      ///< a rigid body or ground, whose frame is that of K and C (required)
-  End<2> to{};                        ///< a rigid body or ground (required)
-  Mat<3> stiffness = Mat<3>::Zero();  ///< K over (x, y, angle), symmetric, no eigenvalue < 0
-                                      ///< [N/m, N/rad; N m/m, N m/rad]
-  Mat<3> damping = Mat<3>::Zero();    ///< C, likewise, times s
-  Vec<3> rest = Vec<3>::Zero();       ///< is subtracted from d: the unloaded state [m, m, rad]
+  End<2> from{};  ///< a rigid body or ground, whose frame is that of K and C (required)
+  End<2> to{};    ///< a rigid body or ground (required)
+  Mat<3> stiffness = filled_matrix<3>(0.0);  ///< K over (x, y, angle), symmetric, no eigenvalue < 0
+                                             ///< [N/m, N/rad; N m/m, N m/rad]
+  Mat<3> damping = filled_matrix<3>(0.0);    ///< C, likewise, times s
+  Vec<3> rest = filled<3>(0.0);              ///< is subtracted from d: the unloaded state [m, m, rad]
 
   /// The bodies that it connects.
   [[nodiscard]] std::vector<BodyId> bodies() const { return {from.body, to.body}; }

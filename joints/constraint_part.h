@@ -31,7 +31,7 @@ struct ConstraintPart {
   Form form = Form::angles;      ///< how the distance enters
   End<2> from{};                 ///< a body or ground
   End<2> to{};                   ///< a body or ground
-  Vec<2> axis = Vec<2>::Zero();  ///< of unit length, in the fixed frame or that of `from`
+  Vec<2> axis = filled<2>(0.0);  ///< of unit length, in the fixed frame or that of `from`
   double turn_from = 0.0;        ///< coefficient of the angle of `from` [1, m]
   double turn_to = 0.0;          ///< of `to`
   BodyId carrier = ground;       ///< a third body whose angle may enter

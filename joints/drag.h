@@ -19,6 +19,8 @@ struct Drag {
   static constexpr int dimension = D;
   static constexpr std::string_view label = "drag";
   static constexpr bool depends_on_time = false;
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> on{};             ///< body, or body and point (required)
   double linear = 0.0;     ///< c1 >= 0 [N s/m]

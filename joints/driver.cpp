@@ -1,5 +1,5 @@
 #include <carom/core/system.h>
-#include <carom/joints/driver.h>
+#include <carom/joints/driver_kind.h>
 
 #include <cmath>
 #include <limits>
@@ -160,5 +160,9 @@ void StopKind::fingerprint(Fingerprint& print) const {
       print.add(number);
   }
 }
+
+PartType<JointKind> Driver::part_type() { return PartType<JointKind>::of<DriverKind, Driver>(); }
+PartType<ForceKind> Motor::part_type() { return PartType<ForceKind>::of<MotorKind, Motor>(); }
+PartType<JointKind> Stop::part_type() { return PartType<JointKind>::of<StopKind, Stop>(); }
 
 }  // namespace carom

@@ -32,4 +32,8 @@ void FollowerLoad::derivatives(const ElementView<2>& at, ElementDerivatives<2>& 
 
 void FollowerLoad::fingerprint(Fingerprint& print) const { add_to(print, on); }
 
+PartType<ForceKind> FollowerLoad::part_type() {
+  return PartType<ForceKind>::of<ForceElementKind<FollowerLoad>, FollowerLoad>();
+}
+
 }  // namespace carom::planar

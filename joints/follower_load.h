@@ -16,6 +16,8 @@ struct CAROM_API FollowerLoad {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "follower load";
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ForceKind> part_type();
 
   End<2> on{};                                 ///< rigid body, or rigid body and point (required)
   std::function<Vec<2>(double time)> force{};  ///< in the body's frame [N] (required)

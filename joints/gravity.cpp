@@ -1,6 +1,6 @@
 #include <carom/core/assembly.h>
 #include <carom/core/numerics/compensated_sum.h>
-#include <carom/joints/gravity.h>
+#include <carom/joints/gravity_kind.h>
 
 namespace carom::generic {
 
@@ -51,6 +51,13 @@ void GravityKind<D>::fingerprint(Fingerprint& print) const {
   for (const Gravity<D>& part : parts_) print.add({part.acceleration.data(), static_cast<std::size_t>(D)});
 }
 
+template <int D>
+PartType<ForceKind> Gravity<D>::part_type() {
+  return PartType<ForceKind>::of<GravityKind<D>, Gravity>();
+}
+
+template PartType<ForceKind> Gravity<2>::part_type();
+template PartType<ForceKind> Gravity<3>::part_type();
 template class GravityKind<2>;
 template class GravityKind<3>;
 

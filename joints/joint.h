@@ -10,6 +10,7 @@
 ///
 /// and by the number of rows, `static constexpr Index row_count`.
 
+#include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/part.h>
 #include <carom/joints/constraint_part.h>
@@ -22,14 +23,58 @@
 
 namespace carom::planar {
 
+/// Joints that are sums of constraint parts, whatever their kind: all that does not depend on its type.
+class CAROM_API CompositeJoints : public JointKind {
+public:
+  void remove(Index slot) override;
+  [[nodiscard]] std::string_view label() const override { return label_; }
+  [[nodiscard]] int dimension() const override { return 2; }
+  [[nodiscard]] Index size() const override;
+  [[nodiscard]] Index rows() const override { return row_count_; }
+  void ends(Index joint, std::vector<BodyId>& out) const override;
+  void pattern(Index joint, JointRow* out) const override;
+  void evaluate(const JointView& at, Index joint, JointRow* out) const override;
+  void evaluate_all(const JointView& at, Range joints, JointNumbers out) const override;
+  void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override;
+  [[nodiscard]] bool has_coordinate() const override { return with_coordinate_; }
+  void coordinate(const JointView& at, Index joint, JointRow& out) const override;
+  void coordinate_derivatives(const JointView& at, Index joint, JointRowDerivative& out) const override;
+  void coordinate_pattern(Index joint, JointRow& out) const override;
+  [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
+                                       const double* multipliers) const override;
+  void fingerprint(Fingerprint& print) const override;
+
+protected:
+  /// \param label of a joint in messages
+  /// \param row_count rows of a joint
+  /// \param with_coordinate joints have a coordinate, the gap of one more part behind the rows
+  CompositeJoints(std::string_view label, Index row_count, bool with_coordinate);
+  CompositeJoints(const CompositeJoints&);
+  CompositeJoints& operator=(const CompositeJoints&) = delete;
+  ~CompositeJoints() override;
+
+  /// Checks and stores the parts of a joint. Throws ModelError.
+  void store(const PartCheck& check, const std::vector<ConstraintPart>& constraints);
+  /// Takes the joints of others that `order` names, in that order, with their places in the arrays.
+  void take(const CompositeJoints& from, std::span<const Index> order, const Layout& layout);
+
+private:
+  std::string_view label_;
+  Index row_count_;
+  bool with_coordinate_;
+  ConstraintPartTable table_;  // the coordinate behind the rows
+};
+
 /// All joints of one kind that is a sum of constraint parts.
 template <class P>
-class CompositeJointKind final : public JointKind {
+class CompositeJointKind final : public CompositeJoints {
 public:
   static constexpr bool with_coordinate = requires(const P& part, const PartCheck& check) {
     part.coordinate(check);
   };
   static constexpr Index row_count = P::row_count;
+
+  CompositeJointKind() : CompositeJoints(P::label, row_count, with_coordinate) {}
 
   /// Members that a System needs of every kind (part.h).
   static constexpr int part_dimension() { return 2; }
@@ -37,10 +82,9 @@ public:
 
   /// Checks and stores a joint. Throws ModelError.
   void add(const P& part, const PartCheck& check) {
-    std::vector<ConstraintPart> constraints = part.constraints(check);
+    auto constraints = part.constraints(check);
     if constexpr (with_coordinate) constraints.push_back(part.coordinate(check));
-    check_constraint_parts(check, constraints, stored);
-    table_.add(constraints);
+    store(check, constraints);
   }
 
   [[nodiscard]] std::unique_ptr<JointKind> clone() const override {
@@ -49,46 +93,9 @@ public:
   [[nodiscard]] std::unique_ptr<JointKind> arranged(std::span<const Index> order,
                                                     const Layout& layout) const override {
     auto copy = std::make_unique<CompositeJointKind>();
-    copy->table_ = table_.arranged(order, layout);
+    copy->take(*this, order, layout);
     return copy;
   }
-  void remove(Index slot) override { table_.erase(slot); }
-  [[nodiscard]] std::string_view label() const override { return part_label(); }
-  [[nodiscard]] int dimension() const override { return 2; }
-  [[nodiscard]] Index size() const override { return table_.size(); }
-  [[nodiscard]] Index rows() const override { return row_count; }
-  void ends(Index joint, std::vector<BodyId>& out) const override { table_.ends(joint, out); }
-  void pattern(Index joint, JointRow* out) const override {
-    for (Index row = 0; row < row_count; ++row) table_.pattern(joint, out[row]);
-  }
-  void evaluate(const JointView& at, Index joint, JointRow* out) const override {
-    for (Index row = 0; row < row_count; ++row) table_.evaluate(at, joint, row, out[row]);
-  }
-  void evaluate_all(const JointView& at, Range joints, JointNumbers out) const override {
-    table_.evaluate(at, joints, row_count, out);
-  }
-  void derivatives(const JointView& at, Index joint, JointRowDerivative* out) const override {
-    for (Index row = 0; row < row_count; ++row) table_.derivatives(at, joint, row, out[row]);
-  }
-  [[nodiscard]] bool has_coordinate() const override { return with_coordinate; }
-  void coordinate(const JointView& at, Index joint, JointRow& out) const override {
-    if constexpr (with_coordinate) table_.evaluate(at, joint, row_count, out);
-  }
-  void coordinate_derivatives(const JointView& at, Index joint, JointRowDerivative& out) const override {
-    if constexpr (with_coordinate) table_.derivatives(at, joint, row_count, out);
-  }
-  void coordinate_pattern(Index joint, JointRow& out) const override {
-    if constexpr (with_coordinate) table_.pattern(joint, out);
-  }
-  [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
-                                       const double* multipliers) const override {
-    return table_.reaction(at, joint, row_count, multipliers);
-  }
-  void fingerprint(Fingerprint& print) const override { table_.fingerprint(print); }
-
-private:
-  static constexpr Index stored = row_count + (with_coordinate ? 1 : 0);
-  ConstraintPartTable table_;  // the coordinate behind the rows
 };
 
 }  // namespace carom::planar

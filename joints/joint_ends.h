@@ -15,7 +15,7 @@ namespace carom::planar {
 
 /// Position and angle of a body as described.
 struct CAROM_API DescribedPlace {
-  Vec<2> position = Vec<2>::Zero();  ///< of its centre of mass [m]
+  Vec<2> position = filled<2>(0.0);  ///< of its centre of mass [m]
   double angle = 0.0;                ///< [rad]
 
   /// A point of the body, in the fixed frame [m].

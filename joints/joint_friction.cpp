@@ -1,6 +1,5 @@
 #include <carom/core/system.h>
-#include <carom/joints/driver.h>
-#include <carom/joints/joint_friction.h>
+#include <carom/joints/joint_friction_kind.h>
 
 namespace carom {
 
@@ -40,6 +39,10 @@ void JointFrictionKind::fingerprint(Fingerprint& print) const {
     print.add(stored.part.coefficient);
     print.add(stored.part.static_factor);
   }
+}
+
+PartType<JointKind> JointFriction::part_type() {
+  return PartType<JointKind>::of<JointFrictionKind, JointFriction>();
 }
 
 }  // namespace carom

@@ -5,6 +5,7 @@
 
 #include <carom/core/element_derivatives.h>
 #include <carom/core/end.h>
+#include <carom/core/export.h>
 #include <carom/core/force_element.h>
 #include <carom/core/system.h>
 
@@ -15,15 +16,9 @@
 namespace carom {
 
 /// The described start of a body: its coordinates and velocities. For laws that are tried as they enter.
-struct DescribedStart {
+struct CAROM_API DescribedStart {
   /// Of one body.
-  DescribedStart(const System& system, BodyId body) {
-    const Registry<BodyKind>& registry = system.body_kinds();
-    const BodyKind& kind = registry.kind_of(body.serial);
-    q.resize(kind.q_size());
-    v.resize(kind.v_size());
-    kind.initial(registry.place(body.serial).slot, q.data(), v.data());
-  }
+  DescribedStart(const System& system, BodyId body);
 
   std::vector<double> q, v;  ///< [m, rad], [m/s, rad/s]
 };
@@ -86,7 +81,7 @@ struct LineOfAction {
 
   /// The line as the bodies are described, before anything moves.
   static LineOfAction described(const System& system, const End<D>& from, const End<D>& to) {
-    Vec<D> distance = Vec<D>::Zero(), velocity = Vec<D>::Zero();
+    Vec<D> distance = filled<D>(0.0), velocity = filled<D>(0.0);
     const auto add = [&](const End<D>& end, double sign) {
       if (end.body == ground) {
         distance += sign * end.point;
@@ -125,8 +120,8 @@ struct LineOfAction {
 
   double length = 0.0;                ///< [m]
   double rate = 0.0;                  ///< [m/s]
-  Vec<D> direction = Vec<D>::Zero();  ///< from `from` to `to`
-  Vec<D> velocity = Vec<D>::Zero();   ///< of `to` relative to `from` [m/s]
+  Vec<D> direction = filled<D>(0.0);  ///< from `from` to `to`
+  Vec<D> velocity = filled<D>(0.0);   ///< of `to` relative to `from` [m/s]
 };
 
 }  // namespace generic
@@ -135,39 +130,17 @@ namespace planar {
 
 /// The angle of one rigid body (or the ground) relative to another, and its rate. Angles of bodies count
 /// their turns, so it does too.
-struct RelativeAngle {
-  RelativeAngle(const ElementView<2>& at, BodyId from, BodyId to) {
-    if (to != ground) {
-      angle = at.angle(to);
-      rate = at.spin(to);
-    }
-    if (from != ground) {
-      angle -= at.angle(from);
-      rate -= at.spin(from);
-    }
-  }
+struct CAROM_API RelativeAngle {
+  RelativeAngle(const ElementView<2>& at, BodyId from, BodyId to);
   /// The angle as the bodies are described, before anything moves.
-  RelativeAngle(const System& system, BodyId from, BodyId to) {
-    const auto add = [&](BodyId body, double sign) {
-      if (body == ground) return;
-      const DescribedStart start(system, body);
-      angle += sign * start.q[2];
-      rate += sign * start.v[2];
-    };
-    add(to, 1.0);
-    add(from, -1.0);
-  }
+  RelativeAngle(const System& system, BodyId from, BodyId to);
 
   double angle = 0.0;  ///< of `to` less that of `from` [rad]
   double rate = 0.0;   ///< [rad/s]
 };
 
 /// Demands two different ends, each a rigid body or the ground.
-inline void check_angular_ends(const PartCheck& check, BodyId from, BodyId to) {
-  if (from != ground) check.oriented_body(from, "from");
-  if (to != ground) check.oriented_body(to, "to");
-  check.different_ends(from, to);
-}
+CAROM_API void check_angular_ends(const PartCheck& check, BodyId from, BodyId to);
 
 }  // namespace planar
 

@@ -27,6 +27,8 @@ struct MaxwellElement {
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr int internal_size = 1;
   static constexpr bool depends_on_time = false;
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> from{};             ///< required
   End<D> to{};               ///< required

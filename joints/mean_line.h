@@ -4,6 +4,7 @@
 /// A line of action over a step (docs/method.md, section 6): a force F along `direction`, minus a tension T,
 /// does the work -T (l1 - l0) exactly, and its torques at both ends cancel exactly.
 
+#include <carom/core/export.h>
 #include <carom/joints/line_of_action.h>
 
 #include <cmath>
@@ -39,7 +40,7 @@ struct MeanLine {
   double length = 0.0;                ///< (l0 + l1)/2 [m]
   double growth = 0.0;                ///< l1 - l0 [m]
   Vec<D> distance;                    ///< (d0 + d1)/2 [m]
-  Vec<D> direction = Vec<D>::Zero();  ///< (d0 + d1)/(l0 + l1)
+  Vec<D> direction = filled<D>(0.0);  ///< (d0 + d1)/(l0 + l1)
 };
 
 }  // namespace carom::generic
@@ -47,34 +48,12 @@ struct MeanLine {
 namespace carom::planar {
 
 /// The relative angle of two bodies over a step in which they turn by 2 atan(h w/2).
-struct MeanAngle {
-  MeanAngle(const ElementStep<2>& step, BodyId from, BodyId to)
-      : start(RelativeAngle(step.start, from, to).angle), end(RelativeAngle(step.end, from, to).angle) {
-    const double a = half_turn(step, to);
-    const double b = half_turn(step, from);
-    rate = 2.0 * (a - b) / step.step;
-    // growth = 2 (atan a - atan b) = 2 atan(u), u = (a - b)/(1 + a b) while neither turns by 90 degrees.
-    const double base = 1.0 + a * b;
-    const double u = (a - b) / base;
-    constexpr double small = 1e-4;  // u^4/5 is below rounding
-    if (base <= 0.0) {
-      ratio = (std::atan(a) - std::atan(b)) / (a - b);
-    } else if (std::abs(u) < small) {
-      ratio = (1.0 - u * u / 3.0) / base;
-    } else {
-      ratio = std::atan(u) / (a - b);
-    }
-  }
+struct CAROM_API MeanAngle {
+  MeanAngle(const ElementStep<2>& step, BodyId from, BodyId to);
 
   double start = 0.0, end = 0.0;  ///< at the ends of the step [rad]
   double rate = 0.0;              ///< mean relative spin [rad/s]
   double ratio = 1.0;             ///< (end - start)/(h rate): how much slower the angle grows
-
-private:
-  static double half_turn(const ElementStep<2>& step, BodyId body) {
-    if (body == ground) return 0.0;
-    return 0.25 * step.step * (step.start.spin(body) + step.end.spin(body));
-  }
 };
 
 }  // namespace carom::planar

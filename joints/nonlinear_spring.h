@@ -30,6 +30,8 @@ struct NonlinearSpring {
   static constexpr std::string_view label = "nonlinear spring";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr bool depends_on_time = false;
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> from{};                                        ///< required
   End<D> to{};                                          ///< required

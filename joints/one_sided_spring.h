@@ -35,6 +35,8 @@ struct OneSidedSpring {
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr bool depends_on_time = false;
   static constexpr int guard_size = 1;
+  /// Its type, for System::add().
+  [[nodiscard]] CAROM_API static PartType<ForceKind> part_type();
 
   End<D> from{};             ///< required
   End<D> to{};               ///< required

@@ -93,4 +93,14 @@ ConstraintPart Rolling::coordinate(const PartCheck& check) const {
   return along(check, from, to, Vec<2>(unit[1], -unit[0]), std::numeric_limits<double>::quiet_NaN());
 }
 
+PartType<JointKind> Prismatic::part_type() {
+  return PartType<JointKind>::of<CompositeJointKind<Prismatic>, Prismatic>();
+}
+PartType<JointKind> PointOnLine::part_type() {
+  return PartType<JointKind>::of<CompositeJointKind<PointOnLine>, PointOnLine>();
+}
+PartType<JointKind> Rolling::part_type() {
+  return PartType<JointKind>::of<CompositeJointKind<Rolling>, Rolling>();
+}
+
 }  // namespace carom::planar

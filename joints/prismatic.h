@@ -18,12 +18,13 @@ struct CAROM_API Prismatic {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "prismatic joint";
   static constexpr Index row_count = 2;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};  ///< a rigid body or ground: a point of the line (required)
   End<2> to{};    ///< a rigid body or ground: the point that slides (required)
-  Vec<2> axis =
-      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,
-                                                                   ///< any length > 0 (required)
+  Vec<2> axis = filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of
+                                                                      ///< `from`, any length > 0 (required)
   double angle = std::numeric_limits<double>::quiet_NaN();  ///< angle of `to` minus that of `from` [rad];
                                                             ///< unless given, as described
   double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
@@ -40,13 +41,14 @@ struct CAROM_API PointOnLine {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "point-on-line joint";
   static constexpr Index row_count = 1;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};  ///< a rigid body or ground: a point of the line (required)
   End<2> to{};    ///< a body or ground: the pin (required)
-  Vec<2> axis =
-      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());   ///< of the line, in the frame of `from`,
-                                                                    ///< any length > 0 (required)
-  double zero_distance = std::numeric_limits<double>::quiet_NaN();  ///< along the axis at coordinate 0 [m]
+  Vec<2> axis = filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of
+                                                                      ///< `from`, any length > 0 (required)
+  double zero_distance = std::numeric_limits<double>::quiet_NaN();    ///< along the axis at coordinate 0 [m]
 
   /// Its constraint parts. Throws ModelError for an invalid end or axis.
   [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;
@@ -62,13 +64,14 @@ struct CAROM_API Rolling {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "rolling joint";
   static constexpr Index row_count = 2;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};  ///< a rigid body or ground: a point of the line (required)
   End<2> to{};    ///< a rigid body: the centre of the disc (required)
-  Vec<2> normal =
-      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of `from`,
-                                                                   ///< any length > 0 (required)
-  double radius = std::numeric_limits<double>::quiet_NaN();        ///< of the disc [m] (required)
+  Vec<2> normal = filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< of the line, in the frame of
+                                                                        ///< `from`, any length > 0 (required)
+  double radius = std::numeric_limits<double>::quiet_NaN();             ///< of the disc [m] (required)
 
   /// Its constraint parts. Throws ModelError for an invalid end, normal or radius.
   [[nodiscard]] std::vector<ConstraintPart> constraints(const PartCheck& check) const;

@@ -59,4 +59,9 @@ std::vector<ConstraintPart> Weld::constraints(const PartCheck& check) const {
   return constraints;
 }
 
+PartType<JointKind> Revolute::part_type() {
+  return PartType<JointKind>::of<CompositeJointKind<Revolute>, Revolute>();
+}
+PartType<JointKind> Weld::part_type() { return PartType<JointKind>::of<CompositeJointKind<Weld>, Weld>(); }
+
 }  // namespace carom::planar

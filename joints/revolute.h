@@ -23,6 +23,8 @@ struct CAROM_API Revolute {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "revolute joint";
   static constexpr Index row_count = 2;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};  ///< a body or ground (required)
   End<2> to{};    ///< a body or ground (required)
@@ -41,6 +43,8 @@ struct CAROM_API Weld {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "weld";
   static constexpr Index row_count = 3;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};                                            ///< a rigid body or ground (required)
   End<2> to{};                                              ///< a rigid body or ground (required)

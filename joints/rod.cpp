@@ -44,4 +44,7 @@ std::vector<ConstraintPart> Gear::constraints(const PartCheck& check) const {
   return {constraint};
 }
 
+PartType<JointKind> Rod::part_type() { return PartType<JointKind>::of<CompositeJointKind<Rod>, Rod>(); }
+PartType<JointKind> Gear::part_type() { return PartType<JointKind>::of<CompositeJointKind<Gear>, Gear>(); }
+
 }  // namespace carom::planar

@@ -17,6 +17,8 @@ struct CAROM_API Rod {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "rod";
   static constexpr Index row_count = 1;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   End<2> from{};                                             ///< a body or ground (required)
   End<2> to{};                                               ///< a body or ground (required)
@@ -33,6 +35,8 @@ struct CAROM_API Gear {
   static constexpr Role role = Role::joint;
   static constexpr std::string_view label = "gear pair";
   static constexpr Index row_count = 1;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<JointKind> part_type();
 
   BodyId from{};                                            ///< a rigid body (required)
   BodyId to{};                                              ///< a rigid body (required)

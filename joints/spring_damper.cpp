@@ -1,7 +1,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/numerics/compensated_sum.h>
 #include <carom/joints/line_of_action.h>
-#include <carom/joints/spring_damper.h>
+#include <carom/joints/spring_damper_kind.h>
 #include <carom/joints/spring_pull.h>
 
 #include <algorithm>
@@ -338,6 +338,12 @@ void SpringDamperKind<D>::fingerprint(Fingerprint& print) const {
   }
 }
 
+template <int D>
+PartType<ForceKind> SpringDamper<D>::part_type() {
+  return PartType<ForceKind>::of<SpringDamperKind<D>, SpringDamper>();
+}
+template PartType<ForceKind> SpringDamper<2>::part_type();
+template PartType<ForceKind> SpringDamper<3>::part_type();
 template class SpringDamperKind<2>;
 template class SpringDamperKind<3>;
 

@@ -3,7 +3,7 @@
 
 #include <carom/core/assembly.h>
 #include <carom/joints/mean_line.h>
-#include <carom/joints/spring_damper.h>
+#include <carom/joints/spring_damper_kind.h>
 
 namespace carom::generic {
 

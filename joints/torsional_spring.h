@@ -3,6 +3,7 @@
 /// \file
 /// Torsional spring with a dashpot in parallel.
 
+#include <carom/core/export.h>
 #include <carom/core/force_element.h>
 #include <carom/joints/line_of_action.h>
 #include <carom/joints/mean_line.h>
@@ -14,12 +15,14 @@ namespace carom::planar {
 /// Torsional spring-dashpot between two rigid bodies, or one and the ground: with the angle a of `to`
 /// relative to `from`, the torque on `to` is -(k (a - A) + c da/dt), and the opposite acts on `from`. Full
 /// turns count: after one turn the spring is wound up by 2 pi.
-struct TorsionalSpring {
+struct CAROM_API TorsionalSpring {
   static constexpr Role role = Role::force;
   static constexpr int dimension = 2;
   static constexpr std::string_view label = "torsional spring";
   static constexpr StoredEnergy stored = StoredEnergy::elastic;
   static constexpr bool depends_on_time = false;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<ForceKind> part_type();
 
   BodyId from{};            ///< a rigid body or ground (required)
   BodyId to{};              ///< a rigid body or ground (required)
@@ -28,49 +31,19 @@ struct TorsionalSpring {
   double free_angle = 0.0;  ///< A, counter-clockwise [rad]
 
   /// The bodies that it connects.
-  [[nodiscard]] std::vector<BodyId> bodies() const { return {from, to}; }
+  [[nodiscard]] std::vector<BodyId> bodies() const;
   /// Throws ModelError for invalid bodies or numbers.
-  void check(const PartCheck& check) const {
-    check_angular_ends(check, from, to);
-    check.non_negative(stiffness, "stiffness", "N m/rad");
-    check.non_negative(damping, "damping", "N m s/rad");
-    check.finite(free_angle, "free_angle", "rad");
-  }
+  void check(const PartCheck& check) const;
   /// Books spring and dashpot.
-  void loads(const ElementView<2>& at, ElementLoads<2>& out) const {
-    const RelativeAngle relative(at, from, to);
-    const double elastic = stiffness * (relative.angle - free_angle);
-    const double viscous = damping * relative.rate;
-    out.conservative_torque(from, elastic);
-    out.conservative_torque(to, -elastic);
-    out.dissipative_torque(from, viscous);
-    out.dissipative_torque(to, -viscous);
-  }
+  void loads(const ElementView<2>& at, ElementLoads<2>& out) const;
   /// Books spring and dashpot over a step.
-  void mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
-    const MeanAngle mean(step, from, to);
-    const double elastic = stiffness * (0.5 * (mean.start + mean.end) - free_angle) * mean.ratio;
-    const double viscous = damping * mean.rate;
-    out.conservative_torque(from, elastic);
-    out.conservative_torque(to, -elastic);
-    out.dissipative_torque(from, viscous);
-    out.dissipative_torque(to, -viscous);
-  }
+  void mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const;
   /// Derivatives.
-  void derivatives(const ElementView<2>&, ElementDerivatives<2>& out) const {
-    out.opposite_torques(from, to, -stiffness, -damping);
-  }
+  void derivatives(const ElementView<2>&, ElementDerivatives<2>& out) const;
   /// k (a - A)^2 / 2 [J].
-  [[nodiscard]] double potential(const ElementView<2>& at) const {
-    const double twist = RelativeAngle(at, from, to).angle - free_angle;
-    return 0.5 * stiffness * twist * twist;
-  }
+  [[nodiscard]] double potential(const ElementView<2>& at) const;
   /// Adds the numbers.
-  void fingerprint(Fingerprint& print) const {
-    print.add(stiffness);
-    print.add(damping);
-    print.add(free_angle);
-  }
+  void fingerprint(Fingerprint& print) const;
 };
 
 }  // namespace carom::planar

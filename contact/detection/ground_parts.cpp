@@ -1,6 +1,7 @@
 #include <carom/bodies/shape_polygon.h>
 #include <carom/contact/detection/box_grid.h>
 #include <carom/contact/detection/ground_parts.h>
+#include <carom/contact/detection/ground_piece_shapes.h>
 
 #include <cmath>
 #include <cstddef>
@@ -133,6 +134,25 @@ std::vector<GroundPiece> Peg::pieces(const PartCheck& check) const {
   check.finite({centre.data(), 2}, "centre", "m");
   check.positive(radius, "radius", "m");
   return {{.form = GroundPiece::Form::solid, .points = {centre}, .radius = radius}};
+}
+
+PartType<GroundShapeKind> Terrain::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<Terrain>, Terrain>();
+}
+PartType<GroundShapeKind> BoxInside::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<BoxInside>, BoxInside>();
+}
+PartType<GroundShapeKind> CircleInside::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<CircleInside>, CircleInside>();
+}
+PartType<GroundShapeKind> Wall::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<Wall>, Wall>();
+}
+PartType<GroundShapeKind> Block::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<Block>, Block>();
+}
+PartType<GroundShapeKind> Peg::part_type() {
+  return PartType<GroundShapeKind>::of<generic::PieceShapeKind<Peg>, Peg>();
 }
 
 }  // namespace carom::planar

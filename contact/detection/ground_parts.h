@@ -8,10 +8,10 @@
 /// `surface_speed` is the velocity of the surface along itself, of a conveyor, which moves what rubs on it
 /// but not the shape; `motion` moves `pivot` and turns the shape about it.
 
-#include <carom/contact/detection/ground_piece_shapes.h>
 #include <carom/contact/detection/prescribed_motion.h>
 #include <carom/core/contact_filter.h>
 #include <carom/core/export.h>
+#include <carom/core/ground_shape_kind.h>
 #include <carom/core/part.h>
 #include <carom/core/space.h>
 
@@ -27,7 +27,8 @@ namespace carom::planar {
 struct CAROM_API Terrain {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "terrain";
-  using Kind = generic::PieceShapeKind<Terrain>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
   std::vector<Vec<2>>
       vertices{};  ///< the solid is on the right of who walks along them: below, from left to right [m]
@@ -37,7 +38,7 @@ struct CAROM_API Terrain {
   bool is_closed = false;         ///< the last vertex is joined to the first
   MaterialId material{};          ///< for laws between materials
   double surface_speed = 0.0;     ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();  ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);  ///< point about which it turns [m]
   PrescribedMotion motion{};      ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};         ///< what it may touch
 
@@ -49,14 +50,15 @@ struct CAROM_API Terrain {
 struct CAROM_API BoxInside {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "inside of a box";
-  using Kind = generic::PieceShapeKind<BoxInside>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
   Vec<2> lower =
-      Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< corner with the least coordinates [m]
-  Vec<2> upper = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< corner with the largest [m]
-  MaterialId material{};                                                      ///< for laws between materials
+      filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< corner with the least coordinates [m]
+  Vec<2> upper = filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< corner with the largest [m]
+  MaterialId material{};                                               ///< for laws between materials
   double surface_speed = 0.0;     ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();  ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);  ///< point about which it turns [m]
   PrescribedMotion motion{};      ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};         ///< what it may touch
 
@@ -68,13 +70,14 @@ struct CAROM_API BoxInside {
 struct CAROM_API CircleInside {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "inside of a circle";
-  using Kind = generic::PieceShapeKind<CircleInside>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
-  Vec<2> centre = Vec<2>::Zero();                            ///< [m]
+  Vec<2> centre = filled<2>(0.0);                            ///< [m]
   double radius = std::numeric_limits<double>::quiet_NaN();  ///< > 0 [m]
   MaterialId material{};                                     ///< for laws between materials
   double surface_speed = 0.0;     ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();  ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);  ///< point about which it turns [m]
   PrescribedMotion motion{};      ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};         ///< what it may touch
 
@@ -86,15 +89,16 @@ struct CAROM_API CircleInside {
 struct CAROM_API Wall {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "wall";
-  using Kind = generic::PieceShapeKind<Wall>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
-  Vec<2> from = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());  ///< one end [m]
-  Vec<2> to = Vec<2>::Constant(std::numeric_limits<double>::quiet_NaN());    ///< the other end [m]
+  Vec<2> from = filled<2>(std::numeric_limits<double>::quiet_NaN());  ///< one end [m]
+  Vec<2> to = filled<2>(std::numeric_limits<double>::quiet_NaN());    ///< the other end [m]
   double radius =
       std::numeric_limits<double>::quiet_NaN();  ///< > 0: half its thickness, without which points pass [m]
   MaterialId material{};                         ///< for laws between materials
   double surface_speed = 0.0;     ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();  ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);  ///< point about which it turns [m]
   PrescribedMotion motion{};      ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};         ///< what it may touch
 
@@ -106,13 +110,14 @@ struct CAROM_API Wall {
 struct CAROM_API Block {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "block";
-  using Kind = generic::PieceShapeKind<Block>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
   std::vector<Vec<2>> vertices{};  ///< at least three, convex, in either orientation [m]
   double radius = 0.0;             ///< >= 0: widens it all around, with rounded corners [m]
   MaterialId material{};           ///< for laws between materials
   double surface_speed = 0.0;      ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();   ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);   ///< point about which it turns [m]
   PrescribedMotion motion{};       ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};          ///< what it may touch
 
@@ -124,13 +129,14 @@ struct CAROM_API Block {
 struct CAROM_API Peg {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "peg";
-  using Kind = generic::PieceShapeKind<Peg>;
+  /// Its type, for System::add().
+  [[nodiscard]] static PartType<GroundShapeKind> part_type();
 
-  Vec<2> centre = Vec<2>::Zero();                            ///< [m]
+  Vec<2> centre = filled<2>(0.0);                            ///< [m]
   double radius = std::numeric_limits<double>::quiet_NaN();  ///< > 0 [m]
   MaterialId material{};                                     ///< for laws between materials
   double surface_speed = 0.0;     ///< of a conveyor; positive to the right of who stands on it [m/s]
-  Vec<2> pivot = Vec<2>::Zero();  ///< point about which it turns [m]
+  Vec<2> pivot = filled<2>(0.0);  ///< point about which it turns [m]
   PrescribedMotion motion{};      ///< of `pivot`, and about it; empty: at rest
   ContactFilter filter{};         ///< what it may touch
 

@@ -4,19 +4,31 @@
 /// Storage of shapes on ground in the plane that are made of pieces, which outlines of bodies touch.
 
 #include <carom/contact/detection/prescribed_motion.h>
+#include <carom/core/export.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
 #include <carom/core/space.h>
 
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace carom::generic {
+
+/// Pieces as described, from the pivot on.
+[[nodiscard]] CAROM_API std::vector<GroundPiece> moved_by(std::vector<GroundPiece> pieces,
+                                                          const Vec<2>& pivot);
+/// Demands finite numbers and a motion that can be.
+CAROM_API void check_motion(const PartCheck& check, const Vec<2>& pivot, double surface_speed,
+                            const planar::PrescribedMotion& motion);
+/// Adds the pieces of a shape.
+CAROM_API void add_pieces(Fingerprint& print, const std::vector<GroundPiece>& pieces);
+/// Adds how a shape moves, and of what it is. Functions cannot be hashed; that there is a motion, and its
+/// breaks, can.
+CAROM_API void add_motion(Fingerprint& print, const Vec<2>& pivot, double surface_speed, MaterialId material,
+                          const planar::PrescribedMotion& motion);
 
 /// All shapes of one description. `P` has label, pivot, motion, surface_speed, material, filter, and
 /// std::vector<GroundPiece> pieces(PartCheck), which checks the rest and has places as described.
@@ -29,14 +41,8 @@ public:
   /// Checks and stores a shape. Throws ModelError.
   void add(const P& part, const PartCheck& check) {
     check.material(part.material);
-    check.finite({part.pivot.data(), 2}, "pivot", "m");
-    check.finite(part.surface_speed, "surface_speed", "m/s");
-    part.motion.check(check);
-    std::vector<GroundPiece> pieces = part.pieces(check);
-    for (GroundPiece& piece : pieces) {
-      for (Vec<2>& point : piece.points) point -= part.pivot;
-    }
-    parts_.push_back({part, std::move(pieces)});
+    check_motion(check, part.pivot, part.surface_speed, part.motion);
+    parts_.push_back({part, moved_by(part.pieces(check), part.pivot)});
   }
 
   [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override {
@@ -53,8 +59,7 @@ public:
     return parts_[slot].part.motion.at(time, parts_[slot].part.pivot);
   }
   void discontinuity_times(Index slot, std::vector<double>& out) const override {
-    const std::vector<double>& times = parts_[slot].part.motion.breaks;
-    out.insert(out.end(), times.begin(), times.end());
+    for (const double time : parts_[slot].part.motion.breaks) out.push_back(time);
   }
   void pieces(Index slot, std::vector<GroundPiece>& out) const override {
     out.insert(out.end(), parts_[slot].pieces.begin(), parts_[slot].pieces.end());
@@ -86,22 +91,8 @@ private:
 template <class P>
 void PieceShapeKind<P>::fingerprint(Fingerprint& print) const {
   for (const auto& [part, pieces] : parts_) {
-    print.add(std::uint64_t{pieces.size()});
-    for (const GroundPiece& piece : pieces) {
-      print.add(static_cast<std::uint64_t>(piece.form));
-      print.add(std::uint64_t{piece.points.size()});
-      for (const Vec<2>& point : piece.points) print.add({point.data(), 2});
-      print.add(piece.radius);
-      print.add(piece.depth);
-      print.add(std::uint64_t{piece.tail_is_free} + 2U * std::uint64_t{piece.head_is_free});
-    }
-    print.add({part.pivot.data(), 2});
-    print.add(part.surface_speed);
-    print.add(std::uint64_t{part.material.serial});
-    // Functions cannot be hashed; that there is a motion, and its breaks, can.
-    if (part.motion.empty()) continue;
-    print.add("motion");
-    print.add(part.motion.breaks);
+    add_pieces(print, pieces);
+    add_motion(print, part.pivot, part.surface_speed, part.material, part.motion);
   }
 }
 

@@ -1,5 +1,5 @@
 #include <carom/contact/detection/gap_point_half_space.h>
-#include <carom/contact/detection/half_space.h>
+#include <carom/contact/detection/half_space_kind.h>
 #include <carom/core/vector_length.h>
 
 namespace carom::generic {
@@ -121,6 +121,15 @@ void HalfSpaceKind<D>::fingerprint(Fingerprint& print) const {
   }
 }
 
+PartType<GroundShapeKind> HalfSpace<2>::part_type() {
+  return PartType<GroundShapeKind>::of<HalfSpaceKind<2>, HalfSpace>();
+}
+template <int D>
+PartType<GroundShapeKind> HalfSpace<D>::part_type() {
+  return PartType<GroundShapeKind>::of<HalfSpaceKind<D>, HalfSpace>();
+}
+
+template PartType<GroundShapeKind> HalfSpace<3>::part_type();
 template class HalfSpaceKind<2>;
 template class HalfSpaceKind<3>;
 

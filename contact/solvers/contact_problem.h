@@ -66,16 +66,16 @@ public:
   [[nodiscard]] double& w(int row, int column) { return w_[index(row, column)]; }
 
   /// W, row-major, rows() x rows(); empty of a problem in factors.
-  [[nodiscard]] std::span<const double> matrix() const { return w_; }
-  [[nodiscard]] std::span<double> matrix() { return w_; }
+  [[nodiscard]] std::span<const double> matrix() const { return {w_.data(), w_.size()}; }
+  [[nodiscard]] std::span<double> matrix() { return {w_.data(), w_.size()}; }
 
   /// b = gamma_f + E gamma^- [m/s].
-  [[nodiscard]] std::span<const double> vector() const { return b_; }
-  [[nodiscard]] std::span<double> vector() { return b_; }
+  [[nodiscard]] std::span<const double> vector() const { return {b_.data(), b_.size()}; }
+  [[nodiscard]] std::span<double> vector() { return {b_.data(), b_.size()}; }
 
   /// Set of each row.
-  [[nodiscard]] std::span<const RowSet> sets() const { return sets_; }
-  [[nodiscard]] std::span<RowSet> sets() { return sets_; }
+  [[nodiscard]] std::span<const RowSet> sets() const { return {sets_.data(), sets_.size()}; }
+  [[nodiscard]] std::span<RowSet> sets() { return {sets_.data(), sets_.size()}; }
 
   /// Groups of rows judged together, derived from the sets; call after the sets are filled.
   /// Throws std::invalid_argument when friction rows do not follow their normal row, or when the factors of
@@ -83,7 +83,7 @@ public:
   void group();
 
   /// Groups found by group().
-  [[nodiscard]] std::span<const RowGroup> groups() const { return groups_; }
+  [[nodiscard]] std::span<const RowGroup> groups() const { return {groups_.data(), groups_.size()}; }
 
   /// xi = W P + b, each entry summed in twice the precision and rounded once: large impulses of contacts that
   /// share a body cancel in it. With factors plainly, by way of the velocities M^-1 H^T P.

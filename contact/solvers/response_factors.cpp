@@ -56,4 +56,9 @@ double ResponseFactors::along(std::size_t row, std::span<const double> velocity)
   return sum;
 }
 
+void ResponseFactors::resize_rows(int row_count) {
+  inverse_mass.clear();
+  rows.resize(static_cast<std::size_t>(row_count));
+}
+
 }  // namespace carom

@@ -31,10 +31,7 @@ struct CAROM_API ResponseFactors {
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);
   /// Sizes the rows, whose numbers are to be written; no slots.
-  void resize_rows(int row_count) {
-    inverse_mass.clear();
-    rows.resize(static_cast<std::size_t>(row_count));
-  }
+  void resize_rows(int row_count);
   /// Number of slots.
   [[nodiscard]] std::size_t slots() const { return inverse_mass.size() / columns; }
   /// Entry of W.

@@ -233,4 +233,11 @@ Outcome SolutionList::enumerate(const ContactProblem& problem) {
   return conclude();
 }
 
+std::span<const double> SolutionList::impulse(std::size_t index) const {
+  return std::span(impulses_).subspan(order_[index] * rows_, rows_);
+}
+std::span<const double> SolutionList::velocity(std::size_t index) const {
+  return std::span(velocities_).subspan(order_[index] * rows_, rows_);
+}
+
 }  // namespace carom

@@ -69,14 +69,10 @@ public:
   [[nodiscard]] bool unbounded() const { return unbounded_; }
 
   /// Impulses [N s] of solution `index`, in the order of increasing sum of normal impulses.
-  [[nodiscard]] std::span<const double> impulse(std::size_t index) const {
-    return std::span(impulses_).subspan(order_[index] * rows_, rows_);
-  }
+  [[nodiscard]] std::span<const double> impulse(std::size_t index) const;
 
   /// Scaled mean velocities xi [m/s] of solution `index`.
-  [[nodiscard]] std::span<const double> velocity(std::size_t index) const {
-    return std::span(velocities_).subspan(order_[index] * rows_, rows_);
-  }
+  [[nodiscard]] std::span<const double> velocity(std::size_t index) const;
 
 private:
   struct Workspace;

@@ -8,6 +8,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/contact_name.h>
 #include <carom/core/assembly.h>
+#include <carom/joints/on_coordinate.h>
 
 #include <gtest/gtest.h>
 
