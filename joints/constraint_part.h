@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace carom::planar {
@@ -114,6 +115,12 @@ private:
   [[nodiscard]] Geometry geometry(const JointView& at, Index joint) const;
   template <bool WithDrift>
   void evaluate_rows(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  // Rows along axes that do not turn, without angles (constraint_pins.cpp).
+  [[nodiscard]] bool are_pins(Index rows) const;
+  void evaluate_pins(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  template <Index Rows>
+  void evaluate_pins(const JointView& at, Range joints, std::integral_constant<Index, Rows> rows,
+                     JointNumbers out) const;
   [[nodiscard]] Vec<2> direction(const JointView& at, const Geometry& geometry, const Condition& condition,
                                  Index joint) const;
   template <bool WithDrift>
@@ -129,6 +136,17 @@ private:
   std::vector<Places> places_;
   Column<Place> carrier_place_;  // nowhere unless it has a part in a row
 };
+
+inline Vec<2> ConstraintPartTable::Place::lever(const JointView& at, const Vec<2>& local) const {
+  if (rotation == none) return Vec<2>::Zero();
+  return Space<2>::rotate(at.rotation + rotation, local);
+}
+
+inline Vec<2> ConstraintPartTable::Place::position(const JointView& at, const Vec<2>& local,
+                                                   const Vec<2>& lever) const {
+  if (v == none) return local;
+  return Eigen::Map<const Vec<2>>(at.state.q + q) + lever;
+}
 
 /// Demands that many constraint parts, all between the same ends.
 CAROM_API void check_constraint_parts(const PartCheck& check, std::span<const ConstraintPart> constraints,
