@@ -34,25 +34,43 @@ inline bool is_chained(const EliminationPattern& pattern) {
 inline void substitute_pairs(const PairFactors& at, double* x, double* given) {
   for (Index j = 0; j < at.blocks; ++j) store_pair(x + 2 * j, load_pair(given + at.given_row[j]));
   const Index last = at.blocks - 1;
+  // In chains one block leads to the next: its numbers go there without a way through memory.
+  double first = x[0], second = x[1];
   for (Index j = 0; j < last; ++j) {
     const double* const l = at.lower + 4 * j;
-    const double first = x[2 * j], second = x[2 * j + 1] - at.own[j] * first;
+    second -= at.own[j] * first;
     x[2 * j + 1] = second;
     double* const to = x + 2 * at.below[j];
-    store_pair(to, load_pair(to) - (Pair{l[0], l[2]} * both(first) + Pair{l[1], l[3]} * both(second)));
-  }
-  x[2 * last + 1] -= at.own[last] * x[2 * last];
-  for (Index j = at.blocks; j-- > 0;) {
-    const double* const l = at.lower + 4 * j;
-    Pair mine = load_pair(x + 2 * j) / load_pair(at.pivots + 2 * j);
-    if (j < last) {
-      const double* const from = x + 2 * at.below[j];
-      mine -= load_pair(l) * both(from[0]);
-      mine -= load_pair(l + 2) * both(from[1]);
+    const double below = to[0] - (l[0] * first + l[1] * second);
+    const double next_below = to[1] - (l[2] * first + l[3] * second);
+    to[0] = below;
+    to[1] = next_below;
+    if (at.below[j] == j + 1) {
+      first = below;
+      second = next_below;
+    } else {
+      first = x[2 * j + 2];
+      second = x[2 * j + 3];
     }
-    mine[0] -= at.own[j] * mine[1];
-    store_pair(x + 2 * j, mine);
-    store_pair(given + at.given_row[j], mine);
+  }
+  second -= at.own[last] * first;
+  second /= at.pivots[2 * last + 1];
+  first = first / at.pivots[2 * last] - at.own[last] * second;
+  const auto write = [&](Index j) {
+    x[2 * j] = given[at.given_row[j]] = first;
+    x[2 * j + 1] = given[at.given_row[j] + 1] = second;
+  };
+  write(last);
+  for (Index j = last; j-- > 0;) {
+    const double* const l = at.lower + 4 * j;
+    if (at.below[j] != j + 1) {
+      first = x[2 * at.below[j]];
+      second = x[2 * at.below[j] + 1];
+    }
+    const double mine = x[2 * j] / at.pivots[2 * j] - l[0] * first - l[2] * second;
+    second = x[2 * j + 1] / at.pivots[2 * j + 1] - l[1] * first - l[3] * second;
+    first = mine - at.own[j] * second;
+    write(j);
   }
   std::fill_n(x, 2 * at.blocks, 0.0);
 }
