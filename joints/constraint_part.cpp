@@ -137,6 +137,17 @@ void ConstraintPartTable::fingerprint(Fingerprint& print) const {
   }
 }
 
+inline Vec<2> ConstraintPartTable::Place::lever(const JointView& at, const Vec<2>& local) const {
+  if (rotation == none) return Vec<2>::Zero();
+  return Space<2>::rotate(at.rotation + rotation, local);
+}
+
+inline Vec<2> ConstraintPartTable::Place::position(const JointView& at, const Vec<2>& local,
+                                                   const Vec<2>& lever) const {
+  if (v == none) return local;
+  return Eigen::Map<const Vec<2>>(at.state.q + q) + lever;
+}
+
 inline Vec<2> ConstraintPartTable::Place::velocity(const JointView& at, const Vec<2>& lever) const {
   if (v == none) return Vec<2>::Zero();
   const Vec<2> velocity = Eigen::Map<const Vec<2>>(at.state.v + v);

@@ -137,17 +137,6 @@ private:
   Column<Place> carrier_place_;  // nowhere unless it has a part in a row
 };
 
-inline Vec<2> ConstraintPartTable::Place::lever(const JointView& at, const Vec<2>& local) const {
-  if (rotation == none) return Vec<2>::Zero();
-  return Space<2>::rotate(at.rotation + rotation, local);
-}
-
-inline Vec<2> ConstraintPartTable::Place::position(const JointView& at, const Vec<2>& local,
-                                                   const Vec<2>& lever) const {
-  if (v == none) return local;
-  return Eigen::Map<const Vec<2>>(at.state.q + q) + lever;
-}
-
 /// Demands that many constraint parts, all between the same ends.
 CAROM_API void check_constraint_parts(const PartCheck& check, std::span<const ConstraintPart> constraints,
                                       Index count);
