@@ -186,9 +186,11 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   parts_.trial.account.swept = false;
   parts_.located.clear();
   parts_.trial.jumps.on = false;
-  if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
-    parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
+  const bool many = island.components.size() > BlockTable::block_size && !island.constraints.empty();
+  if (many && !island.joined && !parts_.located.on() && turning_ == nullptr) {
+    return advance_part_by_part(island, in);
   }
+  solve_under_constant_loads(island, in);
   for (const Range components : island.batches) {
     parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
     parts_.trial.account.swept = true;
@@ -196,6 +198,37 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   }
   book_contacts(island, in);
+  if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
+}
+
+void TimeStepper::solve_under_constant_loads(const StepIsland& island, const StepInput& in) {
+  if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
+    parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
+  }
+}
+
+/// Likewise of a batch of many bodies: contacts of some are solved and booked while their problems, which are
+/// large, are at hand.
+void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput& in) {
+  const Range components = island.batches.front();
+  const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial};
+  StepIsland part;
+  std::span<Constraint> rest = island.constraints;
+  const auto react = [&](Range bodies) {
+    std::size_t count = 0;
+    while (count < rest.size() && rest[count].body() < bodies.end) ++count;
+    part.components = island.components.subspan(bodies.begin - stages.bodies().begin, bodies.size());
+    part.constraints = rest.first(count);
+    rest = rest.subspan(count);
+    parts_.trial.account.swept = false;
+    solve_under_constant_loads(part, in);
+  };
+  const auto book = [&](Range) {
+    parts_.trial.account.swept = true;
+    book_contacts(part, in);
+  };
+  parts_.schedule.run(stages, react, book);
+  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
   if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
 }
 
