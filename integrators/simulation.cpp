@@ -2,6 +2,7 @@
 #include <carom/integrators/call_guard.h>
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
+#include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/run/companion.h>
@@ -55,6 +56,10 @@ struct Simulation::Impl {
   [[nodiscard]] bool looked_at() const {
     return callbacks.has_observers() || progress || stop.asks() || log.enabled(LogLevel::error);
   }
+  /// Contacts of a step that nobody has looked at so far.
+  void list_impacts() {
+    carom::list_impacts(events, std::exchange(unlisted, 0), state.layout()->dimension(), report);
+  }
   enum class Stops { on_grid, where_seen };
   void step(Simulation& simulation, double limit, Stops stops);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
@@ -70,6 +75,7 @@ struct Simulation::Impl {
   Companion companion;
   StepReport report;
   RecordedEvents events;
+  std::size_t unlisted = 0;  // of the latest events
   Callbacks callbacks;
   Log log;
   bool findings_written = false;
@@ -94,7 +100,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
     const double end = std::min(limit, next_due(companion));
-    const Run run{mode, state, companion, report, events};
+    const Run run{mode, state, companion, report, events, unlisted};
     if (stops == Stops::where_seen && model->machines.driver && !looked_at()) {
       model->machines.advance_unseen(run, end);
     } else {
@@ -266,6 +272,7 @@ void Simulation::set_state(const State& state) {
 void Simulation::switch_to(Mode mode) {
   Impl& self = *impl_;
   self.guard.demand("switch_to", CallGuard::Need::no_reader);
+  self.list_impacts();
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   const Assembly& assembly = self.model->assembly;
   ModeMachines machines(assembly, mode, self.stop);
@@ -305,7 +312,10 @@ const Assembly& Simulation::assembly() const { return impl_->model->assembly; }
 const State& Simulation::state() const { return impl_->state; }
 double Simulation::time() const { return impl_->state.time; }
 const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
-const StepReport& Simulation::report() const { return impl_->report; }
+const StepReport& Simulation::report() const {
+  impl_->list_impacts();
+  return impl_->report;
+}
 const Statistics& Simulation::statistics() const { return impl_->companion.statistics; }
 const ChainStatistics& Simulation::contact_statistics() const { return impl_->companion.contact_statistics; }
 const Companion& Simulation::companion() const { return impl_->companion; }
@@ -313,6 +323,7 @@ const Mode& Simulation::mode() const { return impl_->mode; }
 const std::vector<EventRecord>& Simulation::events() const { return impl_->events.records(); }
 void Simulation::clear_events() {
   impl_->guard.demand("clear_events", CallGuard::Need::no_step);
+  impl_->list_impacts();
   impl_->events.clear();
 }
 
