@@ -42,19 +42,12 @@ void EnergyLedger::open(const StoredEnergies& stored) {
 
 void EnergyLedger::book(const EnergyFlows& flows, const StoredEnergies& stored) {
   double largest = scale_;
-  const auto add = [&](std::size_t i) {
-    if (flows.values[i] == 0.0) return;
+  for (std::size_t i = 0; i < energy_flow_count; ++i) {
+    if (flows.values[i] == 0.0) continue;
     CompensatedSum sum = flows_[i];
     sum.add(flows.values[i]);
     largest = std::max(largest, std::abs(sum.value()));
     flows_[i] = sum;
-  };
-  // Most are zero, as their sums of magnitudes say for several at once.
-  static_assert(energy_flow_count % 2 == 0);
-  for (std::size_t i = 0; i < energy_flow_count; i += 2) {
-    if (std::abs(flows.values[i]) + std::abs(flows.values[i + 1]) == 0.0) continue;
-    add(i);
-    add(i + 1);
   }
   for (const double value : stored.values) largest = std::max(largest, std::abs(value));
   stored_ = stored;

@@ -99,7 +99,8 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
     stages.finish(some, velocities, part);
   };
   const BodySlots& bodies = assembly_->layout()->bodies();
-  const Index at_once = before ? threads_ : parts;
+  constexpr Index of_several_threads = 4;  // parts of each: to share them out anew has a price
+  const Index at_once = !before ? parts : threads_ == 1 ? 1 : of_several_threads * threads_;
   for (Index next = 0; next < parts; next += at_once) {
     const Index count = std::min(at_once, parts - next);
     const Range some{all.begin + next * size, std::min(all.begin + (next + count) * size, all.end)};

@@ -60,7 +60,7 @@ public:
   /// What is done with some bodies, one after the other.
   using BodyTask = FunctionRef<void(Range bodies)>;
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
-  /// before and after as many parts as there are threads, whose numbers are at hand meanwhile; or nothing
+  /// before and after some parts, a few of each thread, whose numbers are at hand meanwhile; or nothing
   void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {}) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);
