@@ -56,7 +56,7 @@ struct Simulation::Impl {
   [[nodiscard]] bool looked_at() const {
     return callbacks.has_observers() || progress || stop.asks() || log.enabled(LogLevel::error);
   }
-  /// Contacts of a step that nobody has looked at so far.
+  /// Lists the contacts of a step that nobody has looked at so far.
   void list_impacts() {
     carom::list_impacts(events, std::exchange(unlisted, 0), state.layout()->dimension(), report);
   }
@@ -76,6 +76,7 @@ struct Simulation::Impl {
   StepReport report;
   RecordedEvents events;
   std::size_t unlisted = 0;  // of the latest events
+  bool report_seen = false;
   Callbacks callbacks;
   Log log;
   bool findings_written = false;
@@ -103,6 +104,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
     const Run run{mode, state, companion, report, events, unlisted};
     if (stops == Stops::where_seen && model->machines.driver && !looked_at()) {
       model->machines.advance_unseen(run, end);
+      if (report_seen) list_impacts();  // who has it goes on looking
     } else {
       model->machines.advance(run, end);
     }
@@ -164,7 +166,7 @@ const StepReport& Simulation::step() {
   impl_->guard.demand("step", CallGuard::Need::outside);
   impl_->grid().demand_times("step", impl_->state.time, impl_->companion, impl_->state.time);
   impl_->step(*this, std::numeric_limits<double>::infinity(), Impl::Stops::on_grid);
-  return impl_->report;
+  return report();
 }
 
 void Simulation::run_until(double time) {
@@ -179,7 +181,6 @@ void Simulation::run_until(double time) {
     self.grid().demand_times("run_until", std::max(time, std::abs(self.state.time)), self.companion,
                              self.state.time);
   }
-
   std::optional<ProgressBar> bar;
   if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
   while (self.state.time < time) {
@@ -232,7 +233,6 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   }
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   auto edited = std::make_unique<RunningModel>(std::move(system), self.mode, self.stop);
-
   State state = edited->continued(self.state);
   const double projected = edited->prepare(state);
   std::vector<ModelFinding> findings = edited->assembly.system().check();
@@ -313,6 +313,7 @@ const State& Simulation::state() const { return impl_->state; }
 double Simulation::time() const { return impl_->state.time; }
 const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
 const StepReport& Simulation::report() const {
+  impl_->report_seen = true;
   impl_->list_impacts();
   return impl_->report;
 }
@@ -326,7 +327,6 @@ void Simulation::clear_events() {
   impl_->list_impacts();
   impl_->events.clear();
 }
-
 std::string Simulation::name(const ConstraintKey& key) const {
   return impl_->model->machines.detector().name(key);
 }

@@ -59,6 +59,14 @@ TEST(ImpactList, IsThatOfTheStepWhenSomebodyLooks) {
   expect_listed(simulation.report().contacts, impacts(simulation, seen));
 }
 
+TEST(ImpactList, GoesOnForWhomeverHasTheReport) {
+  Simulation simulation(bouncing_ball(), EventDriven{});
+  const StepReport& report = simulation.report();
+  EXPECT_TRUE(report.contacts.empty());
+  simulation.run_until(end);
+  expect_listed(report.contacts, impacts(simulation));
+}
+
 TEST(ImpactList, DoesNotDependOnWhetherEventsWereLookedAt) {
   const System system = bouncing_ball();
   Simulation simulation(system, EventDriven{}), other(system, EventDriven{});
