@@ -1,12 +1,14 @@
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/part_check.h>
+#include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/running_model.h>
 #include <carom/integrators/step_grid.h>
 #include <carom/integrators/time_stepping/start_overlap.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace carom {
 
@@ -34,7 +36,8 @@ void ModeMachines::advance(const Run& run, double limit) {
     if (stepper) {
       make_step(state, companion, step, end, run.report);
     } else {
-      driver->advance(state, companion, end, run.report, run.events);
+      run.unlisted = driver->advance(state, companion, end, run.report, run.events);
+      list_impacts(run.events, std::exchange(run.unlisted, 0), state.layout()->dimension(), run.report);
     }
   };
   const StepGrid grid(run.mode);
@@ -54,7 +57,7 @@ void ModeMachines::advance(const Run& run, double limit) {
 /// Where that fails the motion before is good: the run goes there by intervals, and fails in the last.
 void ModeMachines::advance_unseen(const Run& run, double limit) {
   try {
-    driver->advance(run.state, run.companion, limit, run.report, run.events);
+    run.unlisted = driver->advance(run.state, run.companion, limit, run.report, run.events);
     StepGrid(run.mode).skip_to(run.companion, limit);
   } catch (...) {
     if (!(run.state.time < limit)) throw;

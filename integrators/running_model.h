@@ -11,6 +11,7 @@
 #include <carom/integrators/time_stepping/step_controller.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ struct Run {
   Companion& companion;
   StepReport& report;
   RecordedEvents& events;
+  std::size_t& unlisted;  ///< latest events, whose impacts the report is still to list (list_impacts())
 };
 
 /// Machines of a mode, over one assembly.
@@ -36,7 +38,7 @@ struct ModeMachines {
 
   /// One step, to the next time of the grid (StepGrid), or to a time before it [s].
   void advance(const Run& run, double limit);
-  /// In the event-driven mode: to a time at once, without output in between.
+  /// In the event-driven mode: to a time at once, without output in between. Impacts are left unlisted.
   void advance_unseen(const Run& run, double limit);
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode

@@ -2,6 +2,7 @@
 #include <carom/integrators/call_guard.h>
 #include <carom/integrators/callbacks.h>
 #include <carom/integrators/checkpoint.h>
+#include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
 #include <carom/integrators/run/companion.h>
@@ -55,6 +56,10 @@ struct Simulation::Impl {
   [[nodiscard]] bool looked_at() const {
     return callbacks.has_observers() || progress || stop.asks() || log.enabled(LogLevel::error);
   }
+  /// Lists the contacts of a step that nobody has looked at so far.
+  void list_impacts() {
+    carom::list_impacts(events, std::exchange(unlisted, 0), state.layout()->dimension(), report);
+  }
   enum class Stops { on_grid, where_seen };
   void step(Simulation& simulation, double limit, Stops stops);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);
@@ -70,6 +75,8 @@ struct Simulation::Impl {
   Companion companion;
   StepReport report;
   RecordedEvents events;
+  std::size_t unlisted = 0;  // of the latest events
+  bool report_seen = false;
   Callbacks callbacks;
   Log log;
   bool findings_written = false;
@@ -94,9 +101,10 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
     stop.check();
     const double end = std::min(limit, next_due(companion));
-    const Run run{mode, state, companion, report, events};
+    const Run run{mode, state, companion, report, events, unlisted};
     if (stops == Stops::where_seen && model->machines.driver && !looked_at()) {
       model->machines.advance_unseen(run, end);
+      if (report_seen) list_impacts();  // who has it goes on looking
     } else {
       model->machines.advance(run, end);
     }
@@ -160,7 +168,7 @@ const StepReport& Simulation::step() {
   impl_->guard.demand("step", CallGuard::Need::outside);
   impl_->grid().demand_times("step", impl_->state.time, impl_->companion, impl_->state.time);
   impl_->step(*this, std::numeric_limits<double>::infinity(), Impl::Stops::on_grid);
-  return impl_->report;
+  return report();
 }
 
 void Simulation::run_until(double time) {
@@ -175,7 +183,6 @@ void Simulation::run_until(double time) {
     self.grid().demand_times("run_until", std::max(time, std::abs(self.state.time)), self.companion,
                              self.state.time);
   }
-
   std::optional<ProgressBar> bar;
   if (self.progress && ProgressBar::terminal()) bar.emplace(std::cerr, self.state.time, time);
   while (self.state.time < time) {
@@ -228,7 +235,6 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   }
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   auto edited = std::make_unique<RunningModel>(std::move(system), self.mode, self.stop);
-
   State state = edited->continued(self.state);
   const double projected = edited->prepare(state);
   std::vector<ModelFinding> findings = edited->assembly.system().check();
@@ -268,6 +274,7 @@ void Simulation::set_state(const State& state) {
 void Simulation::switch_to(Mode mode) {
   Impl& self = *impl_;
   self.guard.demand("switch_to", CallGuard::Need::no_reader);
+  self.list_impacts();
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   const Assembly& assembly = self.model->assembly;
   ModeMachines machines(assembly, mode, self.stop);
@@ -307,7 +314,11 @@ const Assembly& Simulation::assembly() const { return impl_->model->assembly; }
 const State& Simulation::state() const { return impl_->state; }
 double Simulation::time() const { return impl_->state.time; }
 const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
-const StepReport& Simulation::report() const { return impl_->report; }
+const StepReport& Simulation::report() const {
+  impl_->report_seen = true;
+  impl_->list_impacts();
+  return impl_->report;
+}
 const Statistics& Simulation::statistics() const { return impl_->companion.statistics; }
 const ChainStatistics& Simulation::contact_statistics() const { return impl_->companion.contact_statistics; }
 const Companion& Simulation::companion() const { return impl_->companion; }
@@ -315,9 +326,9 @@ const Mode& Simulation::mode() const { return impl_->mode; }
 const std::vector<EventRecord>& Simulation::events() const { return impl_->events.records(); }
 void Simulation::clear_events() {
   impl_->guard.demand("clear_events", CallGuard::Need::no_step);
+  impl_->list_impacts();
   impl_->events.clear();
 }
-
 std::string Simulation::name(const ConstraintKey& key) const {
   return impl_->model->machines.detector().name(key);
 }

@@ -284,6 +284,7 @@ void ConstraintPartTable::evaluate(const JointView& at, Index joint, Index which
 
 void ConstraintPartTable::evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const {
   if (out.rate != nullptr) std::fill_n(out.rate, joints.size() * rows, 0.0);
+  if (are_pins(rows)) return evaluate_pins(at, joints, rows, out);
   out.drift != nullptr ? evaluate_rows<true>(at, joints, rows, out)
                        : evaluate_rows<false>(at, joints, rows, out);
 }
@@ -291,28 +292,12 @@ void ConstraintPartTable::evaluate(const JointView& at, Range joints, Index rows
 template <bool WithDrift>
 void ConstraintPartTable::evaluate_rows(const JointView& at, Range joints, Index rows,
                                         JointNumbers out) const {
-  // Pins, along axes that do not turn, without angles: most of a chain.
-  const auto is_pin = [](const Condition& of) {
-    const auto& [from, to, carrier] = of.turns[0];
-    const bool turn = !of.turns.uniform() || from != 0.0 || to != 0.0 || carrier != 0.0;
-    return !turn && of.form.uniform() && of.form[0] == ConstraintPart::Form::fixed_axis;
-  };
-  const bool pins = carrier_place_.uniform() && carrier_place_[0].v == none &&
-                    std::all_of(conditions_.begin(), conditions_.begin() + rows, is_pin);
   double unwanted = 0.0;
   for (Index joint = joints.begin; joint < joints.end; ++joint) {
     const Geometry ends = geometry<WithDrift>(at, joint);
     for (Index row = 0; row < rows; ++row, ++out.gap) {
       double& drift = WithDrift ? *out.drift++ : unwanted;
-      if (!pins)
-        out.jacobian = write<WithDrift>(at, ends, conditions_[row], joint, *out.gap, drift, out.jacobian);
-      if (!pins) continue;
-      const Vec<2>& a = conditions_[row].axis[joint];
-      *out.gap = a.dot(ends.between) - conditions_[row].offset[joint];
-      if constexpr (WithDrift) drift = a.dot(ends.drift);
-      if (out.jacobian == nullptr) continue;
-      out.jacobian = write_block(ends.places.from, -a, ends.from_lever, 0.0, out.jacobian);
-      out.jacobian = write_block(ends.places.to, a, ends.to_lever, 0.0, out.jacobian);
+      out.jacobian = write<WithDrift>(at, ends, conditions_[row], joint, *out.gap, drift, out.jacobian);
     }
   }
 }

@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace carom::planar {
@@ -114,6 +115,12 @@ private:
   [[nodiscard]] Geometry geometry(const JointView& at, Index joint) const;
   template <bool WithDrift>
   void evaluate_rows(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  // Rows along axes that do not turn, without angles (constraint_pins.cpp).
+  [[nodiscard]] bool are_pins(Index rows) const;
+  void evaluate_pins(const JointView& at, Range joints, Index rows, JointNumbers out) const;
+  template <Index Rows>
+  void evaluate_pins(const JointView& at, Range joints, std::integral_constant<Index, Rows> rows,
+                     JointNumbers out) const;
   [[nodiscard]] Vec<2> direction(const JointView& at, const Geometry& geometry, const Condition& condition,
                                  Index joint) const;
   template <bool WithDrift>

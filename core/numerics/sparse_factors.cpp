@@ -1,4 +1,5 @@
 #include <carom/core/numerics/elimination.h>
+#include <carom/core/numerics/pair_substitution.h>
 #include <carom/core/numerics/sparse_factors.h>
 
 #include <algorithm>
@@ -244,6 +245,13 @@ void SparseFactors::factor_weak_rows() {
 template <Index Rows>
 void SparseFactors::substitute(double* given) {
   const Pattern& at = *pattern_;
+  if constexpr (Rows == 2) {
+    if (is_chained(at)) {
+      return substitute_pairs(
+          {at.given_row.data(), at.below_row.data(), at.blocks(), lower_.data(), own_.data(), pivot_.data()},
+          work_.data(), given);
+    }
+  }
   const auto rows_of = [&](Index block) { return Rows == 0 ? at.rows(block) : Rows; };
   const auto row_of = [&](Index block) { return Rows == 0 ? at.row_begin[block] : Rows * block; };
   double* const x = work_.data();

@@ -93,8 +93,8 @@ void EventDriver::start(const State& state, const Companion& companion) {
   started_ = true;
 }
 
-void EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
-                          RecordedEvents& events) {
+std::size_t EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
+                                 RecordedEvents& events) {
   laws_.demand(state.time, target, options_.interval);
   if (!started_) start(state, companion);
   advance_groups(target);
@@ -114,7 +114,9 @@ void EventDriver::advance(State& state, Companion& companion, double target, Ste
   state.v.swap(trial_.v);
   state.z.swap(trial_.z);
   state.time = target;
+  const std::size_t count = balance_.events.size();
   events.append(balance_.events, balance_.keeping.limit);
+  return count;
 }
 
 /// Groups that may meet go on together, others each to the end.
@@ -139,7 +141,7 @@ void EventDriver::advance_groups(double to) {
   }
 }
 
-/// Writes the report of an advance; findings stay, and memory.
+/// Writes the report of an advance, but for its contacts; findings stay, and memory.
 void EventDriver::write_report(double from, double to, StepReport& out) const {
   std::vector<ContactRecord> contacts = std::move(out.contacts);
   contacts.clear();
@@ -154,7 +156,6 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
   out.step = to - from;
   out.energy_gain = balance_.energy_gain;
   out.projected = balance_.shift;
-  report_contacts(out);
 }
 
 void EventDriver::demand_apart(double from) {
@@ -201,44 +202,6 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   return within_limit(state.time, [&] {
     return groups_.of(component).reaction(*assembly_->joint_kinds()[place.kind], place.slot, joint);
   });
-}
-
-void EventDriver::report_contacts(StepReport& report) const {
-  const EventCounts& counts = balance_.counts;
-  const auto of_impacts = counts[static_cast<std::size_t>(EventKind::impact)] +
-                          counts[static_cast<std::size_t>(EventKind::accumulation)] +
-                          counts[static_cast<std::size_t>(EventKind::impact_without_collision)];
-  report.contacts.reserve(std::min(balance_.events.size(), static_cast<std::size_t>(of_impacts)));
-  for (std::size_t i = 0; i < balance_.events.size(); ++i) {
-    const EventRecord event = balance_.events.record(i);
-    const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
-                           event.kind == EventKind::impact_without_collision;
-    if (!impulsive) continue;
-    ContactRecord& entry = report.contacts.emplace_back();
-    entry.key = event.contact;
-    entry.body = event.body;
-    entry.obstacle = event.obstacle;
-    entry.other = event.other;
-    const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
-    entry.directions = limit ? 1 : assembly_->layout()->dimension();
-    static_cast<ImpactNote&>(entry) = event;
-    entry.time = event.time;
-    entry.point = event.point;
-    entry.normal = event.normal;
-    entry.gap = event.gap;
-    entry.velocity_before = event.velocity_before;
-    entry.velocity_after = event.velocity_after;
-    entry.impulse = event.impulse;
-    for (std::size_t row = 0; row < 3; ++row) {
-      entry.work[row] =
-          impulse_work(event.impulse[row], event.velocity_before[row], event.velocity_after[row]);
-    }
-    entry.mode = event.mode;
-    entry.impact = true;
-    entry.outcome = event.outcome;
-    entry.residual = event.residual;
-    entry.solver = event.solver;
-  }
 }
 
 void EventDriver::count(Companion& companion) {

@@ -39,7 +39,10 @@ public:
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws
   /// ModelError where bodies are too deep in shapes on ground at a start, SolverError where anything is too
   /// deep in anything at the end (OverlapCheck).
-  void advance(State& state, Companion& companion, double target, StepReport& report, RecordedEvents& events);
+  /// Returns how many records `events` got: those of impacts are still to be listed in the report
+  /// (list_impacts()).
+  std::size_t advance(State& state, Companion& companion, double target, StepReport& report,
+                      RecordedEvents& events);
   /// Reaction of a joint at a state last advanced to, or changed to since.
   [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
   /// The state was changed from outside: start anew from it.
@@ -60,7 +63,6 @@ private:
   void demand_apart(double from);
   void abandon();
   [[noreturn]] void fail_energy(double from, double to);
-  void report_contacts(StepReport& report) const;
 
   const Assembly* assembly_;
   EventDriven options_;

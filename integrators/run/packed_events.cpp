@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <type_traits>
 
@@ -14,23 +15,50 @@ namespace {
 
 using Word = std::uint64_t;
 static_assert(std::is_trivially_copyable_v<EventRecord> && sizeof(EventRecord) % sizeof(Word) == 0);
-constexpr std::size_t record_words = sizeof(EventRecord) / sizeof(Word);
+// Words are compared so many at a time.
+constexpr std::size_t group_words = 8;
+constexpr std::size_t record_words =
+    (sizeof(EventRecord) / sizeof(Word) + group_words - 1) / group_words * group_words;
 constexpr std::size_t mask_bits = 64, mask_words = (record_words + mask_bits - 1) / mask_bits;
 using Words = std::array<Word, record_words>;
 
-/// The words of a record, but for what heads have.
+/// Place of a member in a record, in bytes.
+template <class T>
+std::size_t place_of(const EventRecord& event, const T& member) {
+  return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&member) -
+                                  reinterpret_cast<const std::byte*>(&event));
+}
+
+/// The words of a record, but for what heads have. Bytes between members are zero, whatever they were.
 Words words_of(const EventRecord& event) {
-  EventRecord rest = event;
-  rest.time = 0.0;
-  rest.instant = 0;
-  Words words;
-  std::memcpy(words.data(), &rest, sizeof rest);
+  Words words{};
+  auto* const bytes = reinterpret_cast<std::byte*>(words.data());
+  std::memcpy(bytes, &event, sizeof event);
+  const auto clear = [&](std::size_t begin, std::size_t end) { std::memset(bytes + begin, 0, end - begin); };
+  const auto clear_between = [&](const auto& before, const auto& after) {
+    clear(place_of(event, before) + sizeof before, place_of(event, after));
+  };
+  const FeatureKey &a = event.contact.a, &b = event.contact.b;
+  clear_between(a.owner, a.serial);
+  clear_between(b.owner, b.serial);
+  clear_between(event.outcome, event.residual);
+  clear_between(event.cut_sequence, event.rolling_moment);
+  clear_between(event.kind, event.velocity_before);
+  clear(place_of(event, event.time), place_of(event, event.time) + sizeof event.time);
+  clear(place_of(event, event.instant), place_of(event, event.instant) + sizeof event.instant);
   return words;
 }
 
 const Words& empty_words() {
   static const Words words = words_of(EventRecord{});
   return words;
+}
+
+/// True if so many words are those of an empty record.
+bool are_empty(const Word* words, const Word* empty) {
+  Word differ = 0;
+  for (std::size_t i = 0; i < group_words; ++i) differ |= words[i] ^ empty[i];
+  return differ == 0;
 }
 
 }  // namespace
@@ -53,6 +81,8 @@ struct PackedEvents::Head {
     return count;
   }
 };
+
+std::size_t PackedEvents::bytes(std::size_t i) const { return Head::read(places_[i]).size() * sizeof(Word); }
 
 double PackedEvents::time(std::size_t i) const { return std::bit_cast<double>(places_[i][0]); }
 
@@ -102,11 +132,16 @@ void PackedEvents::append(const EventRecord& event) {
   Head head{event.time, event.instant, {}};
   std::array<Word, Head::words + record_words> packed;
   std::size_t count = Head::words;
-  for (std::size_t i = 0; i < record_words; ++i) {
-    const bool differs = words[i] != empty[i];
-    packed[count] = words[i];
-    count += differs ? 1 : 0;
-    head.mask[i / mask_bits] |= Word{differs} << (i % mask_bits);
+  for (std::size_t first = 0; first < record_words; first += group_words) {
+    if (are_empty(words.data() + first, empty.data() + first)) continue;
+    Word differing = 0;
+    for (std::size_t i = first; i < first + group_words; ++i) {
+      const bool differs = words[i] != empty[i];
+      packed[count] = words[i];
+      count += differs ? 1 : 0;
+      differing |= Word{differs} << (i - first);
+    }
+    head.mask[first / mask_bits] |= differing << (first % mask_bits);
   }
   std::memcpy(packed.data(), &head, sizeof head);
   pack(packed.data(), count);

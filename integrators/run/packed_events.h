@@ -23,6 +23,8 @@ public:
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   /// True if there are none.
   [[nodiscard]] bool empty() const { return places_.empty(); }
+  /// Bytes that a record takes.
+  [[nodiscard]] std::size_t bytes(std::size_t i) const;
   /// Time of a record [s].
   [[nodiscard]] double time(std::size_t i) const;
   /// EventRecord::instant of a record.

@@ -9,13 +9,10 @@ namespace carom {
 
 namespace {
 
-void add_to(Statistics& statistics, const StepReport& report) {
-  ++statistics.steps;
-  statistics.sweeps += report.sweeps;
-  ++statistics.steps_by_iteration[static_cast<std::size_t>(report.iteration)];
-  statistics.fallbacks += report.fallbacks;
-  statistics.most_sweeps = std::max(statistics.most_sweeps, report.sweeps);
-  statistics.largest_contraction = std::max(statistics.largest_contraction, report.contraction);
+/// Counts the contacts of a step, and lists the modes of those that last: records are large, and are gone
+/// through once.
+void take_contacts(const StepReport& report, double end_time, Companion& companion) {
+  Statistics& statistics = companion.statistics;
   for (const ContactRecord& contact : report.contacts) {
     ++statistics.contact_steps;
     if (contact.impact) ++statistics.impacts;
@@ -23,7 +20,18 @@ void add_to(Statistics& statistics, const StepReport& report) {
     if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
     statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
     statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
+    if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
+    companion.modes.emplace_back(contact.key, contact.mode);
   }
+}
+
+void add_to(Statistics& statistics, const StepReport& report) {
+  ++statistics.steps;
+  statistics.sweeps += report.sweeps;
+  ++statistics.steps_by_iteration[static_cast<std::size_t>(report.iteration)];
+  statistics.fallbacks += report.fallbacks;
+  statistics.most_sweeps = std::max(statistics.most_sweeps, report.sweeps);
+  statistics.largest_contraction = std::max(statistics.largest_contraction, report.contraction);
   if (report.energy_gain > report.lasting_gain) {
     ++statistics.energy_gains;
     statistics.energy_gained += report.energy_gain - report.lasting_gain;
@@ -72,10 +80,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   companion.ledger.book(result.flows, result.stored);
   if (!companion.contacts.empty() || !result.contacts.empty()) std::swap(companion.contacts, result.contacts);
   companion.modes = result.joint_friction_modes;
-  for (const ContactRecord& contact : result.report.contacts) {
-    if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
-    companion.modes.emplace_back(contact.key, contact.mode);
-  }
+  take_contacts(result.report, end_time, companion);
   add_to(companion.statistics, result.report);
   companion.statistics.cut_sequences += result.cut_sequences;
   companion.statistics.scaled_impacts += result.scaled_impacts;

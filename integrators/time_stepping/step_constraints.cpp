@@ -31,6 +31,7 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
+  if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
@@ -102,20 +103,30 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
                            Parting parting) {
   rules_.parting = parting;
+  rules_.by_part = false;
   remember(in, in.last_step);
   constraints_.clear();
-  if (detector_.bodies_touch()) return find_joining(in, batches, trial);
-  for (const Range batch : batches) find_in(in, batch, trial, constraints_);
+  if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
+  // Where nothing touched in the step before there is hardly anything to be found.
+  rules_.by_part = rules_.in_parts && !in.companion.modes.empty();
+  for (const Range batch : batches) {
+    if (!goes_in_parts(batch)) find_in(in, batch, trial, constraints_);
+  }
   islands_.find(batches);
   islands_.take(constraints_);
 }
 
-/// With contacts of bodies with each other. Constraints are large, and these are many: they are written once,
-/// where they stand among those of their island.
-void StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
-                                   const StepTrial& trial) {
+std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
+                                                 const StepTrial& trial) {
   single_.clear();
-  for (const Range batch : batches) find_in(in, batch, trial, single_);
+  find_in(in, components, trial, single_);
+  return single_;
+}
+
+/// With contacts of bodies with each other. Constraints are large, and these are many: they are written once,
+/// where they stand among those of their island. False if there are none.
+bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
+                                   const StepTrial& trial) {
   const BodyContacts& bodies = detector_.bodies();
   std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
   if (rules_.parting == Parting::is_free) {
@@ -126,11 +137,9 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     });
     touching = search_.touching;
   }
-  if (touching.empty()) {
-    constraints_.swap(single_);
-    islands_.find(batches);
-    return islands_.take(constraints_);
-  }
+  if (touching.empty()) return false;
+  single_.clear();
+  for (const Range batch : batches) find_in(in, batch, trial, single_);
   merge(in, touching);
   Index last = none;
   for (const Index i : islands_.find(batches, joined_)) {
@@ -147,6 +156,7 @@ void StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     take_sticking({&constraints_.back(), 1});
   }
   islands_.take(constraints_);
+  return true;
 }
 
 /// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each

@@ -39,19 +39,33 @@ public:
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
   void place_surfaces(const StepInput& in);
 
+  /// Lets batches of many bodies go part by part: nothing asks for all their contacts at once.
+  void allow_parts() { rules_.in_parts = true; }
+
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
   /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
   void find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
             Parting parting = Parting::acts);
   /// The islands, in the order of their first components. Valid until the next find().
   [[nodiscard]] std::span<const StepIsland> islands() const { return islands_.list(); }
+  /// True if the contacts of an island are not among those found: find_part() finds them.
+  [[nodiscard]] bool finds_in_parts(const StepIsland& island) const {
+    return island.batches.size() == 1 && goes_in_parts(island.batches.front());
+  }
+  /// Finds the contacts of some components of such an island. Valid until the next call.
+  [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
+                                                const StepTrial& trial);
   /// Finds the constraints of an island of one component as they were at the start, for another iteration.
   void restore(const StepInput& in, const StepIsland& island, const StepTrial& trial);
 
 private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
-  void find_joining(const StepInput& in, std::span<const Range> batches, const StepTrial& trial);
+  [[nodiscard]] bool goes_in_parts(Range batch) const {
+    return rules_.by_part && batch.size() > BlockTable::block_size;
+  }
+  [[nodiscard]] bool find_joining(const StepInput& in, std::span<const Range> batches,
+                                  const StepTrial& trial);
   [[nodiscard]] bool is_left_out(const StepInput& in, const Constraint& constraint) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
@@ -63,13 +77,15 @@ private:
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
     Parting parting = Parting::acts;  // in the last find()
+    bool by_part = false;             // large batches go part by part, likewise
+    bool in_parts = false;            // allow_parts()
   } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
   std::vector<Constraint> constraints_, again_, with_rolling_;
-  std::vector<Constraint> single_;   // those that join no components
+  std::vector<Constraint> single_;   // those that join no components, or of a part of a batch
   std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written
   std::vector<Index> sources_;  // of the same: place among those of two bodies, or behind them in single_
   StepIslands islands_;

@@ -17,6 +17,10 @@ void StepIslands::find(std::span<const Range> batches) {
 }
 
 void StepIslands::take(std::span<Constraint> constraints) {
+  if (constraints.empty()) {
+    for (StepIsland& island : islands_) island.constraints = {};
+    return;
+  }
   const auto& components = assembly_->components();
   std::size_t next = 0;
   for (std::size_t i = 0; i < islands_.size(); ++i) {

@@ -1,5 +1,6 @@
 // Problem: rows of joints for every place of a step, past singular positions too.
 
+#include <carom/core/numerics/small_turn.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 #include <carom/integrators/time_stepping/step_joint_rows.h>
 
@@ -27,6 +28,29 @@ void update(JointConstraints& rows, const JointView& at, const StepInput& in) {
   }
 }
 
+/// Rotations at a place of the step, by those at its start, from which bodies turn little.
+void turn(const StepInput& in, Index component, const State& state, const Evaluation& start,
+          Evaluation& out) {
+  constexpr int plane = 2;
+  if (in.assembly.layout()->dimension() != plane) {
+    return evaluate_positions(in.assembly, component, state.view(), out);
+  }
+  in.assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index q, Index, Index rotation) {
+    if (!kind.has_orientation()) return;
+    const Index size = kind.q_size(), last = size - 1;  // the angle
+    for (Index i = 0; i < slots.size(); ++i, q += size, rotation += 2) {
+      const double angle = state.q[q + last] - in.start.q[q + last];
+      if (std::abs(angle) <= largest_small_turn) {
+        store_pair(out.rotation.data() + rotation,
+                   small_turn(load_pair(start.rotation.data() + rotation), angle));
+      } else {
+        kind.rotations({slots.begin + i, slots.begin + i + 1}, state.q.data() + q,
+                       out.rotation.data() + rotation);
+      }
+    }
+  });
+}
+
 /// The angle of a row from where it follows from others: pivots are as the squares of angles.
 double angle(const JointConstraints& joints, std::size_t row) {
   return std::sqrt(std::max(joints.factors().pivot(row), dependent_pivot));
@@ -40,13 +64,13 @@ StepJointRows::StepJointRows(const Assembly& assembly, Index component)
 void StepJointRows::start(const StepInput& in, bool mean, StepTrial& trial) {
   reactions_ = Reactions::halfway;
   mean_ = mean;
-  if (mean) evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
+  evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
 }
 
 void StepJointRows::place_midpoint(const StepInput& in, StepTrial& trial) const {
   trial.place_midpoint(in, component_);
   if (!mean_) {
-    evaluate_positions(in.assembly, component_, trial.midpoint.view(), trial.at_midpoint);
+    turn(in, component_, trial.midpoint, trial.at_start, trial.at_midpoint);
     return;
   }
   const std::vector<double>&start = trial.at_start.rotation, &end = trial.at_end.rotation;
@@ -64,12 +88,12 @@ void StepJointRows::place_start(const StepInput& in, StepTrial& trial) {
 }
 
 void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
-  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
+  turn(in, component_, trial.end, trial.at_start, trial.at_end);
   update(end_, view_of(trial.end, trial.at_end), in);
 }
 
 void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
-  evaluate_positions(in.assembly, component_, trial.end.view(), trial.at_end);
+  turn(in, component_, trial.end, trial.at_start, trial.at_end);
   end_.update_gaps(view_of(trial.end, trial.at_end));
 }
 

@@ -19,7 +19,9 @@ bool stays_as_it_is(const ForceKind& kind) {
 }  // namespace
 
 SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs)
-    : assembly_(&assembly), workers_(std::max(options.threads, 1)) {
+    : assembly_(&assembly),
+      threads_(static_cast<Index>(std::max(options.threads, 1))),
+      workers_(std::max(options.threads, 1)) {
   classify(options, needs);
   find_batches();
   Index most_blocks = 1;
@@ -83,7 +85,7 @@ void SweepSchedule::improve(const SweepStages& stages) const {
   for_blocks(stages, [&](const Block& block, Index) { stages.improve(block); });
 }
 
-void SweepSchedule::run(const ConstantStages& stages) const {
+void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask after) const {
   const Range all = stages.bodies();
   constexpr Index size = BlockTable::block_size;
   const Index parts = (all.size() + size - 1) / size;
@@ -96,14 +98,22 @@ void SweepSchedule::run(const ConstantStages& stages) const {
     stages.move(some);
     stages.finish(some, velocities, part);
   };
-  if (parts == 1) {
-    run_part(all, v, 0);
-  } else {
-    const BodySlots& bodies = assembly_->layout()->bodies();
-    workers_.for_each(parts, [&](Index part) {
-      const Index first = all.begin + part * size, end = std::min(first + size, all.end);
-      run_part({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, part);
-    });
+  const BodySlots& bodies = assembly_->layout()->bodies();
+  constexpr Index of_several_threads = 4;  // parts of each: to share them out anew has a price
+  const Index at_once = !before ? parts : threads_ == 1 ? 1 : of_several_threads * threads_;
+  for (Index next = 0; next < parts; next += at_once) {
+    const Index count = std::min(at_once, parts - next);
+    const Range some{all.begin + next * size, std::min(all.begin + (next + count) * size, all.end)};
+    if (before) before(some);
+    if (parts == 1) {
+      run_part(all, v, 0);
+    } else {
+      workers_.for_each(count, [&](Index i) {
+        const Index first = some.begin + i * size, end = std::min(first + size, all.end);
+        run_part({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, next + i);
+      });
+    }
+    if (after) after(some);
   }
   stages.close();
 }

@@ -15,6 +15,7 @@
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 #include <carom/core/numerics/fixed_point.h>
 #include <carom/core/workers.h>
 #include <carom/integrators/run/time_stepping.h>
@@ -56,8 +57,11 @@ public:
   void move(const SweepStages& stages) const;
   /// The loads that the guess led to become the guess, of all blocks.
   void improve(const SweepStages& stages) const;
-  /// The step of bodies under constant loads, part by part, and its account.
-  void run(const ConstantStages& stages) const;
+  /// What is done with some bodies, one after the other.
+  using BodyTask = FunctionRef<void(Range bodies)>;
+  /// The step of bodies under constant loads, part by part, and its account. \param before,after called
+  /// before and after some parts, a few of each thread, whose numbers are at hand meanwhile; or nothing
+  void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {}) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);
   /// One sweep, block by block, and its loads. \param guessing whether it begins with a guess
@@ -92,6 +96,7 @@ private:
   void sweep_upset(const SweepStages& stages);
 
   const Assembly* assembly_;
+  Index threads_;
   Workers workers_;
   std::vector<CouplingClass> coupling_;  // by component
   bool any_iterated_ = false;

@@ -22,6 +22,9 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
   if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
+  if (impacts_ == nullptr && turning_ == nullptr && !parts_.located.on() && !options.project_gaps) {
+    parts_.constraints.allow_parts();
+  }
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
   memory_.mean = parts_.rule.is_mean();
@@ -190,9 +193,9 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   parts_.trial.account.swept = false;
   parts_.located.clear();
   parts_.trial.jumps.on = false;
-  if (const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial)) {
-    parts_.errors(in, in.assembly.component_of(failed->constraints().front().body())).fail_contact(*failed);
-  }
+  if (parts_.constraints.finds_in_parts(island)) return advance_part_by_part(island, in);
+  const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial);
+  if (failed != nullptr) fail_contact(*failed, in);
   for (const Range components : island.batches) {
     parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
     parts_.trial.account.swept = true;
@@ -201,6 +204,33 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   }
   book_contacts(island, in);
   if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
+}
+
+void TimeStepper::fail_contact(const IslandProblem& problem, const StepInput& in) {
+  parts_.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
+}
+
+/// Likewise of a batch of many bodies: contacts of some are found, solved and booked while they and their
+/// problems, which are large, are at hand.
+void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput& in) {
+  const Range components = island.batches.front();
+  const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial};
+  StepIsland part;
+  const auto react = [&](Range bodies) {
+    // Each component is one body.
+    const Index begin = components.begin + (bodies.begin - stages.bodies().begin);
+    part.components = island.components.subspan(begin - components.begin, bodies.size());
+    part.constraints = parts_.constraints.find_part(in, {begin, begin + bodies.size()}, parts_.trial);
+    parts_.trial.account.swept = false;
+    const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, parts_.trial);
+    if (failed != nullptr) fail_contact(*failed, in);
+  };
+  const auto book = [&](Range) {
+    parts_.trial.account.swept = true;
+    book_contacts(part, in);
+  };
+  parts_.schedule.run(stages, react, book);
+  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
 }
 
 /// Bodies that are hit within the step, under constant loads: they are moved again, and booked anew.

@@ -65,6 +65,8 @@ private:
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
+  void advance_part_by_part(const StepIsland& island, const StepInput& in);
+  [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
   void locate_under_constant_loads(Range components, const StepIsland& island, const StepInput& in);
   [[noreturn]] void fail_account(Range components, const StepInput& in);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);

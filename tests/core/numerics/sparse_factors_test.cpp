@@ -191,6 +191,37 @@ TEST(SparseFactors, OfBlocksMeetADenseSolution) {
   }
 }
 
+TEST(SparseFactors, OfPairsInChainsAndTreesMeetADenseSolution) {
+  Random random(407);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    const Index count = 1 + random.below(20), size = 2 * count;
+    // Heavy diagonals: positive definite.
+    Eigen::MatrixXd matrix = 8.0 * Eigen::MatrixXd::Identity(size, size);
+    std::vector<int> branches(count, 0);
+    for (Index block = 1; block < count; ++block) {
+      Index other = repeat % 2 == 0 ? block - 1 : random.below(block);
+      while (branches[other] == 2) other = random.below(block);
+      ++branches[other];
+      for (Index i = 0; i < 4; ++i) {
+        const Index row = 2 * block + i / 2, column = 2 * other + i % 2;
+        matrix(row, column) = matrix(column, row) = random.uniform(-1.0, 1.0);
+      }
+    }
+    for (Index row = 0; row < size; row += 2) {
+      matrix(row, row + 1) = matrix(row + 1, row) = random.uniform(-1.0, 1.0);
+    }
+    SparseFactors factors;
+    const Blocks blocks(factors, std::vector<Index>(count, 2), matrix);
+    if (repeat % 2 == 0) {
+      EXPECT_EQ(factors.fill(), 4U * (count - 1) + count);  // one block below each
+    }
+    const Eigen::VectorXd right = random_vector(size, random);
+    const Eigen::VectorXd expected = matrix.ldlt().solve(right), found = solved(factors, right);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-14);  // numbers of order 0.1
+    EXPECT_EQ(solved(factors, right), found);
+  }
+}
+
 TEST(SparseFactors, OfBlocksNameWhatDepends) {
   // One row is the sum of two others, in any blocks: the combination of them vanishes.
   Random random(407);

@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <new>
 #include <vector>
 
 namespace {
@@ -110,6 +113,29 @@ TEST(PackedEvents, EveryNumberComesBack) {
     expect_equal(events.record(place), full_record(1.0 + i));
     expect_equal(events.record(place + 1), EventRecord{});
   }
+}
+
+/// A record in memory whose bytes, those between members too, were `byte` before.
+EventRecord& record_over(std::vector<std::max_align_t>& memory, int byte) {
+  memory.resize(sizeof(EventRecord) / sizeof(std::max_align_t) + 1);
+  std::memset(memory.data(), byte, memory.size() * sizeof(std::max_align_t));
+  auto* const event = new (memory.data()) EventRecord;
+  const EventRecord full = full_record(3.0);
+  event->kind = full.kind;
+  event->contact.a.owner = full.contact.a.owner;
+  event->mode = full.mode;
+  return *event;
+}
+
+TEST(PackedEvents, BytesBetweenMembersTakeNoMemory) {
+  PackedEvents events;
+  std::vector<std::max_align_t> memory;
+  events.append(record_over(memory, 0));
+  events.append(record_over(memory, 0xff));
+  EXPECT_EQ(events.bytes(0), events.bytes(1));
+  expect_equal(events.record(0), events.record(1));
+  events.append(EventRecord{});
+  EXPECT_LT(events.bytes(2), events.bytes(0));
 }
 
 TEST(PackedEvents, InOrderOfTimeThenAsTheyCame) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -114,6 +115,25 @@ void demand_same_as_alone(const std::vector<Start>& all, const TimeStepping& mod
 
 TEST(Batch, EveryBodyGoesAsIfItWereAlone) {
   demand_same_as_alone(starts(300), TimeStepping{.step = 1e-3}, 60);
+}
+
+/// More bodies than are worked on at once: contacts are found, solved and booked part by part.
+TEST(Batch, EveryBodyOfManyGoesAsIfItWereAlone) {
+  demand_same_as_alone(starts(1100), TimeStepping{.step = 1e-3}, 30);
+}
+
+TEST(Batch, ContactsOfManyAreReportedInTheOrderOfTheirBodies) {
+  Simulation simulation(discs(starts(1100)), TimeStepping{.step = 1e-3});
+  std::size_t count = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::vector<ContactRecord>& contacts = simulation.step().contacts;
+    count += contacts.size();
+    EXPECT_TRUE(std::is_sorted(contacts.begin(), contacts.end(),
+                               [](const auto& a, const auto& b) { return a.body < b.body; }));
+  }
+  EXPECT_GT(count, 1000U);
+  const double scale = simulation.energy().scale();
+  EXPECT_LE(std::abs(simulation.energy().residual()), 1e-12 * scale);  // of some thousand works
 }
 
 TEST(Batch, GapsAreOpenedBodyByBody) {

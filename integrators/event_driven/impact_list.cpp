@@ -1,0 +1,47 @@
+#include <carom/contact/impulse_map.h>
+#include <carom/integrators/event_driven/impact_list.h>
+
+namespace carom {
+
+namespace {
+
+ContactRecord contact_of(const EventRecord& event, int dimension) {
+  ContactRecord entry;
+  entry.key = event.contact;
+  entry.body = event.body;
+  entry.obstacle = event.obstacle;
+  entry.other = event.other;
+  const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
+  entry.directions = limit ? 1 : dimension;
+  static_cast<ImpactNote&>(entry) = event;
+  entry.time = event.time;
+  entry.point = event.point;
+  entry.normal = event.normal;
+  entry.gap = event.gap;
+  entry.velocity_before = event.velocity_before;
+  entry.velocity_after = event.velocity_after;
+  entry.impulse = event.impulse;
+  for (std::size_t row = 0; row < 3; ++row) {
+    entry.work[row] = impulse_work(event.impulse[row], event.velocity_before[row], event.velocity_after[row]);
+  }
+  entry.mode = event.mode;
+  entry.impact = true;
+  entry.outcome = event.outcome;
+  entry.residual = event.residual;
+  entry.solver = event.solver;
+  return entry;
+}
+
+}  // namespace
+
+void list_impacts(const RecordedEvents& events, std::size_t latest, int dimension, StepReport& report) {
+  const std::size_t size = events.size();
+  for (std::size_t i = size - latest; i < size; ++i) {
+    const EventRecord event = events.record(i);
+    const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
+                           event.kind == EventKind::impact_without_collision;
+    if (impulsive) report.contacts.push_back(contact_of(event, dimension));
+  }
+}
+
+}  // namespace carom
