@@ -62,6 +62,7 @@ private:
   struct {
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
+    bool drifts;                      // contacts of two bodies need their drifts
     Parting parting = Parting::acts;  // in the last find()
   } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
