@@ -71,7 +71,8 @@ private:
     std::size_t column = 0;
     std::size_t before = no_part;  // of an earlier column that reaches there
   };
-  [[nodiscard]] bool add_slots(const Constraint& constraint, const BodyResponse& response, int* slot);
+  [[nodiscard]] int slot_of(const Constraint& constraint, std::size_t body, const BodyResponse& response);
+  [[nodiscard]] int add_slot(const Constraint::Block& block, const BodyResponse& response);
   void write_masses(ResponseFactors& factors) const;
   void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);

@@ -6,53 +6,77 @@
 
 namespace carom {
 
-/// Slots of the bodies of a constraint; false where one does not answer for itself in the plane.
-bool Delassus::add_slots(const Constraint& constraint, const BodyResponse& response, int* slot) {
-  std::fill_n(slot, ResponseFactors::most_slots, ResponseFactors::no_slot);
-  for (int b = 0; b < constraint.bodies; ++b) {
-    const Constraint::Block& block = constraint.blocks[static_cast<std::size_t>(b)];
-    if (block.body >= slot_of_body_.size()) slot_of_body_.resize(block.body + 1, ResponseFactors::no_slot);
-    int& own = slot_of_body_[block.body];
-    if (own == ResponseFactors::no_slot) {
-      const BodyMasses masses = response.alone(block.body);
-      if (masses.mass == nullptr || masses.layout == BodyMasses::Layout::spatial_points) return false;
-      const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
-      own = static_cast<int>(slots_.size());
-      const double inverse = 1.0 / *masses.mass;
-      slots_.push_back({block, {inverse, inverse, turns ? 1.0 / *masses.inertia : 0.0}});
-    }
-    slot[b] = own;
+/// A body that has no slot yet gets one; no_slot where it does not answer for itself in the plane.
+int Delassus::add_slot(const Constraint::Block& block, const BodyResponse& response) {
+  const BodyMasses masses = response.alone(block.body);
+  if (masses.mass == nullptr || masses.layout == BodyMasses::Layout::spatial_points) {
+    return ResponseFactors::no_slot;
   }
-  return true;
+  if (block.body >= slot_of_body_.size()) slot_of_body_.resize(block.body + 1, ResponseFactors::no_slot);
+  const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
+  const int slot = slot_of_body_[block.body] = static_cast<int>(slots_.size());
+  const double inverse = 1.0 / *masses.mass;
+  slots_.push_back({block, {inverse, inverse, turns ? 1.0 / *masses.inertia : 0.0}});
+  return slot;
 }
+
+/// Slot of a body of a constraint; no_slot where there is none, or it does not answer for itself in the
+/// plane.
+inline int Delassus::slot_of(const Constraint& constraint, std::size_t body, const BodyResponse& response) {
+  if (static_cast<int>(body) >= constraint.bodies) return ResponseFactors::no_slot;
+  const Constraint::Block& block = constraint.blocks[body];
+  const bool known = block.body < slot_of_body_.size();
+  const int slot = known ? slot_of_body_[block.body] : ResponseFactors::no_slot;
+  return slot != ResponseFactors::no_slot ? slot : add_slot(block, response);
+}
+
+namespace {
+
+/// Row of factors: blocks of three numbers, the last of which a body without spin does not have.
+/// \param h the row of the constraint
+void write_row(const Constraint& at, const double* h, ResponseFactors::Row& row) {
+  constexpr int of_planar_body = ResponseFactors::columns;
+  double* to = row.h.data();
+  if (at.bodies == 2 && at.blocks[0].columns == of_planar_body && at.blocks[1].columns == of_planar_body) {
+    std::copy_n(h, 2 * of_planar_body, to);  // the usual case in a pile
+    std::fill_n(to + 2 * of_planar_body, of_planar_body, 0.0);
+    return;
+  }
+  row.h = {};
+  for (int b = 0; b < at.bodies; ++b, to += of_planar_body) {
+    const bool turns = at.blocks[static_cast<std::size_t>(b)].columns == of_planar_body;
+    to[0] = h[0];
+    to[1] = h[1];
+    if (turns) to[2] = h[2];
+    h += turns ? 3 : 2;
+  }
+}
+
+}  // namespace
 
 bool Delassus::build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
                              ContactProblem& problem) {
-  constexpr std::size_t columns = ResponseFactors::columns;
+  constexpr int no_slot = ResponseFactors::no_slot;
   directions_ = directions;
   slots_.clear();
   factored_ = true;
   ResponseFactors& factors = problem.factors();
   slots_of_row_.resize(directions.size() * ResponseFactors::most_slots);
   int* slot = slots_of_row_.data();
-  const Constraint* last = nullptr;
-  for (std::size_t r = 0; r < directions.size(); ++r, slot += ResponseFactors::most_slots) {
+  for (std::size_t r = 0; r < directions.size();) {
     const Constraint& at = *directions[r].constraint;
-    if (&at == last) {
-      std::copy_n(slot - ResponseFactors::most_slots, ResponseFactors::most_slots, slot);
-    } else {
-      factored_ = at.rows <= 2 && add_slots(at, response, slot);
-      if (!factored_) break;
-      last = &at;
-    }
-    ResponseFactors::Row& row = factors.rows[r];
-    row.h.fill(0.0);
-    std::copy_n(slot, ResponseFactors::most_slots, row.slot.begin());
-    const double* h = at.row(directions[r].row);
-    for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
-      const int width = at.blocks[b].columns;
-      std::copy_n(h, width, row.h.begin() + static_cast<std::ptrdiff_t>(columns * b));
-      h += width;
+    // One by one: written as a list and read as one, they would have to wait for each other.
+    const int first = slot_of(at, 0, response), second = slot_of(at, 1, response),
+              third = slot_of(at, 2, response);
+    factored_ = at.rows <= 2 && first != no_slot && (at.bodies < 2 || second != no_slot) &&
+                (at.bodies < 3 || third != no_slot);
+    if (!factored_) break;
+    for (; r < directions.size() && directions[r].constraint == &at; ++r) {
+      ResponseFactors::Row& row = factors.rows[r];
+      *slot++ = row.slot[0] = first;
+      *slot++ = row.slot[1] = second;
+      *slot++ = row.slot[2] = third;
+      write_row(at, at.row(directions[r].row), row);
     }
   }
   // Bodies are no slots until the next problem.

@@ -19,6 +19,7 @@ namespace carom {
 /// Nodes that a constraint joins: that of its first body and that of another one, or the first alone, twice.
 struct JoinedNodes {
   Index first = none, second = none;
+  friend bool operator==(const JoinedNodes&, const JoinedNodes&) = default;
 };
 
 /// Finds islands among constraints. Keeps its memory.

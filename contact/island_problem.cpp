@@ -5,11 +5,15 @@
 // 0, P_t = -mu P_n sign(xi_t). Rows of limits are normal; friction in joints and rolling resistance have a
 // bound of their own in place of mu P_n.
 
+#include <carom/contact/contact_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/solvers/factor_products.h>
+#include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -42,6 +46,8 @@ void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
   set.bound = first;
   set.coefficient = at.friction;
 }
+
+bool is_planar_contact(const Constraint& at) { return at.type == ConstraintType::contact && at.rows == 2; }
 
 /// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
 void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
@@ -99,14 +105,18 @@ void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
                                 std::span<const double> given, std::vector<double>& scratch,
                                 ContactProblem& problem) {
   constexpr std::size_t columns = ResponseFactors::columns;
-  scratch.assign(columns * slots.size(), 0.0);
+  scratch.resize(columns * slots.size());
   for (std::size_t slot = 0; slot < slots.size(); ++slot) {
     const Constraint::Block& block = slots[slot].block;
-    std::copy_n(velocity_free + block.v, block.columns, scratch.data() + columns * slot);
+    const double* const from = velocity_free + block.v;
+    double* const to = scratch.data() + columns * slot;
+    to[0] = from[0];
+    to[1] = from[1];
+    to[2] = block.columns == columns ? from[2] : 0.0;
   }
   const auto b = problem.vector();
+  along_all_rows(problem.factors(), scratch, given, b);
   for (std::size_t row = 0; row < b.size(); ++row) {
-    b[row] = problem.factors().along(row, scratch) + given[row];
     if (problem.diagonal(static_cast<int>(row)) > 0.0) continue;
     b[row] = along_held_row(*directions[row].constraint, directions[row].row, velocity_free, b[row]);
   }
@@ -125,6 +135,31 @@ bool remove_restitution(std::span<const double> before, std::span<double> restit
     if (!given.empty()) given[row] -= part;
   }
   return any;
+}
+
+/// Where the two rows of a planar contact of an island in factors stand.
+struct PlanarRows {
+  ImpulseDirection* directions;
+  RowSet* sets;
+  double *before, *restitution, *given;
+};
+
+/// Writes them as build_any() does any constraint, without its cases. \param first number of the first row
+void write_planar_contact(const Constraint& at, const double* velocity_before, int first,
+                          const PlanarRows& rows) {
+  const std::array<double, 2> along = times_both_rows(at, velocity_before);
+  const double e_n = at.law.normal_restitution, e_t = at.law.tangential_restitution;
+  const double gamma_n = along[0] - at.surface_velocity[0], gamma_t = along[1] - at.surface_velocity[1];
+  rows.directions[0] = {&at, 0};
+  rows.directions[1] = {&at, 1};
+  set_contact_row(at, first, 0, rows.sets[0]);
+  set_contact_row(at, first, 1, rows.sets[1]);
+  rows.before[0] = gamma_n;
+  rows.before[1] = gamma_t;
+  rows.restitution[0] = e_n;
+  rows.restitution[1] = e_t;
+  rows.given[0] = e_n * gamma_n + at.allowed_approach - at.surface_velocity_after[0];
+  rows.given[1] = e_t * gamma_t - at.surface_velocity_after[1];
 }
 
 }  // namespace
@@ -150,7 +185,6 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
 
 void IslandProblem::build_any(const double* velocity_before) {
   const std::span<const Constraint> constraints = constraints_;
-  directions_.clear();
   first_row_.clear();
   modes_.clear();
   first_row_.reserve(constraints.size());
@@ -160,7 +194,7 @@ void IslandProblem::build_any(const double* velocity_before) {
     rows += constraint.rows;
   }
   const auto count = static_cast<std::size_t>(rows);
-  directions_.reserve(count);
+  directions_.resize(count);
   // A large W is not to be made before it is known whether anybody needs it.
   const bool many = !constraints.empty() && constraints.size() >= options_.factored_from &&
                     constraints.size() <= options_.factored_to;
@@ -174,8 +208,15 @@ void IslandProblem::build_any(const double* velocity_before) {
   slides_.assign(constraints.size(), 0.0);
   std::size_t row = 0;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
+    if (factored && is_planar_contact(constraints[c])) {
+      write_planar_contact(constraints[c], velocity_before, static_cast<int>(row),
+                           {&directions_[row], &problem_.sets()[row], &before_[row], &restitution_[row],
+                            &scratch_.given[row]});
+      row += 2;
+      continue;
+    }
     for (int i = 0; i < constraints[c].rows; ++i, ++row) {
-      directions_.push_back({&constraints[c], i});
+      directions_[row] = {&constraints[c], i};
       if (constraints[c].type == ConstraintType::rolling) {
         set_rolling_row(constraints[c], first_row_[c - 1], problem_.sets()[row]);
         modes_.assign(constraints.size(), ContactMode::open);
@@ -300,9 +341,7 @@ void IslandProblem::set_impulses(std::span<const double> impulses) {
   xi_.resize(impulses.size());
   problem_.velocities(answer_.impulse, xi_);
   answer_.modes.resize(problem_.groups().size());
-  for (std::size_t group = 0; group < answer_.modes.size(); ++group) {
-    answer_.modes[group] = contact_mode(problem_, problem_.groups()[group], answer_.impulse, xi_);
-  }
+  contact_modes(problem_, answer_.impulse, xi_, answer_.modes);
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
 }
 

@@ -34,7 +34,7 @@ std::size_t ConstraintTable::slot_of(const ConstraintKey& key) const {
 }
 
 Index ConstraintTable::find(const ConstraintKey& key) const {
-  if (!slots_.empty()) return slots_[slot_of(key)];
+  if (ready_) return slots_[slot_of(key)];
   for (Index i = 0; i < keys_.size(); ++i) {
     if (keys_[i] == key) return i;
   }

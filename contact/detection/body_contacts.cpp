@@ -2,7 +2,6 @@
 
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/feature_margin.h>
-#include <carom/contact/detection/pair_rows.h>
 #include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
@@ -60,6 +59,42 @@ Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
 
 ConvexOutline view(const BodyOutline& outline, const Vec<2>* vertices) {
   return {{vertices, outline.vertices.size()}, outline.radius};
+}
+
+/// Outlines of the contacts of the step before. Mostly those contacts are the same as in the step before
+/// that.
+void look_up_lasting(const BodyOutlines& outlines, const std::vector<ConstraintKey>& keys,
+                     BodyContactSearch& memory) {
+  if (memory.lasting == keys) return;
+  memory.lasting = keys;
+  memory.pairs_of_lasting.clear();
+  for (const ConstraintKey& key : keys) {
+    const bool of_bodies = key.b.owner == FeatureKey::Owner::shape;
+    memory.pairs_of_lasting.emplace_back(of_bodies ? outlines.find(key.a) : none,
+                                         of_bodies ? outlines.find(key.b) : none);
+  }
+}
+
+/// Vertices and bodies of all outlines where they are.
+void place(const BodyOutlines& outlines, const BodySlots& bodies, const ContactQuery& query,
+           BodyContactSearch& memory) {
+  const std::vector<BodyOutline>& list = outlines.list();
+  memory.placed.resize(outlines.vertices().size());
+  memory.sides.resize(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const BodySlot slot = bodies[list[i].body];
+    outlines.place(list[i], slot, query.state, query.evaluation,
+                   memory.placed.data() + list[i].vertices.begin);
+    const double* const centre = query.state.q + slot.q;
+    memory.sides[i] = {list[i].body, slot.v, static_cast<int>(slot.v_size), {centre[0], centre[1]}};
+  }
+}
+
+/// Writes which contact it is, and its law.
+void name_contact(const ConstraintKey& key, const Surface& law, Constraint& out) {
+  out.key = key;
+  out.law = law;
+  out.friction = law.friction;
 }
 
 }  // namespace
@@ -123,9 +158,8 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
 void BodyContacts::add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const {
   auto& pairs = memory.pairs;
   const std::size_t known = pairs.size();
-  for (const ConstraintKey& key : query.lasting->keys()) {
-    if (key.b.owner != FeatureKey::Owner::shape) continue;
-    const std::pair pair(outlines_.find(key.a), outlines_.find(key.b));
+  look_up_lasting(outlines_, query.lasting->keys(), memory);
+  for (const std::pair<Index, Index>& pair : memory.pairs_of_lasting) {
     if (pair.first == none || pair.second == none) continue;
     if (are_within(memory.boxes[pair.first], memory.boxes[pair.second], query.margin)) continue;
     if (may_touch(outlines_.list()[pair.first], outlines_.list()[pair.second])) pairs.push_back(pair);
@@ -139,7 +173,7 @@ std::span<const BodyTouch> BodyContacts::find_touching(const ContactQuery& query
                                                        BodyContactSearch& memory) const {
   memory.touching.clear();
   if (empty()) return {};
-  outlines_.place(*assembly_, query.state, query.evaluation, memory.placed);
+  place(outlines_, assembly_->layout()->bodies(), query, memory);
   collect_pairs(query, memory);
   for (const auto& [i, j] : memory.pairs) add(i, j, query, memory);
   return memory.touching;
@@ -153,16 +187,23 @@ void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
 /// Adds the contacts of two outlines.
 void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const {
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
-  std::array<GapPoint, 2> found;
-  const int count = find_gaps(view(a, memory.placed.data() + a.vertices.begin),
-                              view(b, memory.placed.data() + b.vertices.begin),
-                              query.lasting == nullptr ? query.margin : any_gap, found);
-  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    if (gap.gap <= query.margin) {
-      memory.touching.push_back({i, j, gap, 0.0});
-    } else if (query.lasting->contains(key_of(a, b, gap))) {
-      add_lasting({i, j, gap, gap.gap / query.lasting->step()}, query, memory);
+  const double margin = query.lasting == nullptr ? query.margin : any_gap;
+  const ConvexOutline of_a = view(a, memory.placed.data() + a.vertices.begin),
+                      of_b = view(b, memory.placed.data() + b.vertices.begin);
+  const auto add_if_any = [&](const BodyTouch& touch) {
+    if (touch.gap.gap <= query.margin) {
+      memory.touching.push_back(touch);
+    } else if (query.lasting != nullptr && query.lasting->contains(key_of(a, b, touch.gap))) {
+      add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step()}, query, memory);
     }
+  };
+  if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
+    return add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0});
+  }
+  std::array<GapPoint, 2> found;
+  const int count = find_gaps(of_a, of_b, margin, found);
+  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
+    add_if_any({i, j, gap, 0.0});
   }
 }
 
@@ -182,6 +223,15 @@ void BodyContacts::write(const BodyTouch& touch, const StateView& state, Constra
   out.allowed_approach = touch.allowed_approach;
 }
 
+void BodyContacts::write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
+                              Constraint& out) const {
+  const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
+  name_contact(key_of(a, b, touch.gap), *law(a, b), out);
+  fill_rows(memory.sides[touch.a], memory.sides[touch.b], touch.gap, out);
+  if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
+  out.allowed_approach = touch.allowed_approach;
+}
+
 /// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two
 /// vertices it is the one of the outline with fewer.
 ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap) {
@@ -194,9 +244,7 @@ ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, c
 void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b,
                         const GapPoint& gap, const StateView& state, Constraint& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
-  out.key = key;
-  out.law = *law(a, b);
-  out.friction = out.law.friction;
+  name_contact(key, *law(a, b), out);
   fill_pair_rows(PairSide::of_body(bodies[a.body], a.body, a.radius, state),
                  PairSide::of_body(bodies[b.body], b.body, b.radius, state), gap, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));

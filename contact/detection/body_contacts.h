@@ -12,6 +12,7 @@
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
+#include <carom/contact/detection/pair_rows.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -34,11 +35,14 @@ struct BodyTouch {
 /// Memory of a search for contacts of bodies: its answer does not depend on it.
 struct BodyContactSearch {
   BroadPhase<2> broad;
-  std::vector<Box<2>> boxes;                   ///< around all outlines
-  std::vector<Vec<2>> placed;                  ///< vertices of all outlines
-  std::vector<std::pair<Index, Index>> pairs;  ///< of outlines that may touch
-  std::vector<BodyTouch> touching;             ///< of those, contacts
-  Constraint trial;                            ///< of one that turning may have opened
+  std::vector<Box<2>> boxes;                              ///< around all outlines
+  std::vector<Vec<2>> placed;                             ///< vertices of all outlines
+  std::vector<RowSide> sides;                             ///< bodies of all outlines
+  std::vector<std::pair<Index, Index>> pairs;             ///< of outlines that may touch
+  std::vector<BodyTouch> touching;                        ///< of those, contacts
+  std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
+  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< their outlines, `none` of other contacts
+  Constraint trial;                                       ///< of one that turning may have opened
 };
 
 /// Outlines of the bodies of an assembly, which of them may touch, and by which law.
@@ -73,6 +77,10 @@ public:
                                                          BodyContactSearch& memory) const;
   /// Writes the contact of such outlines. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
+  /// Likewise without its drift, of one of those that find_touching() has found last. \param out as made by
+  /// default
+  void write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
+                  Constraint& out) const;
   /// Law of such a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const {
     return *law(outlines_.list()[outlines_.outline_of(pair.feature)], outlines_.list()[pair.outline]);

@@ -85,15 +85,6 @@ Index BodyOutlines::find(const FeatureKey& key) const {
   return none;
 }
 
-void BodyOutlines::place(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
-                         std::vector<Vec<2>>& out) const {
-  out.resize(vertices_.size());
-  const BodySlots& bodies = assembly.layout()->bodies();
-  for (const BodyOutline& outline : list_) {
-    place(outline, bodies[outline.body], state, evaluation, out.data() + outline.vertices.begin);
-  }
-}
-
 void BodyOutlines::place(const BodyOutline& outline, const BodySlot& body, const StateView& state,
                          const Evaluation& evaluation, Vec<2>* out) const {
   const Vec<2> centre = Eigen::Map<const Vec<2>>(state.q + body.q);

@@ -58,11 +58,8 @@ public:
   /// Place of the outline of a key; `none` if there is none.
   [[nodiscard]] Index find(const FeatureKey& key) const;
 
-  /// Writes the vertices of all outlines where their bodies are. The position group of `evaluation` must be
-  /// up to date. \param out vertices().size() points
-  void place(const Assembly& assembly, const StateView& state, const Evaluation& evaluation,
-             std::vector<Vec<2>>& out) const;
-  /// Likewise of one outline. \param out as many points as it has vertices
+  /// Writes the vertices of an outline where its body is. The position group of `evaluation` must be up to
+  /// date. \param out as many points as it has vertices
   void place(const BodyOutline& outline, const BodySlot& body, const StateView& state,
              const Evaluation& evaluation, Vec<2>* out) const;
 

@@ -48,7 +48,7 @@ Vec<2> material_rate(const PairSide& side, const Vec<2>& point, const Vec<2>& po
 }
 
 /// Writes a side's columns of a row; returns where the next ones begin.
-double* write_columns(const PairSide& side, double sign, const Vec<2>& direction, const Vec<2>& point,
+double* write_columns(const RowSide& side, double sign, const Vec<2>& direction, const Vec<2>& point,
                       double* row) {
   if (side.columns == 0) return row;
   row[0] = sign * direction[0];
@@ -88,7 +88,7 @@ PairSide PairSide::of_motion(const GroundMotion& motion, double radius) {
   return side;
 }
 
-void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Constraint& out) {
+void fill_rows(const RowSide& a, const RowSide& b, const GapPoint& at, Constraint& out) {
   const Vec<2>& n = at.normal;
   const Vec<2> t = Space<2>::tangent_frame(n)[0], point = meeting_point(at);
   out.clear_bodies();
@@ -96,10 +96,16 @@ void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Co
   if (b.columns > 0) out.add_body(b.body, b.v, b.columns);
   out.rows = 2;
   out.gap = at.gap;
-  for (int i = 0; i < 2; ++i) {
-    const Vec<2>& direction = i == 0 ? n : t;
-    write_columns(b, -1.0, direction, point, write_columns(a, 1.0, direction, point, out.row(i)));
+  double* row = out.jacobian.data();
+  for (const Vec<2>* const direction : {&n, &t}) {
+    row = write_columns(b, -1.0, *direction, point, write_columns(a, 1.0, *direction, point, row));
   }
+}
+
+void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Constraint& out) {
+  fill_rows(a, b, at, out);
+  const Vec<2>& n = at.normal;
+  const Vec<2> t = Space<2>::tangent_frame(n)[0], point = meeting_point(at);
   const Vec<2> velocity_b = b.velocity_at(point), relative = a.velocity_at(point) - velocity_b;
   if (b.columns == 0) {
     out.surface_velocity = {n.dot(velocity_b), t.dot(velocity_b), 0.0};

@@ -21,15 +21,19 @@
 
 namespace carom {
 
-/// One side of a contact: how it moves, and which velocities move it.
-struct CAROM_API PairSide {
-  Index body = none;                 ///< in the order of assembly; `none` of a shape on ground
-  Index v = 0;                       ///< first of its velocities
-  int columns = 0;                   ///< its velocities: 3, 2 of a particle, none of a shape on ground
-  double radius = 0.0;               ///< of its outline [m]
-  Vec<2> centre = Vec<2>::Zero();    ///< centre of mass, or the point about which a shape on ground turns [m]
-  Vec<2> velocity = Vec<2>::Zero();  ///< of that [m/s]
-  double spin = 0.0;                 ///< [rad/s]
+/// One side of a contact: which velocities move it.
+struct RowSide {
+  Index body = none;               ///< in the order of assembly; `none` of a shape on ground
+  Index v = 0;                     ///< first of its velocities
+  int columns = 0;                 ///< its velocities: 3, 2 of a particle, none of a shape on ground
+  Vec<2> centre = Vec<2>::Zero();  ///< centre of mass, or the point about which a shape on ground turns [m]
+};
+
+/// Likewise, and how it moves.
+struct CAROM_API PairSide : RowSide {
+  double radius = 0.0;                   ///< of its outline [m]
+  Vec<2> velocity = Vec<2>::Zero();      ///< of that [m/s]
+  double spin = 0.0;                     ///< [rad/s]
   Vec<2> acceleration = Vec<2>::Zero();  ///< as prescribed, of a shape on ground; else zero [m/s^2]
   double angular_acceleration = 0.0;     ///< likewise [rad/s^2]
 
@@ -51,6 +55,10 @@ struct CAROM_API PairSide {
 /// the place of that at the end of the step) and drift; `out` is as made by default. What it does not write:
 /// key, law, friction. \param a a body \param b another one, or a shape on ground
 CAROM_API void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Constraint& out);
+
+/// Writes bodies, rows, gap and Jacobian only, for whoever asks for no drift; no side is a shape on ground
+/// that moves.
+CAROM_API void fill_rows(const RowSide& a, const RowSide& b, const GapPoint& at, Constraint& out);
 
 /// Writes the surface velocity at the end of a time step, of the place that is touched now and goes with a
 /// shape on ground. \param now,after its motions

@@ -25,19 +25,22 @@ ContactMode interval_mode(const RowSet& set, double impulse, double xi, double i
   return std::abs(impulse) <= margin ? ContactMode::open : ContactMode::stick;
 }
 
+ContactMode mode_of_planar(const ContactProblem& problem, const RowGroup& group,
+                           std::span<const double> impulse, std::span<const double> xi) {
+  const auto first = static_cast<std::size_t>(group.first);
+  const double* const b = problem.vector().data() + first;
+  return planar_mode({problem.diagonal(group.first) + problem.diagonal(group.first + 1), b[0], b[1],
+                      problem.sets()[first + 1].coefficient, impulse[first], impulse[first + 1], xi[first],
+                      xi[first + 1]});
+}
+
 }  // namespace
 
 ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
                          std::span<const double> impulse, std::span<const double> xi) {
+  if (is_planar_contact(problem, group)) return mode_of_planar(problem, group, impulse, xi);
   double trace = 0.0, largest_impulse = 0.0, largest_b = 0.0, velocity_scale = 0.0;
   const auto first = static_cast<std::size_t>(group.first);
-  if (group.size == 2 && problem.sets()[first].kind == SetKind::half_line &&
-      problem.sets()[first + 1].kind == SetKind::bounded_interval) {
-    const auto b = problem.vector();
-    return planar_mode({problem.diagonal(group.first) + problem.diagonal(group.first + 1), b[first],
-                        b[first + 1], problem.sets()[first + 1].coefficient, impulse[first],
-                        impulse[first + 1], xi[first], xi[first + 1]});
-  }
   for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
     const int row = static_cast<int>(i);
     trace += problem.diagonal(row);
@@ -68,6 +71,15 @@ ContactMode contact_mode(const ContactProblem& problem, const RowGroup& group,
     return ContactMode::stick;
   }
   return slip_speed > 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
+}
+
+void contact_modes(const ContactProblem& problem, std::span<const double> impulse, std::span<const double> xi,
+                   std::span<ContactMode> modes) {
+  for (std::size_t g = 0; g < modes.size(); ++g) {
+    const RowGroup& group = problem.groups()[g];
+    modes[g] = is_planar_contact(problem, group) ? mode_of_planar(problem, group, impulse, xi)
+                                                 : contact_mode(problem, group, impulse, xi);
+  }
 }
 
 bool at_mode_boundary(const ContactProblem& problem, std::span<const double> impulse,

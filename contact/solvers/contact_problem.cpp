@@ -2,10 +2,13 @@
 
 #include <carom/contact/solvers/contact_problem.h>
 
+#include <carom/contact/solvers/factor_products.h>
 #include <carom/core/numerics/accurate_dot.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -40,6 +43,16 @@ void check(std::span<const RowSet> sets, int row) {
   }
 }
 
+/// Whether a row and the next one are those of a contact in the plane: nearly all groups, seen at one look.
+bool is_planar_contact(std::span<const RowSet> sets, int row) {
+  constexpr double most = std::numeric_limits<double>::max();
+  const auto first = static_cast<std::size_t>(row);
+  if (first + 1 >= sets.size()) return false;
+  const RowSet &normal = sets[first], &friction = sets[first + 1];
+  return normal.kind == SetKind::half_line && friction.kind == SetKind::bounded_interval &&
+         friction.bound == row && friction.coefficient >= 0.0 && friction.coefficient <= most;
+}
+
 }  // namespace
 
 void ContactProblem::reset(int rows) {
@@ -69,7 +82,7 @@ void ContactProblem::resize_factors(int rows) {
   b_.assign(n, 0.0);
   sets_.assign(n, RowSet{});
   groups_.clear();
-  diagonal_.assign(n, 0.0);
+  diagonal_.resize(n);  // group() writes it
   factors_.resize_rows(rows);
   factored_ = true;
 }
@@ -80,15 +93,16 @@ void ContactProblem::group_factors() {
   for (const RowGroup& group : groups_) {
     const auto first = static_cast<std::size_t>(group.first);
     if (group.size > 2) refuse(group.first, "a contact in factors has one friction row");
+    const std::array<int, 3>& shared = factors_.rows[first].slot;
+    if (std::max(std::max(shared[0], shared[1]), shared[2]) >= slots)
+      refuse(group.first, "a slot that is none");
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
-      const auto& slot = factors_.rows[row].slot;
-      if (slot != factors_.rows[first].slot)
+      const std::array<int, 3>& slot = factors_.rows[row].slot;
+      if (slot[0] != shared[0] || slot[1] != shared[1] || slot[2] != shared[2])
         refuse(static_cast<int>(row), "rows of a contact have the same slots");
-      if (*std::max_element(slot.begin(), slot.end()) >= slots)
-        refuse(static_cast<int>(row), "a slot that is none");
       if (sets_[row].kind == SetKind::bounded_disc)
         refuse(static_cast<int>(row), "no disc in a problem in factors");
-      diagonal_[row] = factors_.diagonal(row);
+      diagonal_[row] = diagonal_of(factors_, factors_.rows[row]);
     }
   }
 }
@@ -109,7 +123,12 @@ ContactProblem ContactProblem::dense() const {
 
 void ContactProblem::group() {
   groups_.clear();
+  groups_.reserve(static_cast<std::size_t>(rows_));
   for (int row = 0; row < rows_; ++row) {
+    if (is_planar_contact(sets_, row)) {
+      groups_.push_back({row++, 2});
+      continue;
+    }
     check(sets_, row);
     const RowSet& set = sets_[static_cast<std::size_t>(row)];
     if (!bounded(set)) {
@@ -137,7 +156,7 @@ void ContactProblem::velocities(std::span<const double> impulse, std::span<doubl
                                 std::vector<double>& velocity) const {
   if (!factored_) return velocities(impulse, xi);
   factors_.respond(impulse, velocity);
-  for (std::size_t i = 0; i < xi.size(); ++i) xi[i] = factors_.along(i, velocity) + b_[i];
+  along_all_rows(factors_, velocity, b_, xi);
 }
 
 void ContactProblem::velocities(std::span<const double> impulse, std::span<double> xi) const {

@@ -2,6 +2,8 @@
 
 #include <carom/contact/solvers/exact_solvers.h>
 
+#include <carom/contact/solvers/planar_certificate.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -152,9 +154,7 @@ void ExactSolvers::conclude(const ContactProblem& problem, std::span<ContactMode
       report.solver = to_string(state.last);
     }
   }
-  for (std::size_t g = 0; g < modes.size(); ++g) {
-    modes[g] = contact_mode(problem, problem.groups()[g], state.impulse, state.xi);
-  }
+  contact_modes(problem, state.impulse, state.xi, modes);
 }
 
 }  // namespace carom

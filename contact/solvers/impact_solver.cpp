@@ -4,6 +4,7 @@
 
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/contact/solvers/impact_path.h>
+#include <carom/contact/solvers/planar_certificate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,9 +94,7 @@ void ImpactSolver::solve(ImpactLaw law, const ContactProblem& problem, std::span
                                                   : expand(problem, restitution, 1.0, chain, report));
   if (!found) return;
   for (std::size_t i = 0; i < n; ++i) answer.impulse[i] = compression_[i] + expansion_[i];
-  for (std::size_t g = 0; g < answer.modes.size(); ++g) {
-    answer.modes[g] = contact_mode(problem, problem.groups()[g], answer.impulse, expanded_);
-  }
+  contact_modes(problem, answer.impulse, expanded_, answer.modes);
 }
 
 /// gamma + W P.

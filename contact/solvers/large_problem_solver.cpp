@@ -3,6 +3,7 @@
 #include <carom/contact/solvers/large_problem_solver.h>
 
 #include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/solvers/planar_certificate.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -99,9 +100,7 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   report.worst_group = found.group;
   report.outcome = judged(found.value);
   if (report.outcome == Outcome::solved) report.reason = {};
-  for (std::size_t g = 0; g < modes.size(); ++g) {
-    modes[g] = contact_mode(problem, problem.groups()[g], impulse, xi);
-  }
+  contact_modes(problem, impulse, xi, modes);
 }
 
 }  // namespace carom

@@ -10,8 +10,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace carom {
+
+/// True if a group is a contact in the plane with friction: in large problems nearly all are.
+[[nodiscard]] inline bool is_planar_contact(const ContactProblem& problem, const RowGroup& group) {
+  const RowSet* const set = problem.sets().data() + group.first;
+  return group.size == 2 && set[0].kind == SetKind::half_line && set[1].kind == SetKind::bounded_interval;
+}
+
+/// Modes of all groups (contact_mode.h). \param modes out, by group
+void contact_modes(const ContactProblem& problem, std::span<const double> impulse, std::span<const double> xi,
+                   std::span<ContactMode> modes);
+
+/// Largest trace of W over the rows of a group [1/kg, ...]; infinity where one is no number.
+[[nodiscard]] double largest_trace(const ContactProblem& problem);
 
 /// One planar contact with an answer: trace of W [1/kg], b [m/s], coefficient of friction, impulses [N s] and
 /// scaled mean velocities [m/s]; rows normal, tangential.

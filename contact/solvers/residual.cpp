@@ -15,8 +15,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double trace(const ContactProblem& problem, const RowGroup& group) {
-  double sum = 0.0;
-  for (int i = group.first; i < group.first + group.size; ++i) sum += problem.diagonal(i);
+  double sum = problem.diagonal(group.first);
+  for (int i = group.first + 1; i < group.first + group.size; ++i) sum += problem.diagonal(i);
   return sum;
 }
 
@@ -25,6 +25,21 @@ double larger(double most, double value) {
   const double magnitude = std::abs(value);
   if (magnitude <= most) return most;
   return std::isnan(magnitude) ? infinity : magnitude;
+}
+
+// distance() of a planar contact; raises the scale P* by its own. All in one go: a settled pile costs as many
+// of these as it has contacts, in each step.
+double planar_distance(double friction, const double* p, const double* b, const double* xi, double rho,
+                       double& scale) {
+  const double limit = friction * std::max(p[0], 0.0);
+  const double error_n = std::abs(p[0] - std::max(p[0] - rho * xi[0], 0.0));
+  const double error_t = std::abs(p[1] - std::min(std::max(p[1] - rho * xi[1], -limit), limit));
+  const double size = std::max(std::max(std::abs(p[0]), std::abs(p[1])),
+                               std::max(std::abs(b[0] * rho), std::abs(b[1] * rho)));
+  // Sums carry a NaN along where maxima may drop it.
+  const double sum = (error_n + error_t) + (p[0] + p[1]) + (b[0] + b[1]);
+  scale = std::max(scale, std::isnan(sum) ? infinity : size);
+  return std::isnan(sum) ? infinity : std::max(error_n, error_t);
 }
 
 // max over the group's rows of |P - proj_C(P - rho xi)| [N s].
@@ -67,6 +82,12 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
 
 }  // namespace
 
+double largest_trace(const ContactProblem& problem) {
+  double largest = 0.0;
+  for (const RowGroup& group : problem.groups()) largest = larger(largest, trace(problem, group));
+  return largest;
+}
+
 Residual residual(const ContactProblem& problem, std::span<const double> impulse,
                   std::span<const double> xi) {
   if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
@@ -76,8 +97,7 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
                              problem.sets()[1].coefficient, impulse[0], impulse[1], xi[0], xi[1]}),
             0};
   }
-  double largest_trace = 0.0;
-  for (const RowGroup& group : problem.groups()) largest_trace = larger(largest_trace, trace(problem, group));
+  const double largest_trace = carom::largest_trace(problem);
   const double least_trace = largest_trace * negligible_trace;
   const double rho_of_immovable = largest_trace > 0.0 ? 1.0 / largest_trace : 1.0;
 
@@ -88,12 +108,18 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
     const RowGroup& group = problem.groups()[g];
     const double own = trace(problem, group);
     const double rho = own > least_trace ? 1.0 / own : rho_of_immovable;
-    for (auto i = static_cast<std::size_t>(group.first), n = i + static_cast<std::size_t>(group.size); i < n;
-         ++i) {
-      scale = larger(scale, impulse[i]);
-      scale = larger(scale, problem.vector()[i] * rho);
+    const auto first = static_cast<std::size_t>(group.first);
+    double error = 0.0;
+    if (is_planar_contact(problem, group)) {
+      error = planar_distance(problem.sets()[first + 1].coefficient, &impulse[first],
+                              &problem.vector()[first], &xi[first], rho, scale);
+    } else {
+      for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
+        scale = larger(scale, impulse[i]);
+        scale = larger(scale, problem.vector()[i] * rho);
+      }
+      error = distance(problem, group, impulse, xi, rho);
     }
-    const double error = distance(problem, group, impulse, xi, rho);
     if (worst.group < 0 || error > worst.value) worst = {error, static_cast<int>(g)};
   }
   if (worst.value == 0.0 && scale < infinity) return worst;

@@ -2,6 +2,7 @@
 
 #include <carom/contact/solvers/sweep_packs.h>
 
+#include <carom/contact/solvers/planar_certificate.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/single_contact.h>
 
@@ -35,12 +36,7 @@ void SweepPacks::scale_masses(const ResponseFactors& factors) {
 
 /// Where a group cannot move, rho is that of the most movable one (residual.h).
 void SweepPacks::find_least_trace(const ContactProblem& problem) {
-  double largest = 0.0;
-  for (const RowGroup& group : problem.groups()) {
-    double trace = problem.diagonal(group.first);
-    if (group.size > 1) trace += problem.diagonal(group.first + 1);
-    largest = std::max(largest, trace);
-  }
+  const double largest = largest_trace(problem);
   least_trace_ = largest * negligible_trace;
   immovable_rho_ = largest > 0.0 ? 1.0 / largest : 1.0;
 }

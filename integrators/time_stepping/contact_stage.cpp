@@ -28,16 +28,22 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
   for (SolverChain& chain : chains_) chain.set_budget(budget_of(options));
 }
 
+/// Forgets the problems of the island before.
+void ContactStage::begin(const StepIsland& island) {
+  first_ = island.constraints.size() >= factored_constraints ? 0 : 1;
+  in_use_ = 0;
+}
+
 IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
-  if (in_use_ == problems_.size()) problems_.emplace_back(of_problems_);
-  IslandProblem& problem = problems_[in_use_++];
+  while (first_ + in_use_ >= problems_.size()) problems_.emplace_back(of_problems_);
+  IslandProblem& problem = problems_[first_ + in_use_++];
   problem.build(constraints, in.start.v.data());
   return problem;
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
                                   StepTrial& trial) {
-  in_use_ = 0;
+  begin(island);
   by_block_ = !together && island.components.size() == 1;
   if (island.constraints.empty()) return;
   trial.expect_impulses();
@@ -94,11 +100,14 @@ void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
   const ContactHistory& before = in.companion.contacts;
   if (before.impulses.empty()) return;
   const double longer = in.step / before.step;
-  start_.clear();
+  start_.resize(problem.before().size());
+  double* start = start_.data();
+  Index next = 0;  // most contacts are those of the step before, in the same order
   for (const Constraint& constraint : problem.constraints()) {
-    const Index known = before.contacts.find(constraint.key);
+    const Index known = before.contacts.find(constraint.key, next);
+    if (known != none) next = known + 1;
     for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-      start_.push_back(known == none ? 0.0 : longer * before.impulses[known][row]);
+      *start++ = known == none ? 0.0 : longer * before.impulses[known][row];
     }
   }
   problem.start_from(start_);
@@ -106,7 +115,7 @@ void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
 
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
                                                   StepTrial& trial) {
-  in_use_ = 0;
+  begin(island);
   struck_.clear();
   if (island.constraints.empty()) return nullptr;
   if (island.joined && one_body_each_) {
@@ -160,8 +169,8 @@ void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    for (; next < in_use_ && problems_[next].constraints().front().body() < block.bodies.end; ++next) {
-      by_block_ = by_block_ && lies_within(problems_[next], block);
+    for (; next < in_use_ && problems()[next].constraints().front().body() < block.bodies.end; ++next) {
+      by_block_ = by_block_ && lies_within(problems()[next], block);
     }
     block_problems_[part] = {first, next};
     if (next > first) clear(block.v);
@@ -189,7 +198,7 @@ void ContactStage::solve_block(const StepInput& in, const StepRule& rule, const 
   if (!touches(part)) return;
   const EndLoads loads{rule.start_of_sum(in, trial), trial.loads_guess.data()};
   for (Index i = block_problems_[part].begin; i < block_problems_[part].end; ++i) {
-    static_cast<void>(solve(in, loads, problems_[i], chains_[block.run - first_run_], trial));
+    static_cast<void>(solve(in, loads, problems()[i], chains_[block.run - first_run_], trial));
   }
 }
 

@@ -40,8 +40,12 @@ public:
   /// Those of some bodies that have constraints, after solve_constant().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
-  [[nodiscard]] std::span<IslandProblem> problems() { return {problems_.data(), in_use_}; }
-  [[nodiscard]] std::span<const IslandProblem> problems() const { return {problems_.data(), in_use_}; }
+  [[nodiscard]] std::span<IslandProblem> problems() {
+    return in_use_ == 0 ? std::span<IslandProblem>() : std::span(problems_).subspan(first_, in_use_);
+  }
+  [[nodiscard]] std::span<const IslandProblem> problems() const {
+    return in_use_ == 0 ? std::span<const IslandProblem>() : std::span(problems_).subspan(first_, in_use_);
+  }
   /// True if problems lie within the blocks of one component each, so that blocks can be solved one by one.
   [[nodiscard]] bool by_block() const { return by_block_; }
   /// True if impulses may change velocities of a block of the only component.
@@ -67,6 +71,7 @@ private:
     const double* start;
     const double* end;
   };
+  void begin(const StepIsland& island);
   IslandProblem& add_problem(const StepInput& in, std::span<Constraint> constraints);
   void start_sweeps(const StepInput& in, IslandProblem& problem);
   template <class F>
@@ -87,7 +92,7 @@ private:
   IslandPartition partition_;
   IslandOptions of_problems_;
   std::vector<IslandProblem> problems_;
-  std::size_t in_use_ = 0;
+  std::size_t first_ = 0, in_use_ = 0;  // of the island; problem 0 is for large ones, to keep its memory
   bool by_block_ = true;
   Index first_run_ = 0;                // of the component at hand
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any

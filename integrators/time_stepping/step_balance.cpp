@@ -1,13 +1,43 @@
 // Problem: tell the ledger, the report and the statistics what a step did, and make the step's end the state.
 
 #include <carom/contact/contact_point.h>
+#include <carom/contact/contact_velocity.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace carom {
+
+namespace {
+
+/// Velocities along the rows of a constraint at the end. \param after of all bodies
+std::array<double, 3> velocities_after(const Constraint& at, const double* after) {
+  if (at.rows == 2) {
+    const std::array<double, 2> both = times_both_rows(at, after);
+    return {both[0] - at.surface_velocity_after[0], both[1] - at.surface_velocity_after[1], 0.0};
+  }
+  std::array<double, 3> all{};
+  for (int row = 0; row < at.rows; ++row) {
+    all[static_cast<std::size_t>(row)] = at.velocity_after(row, after);
+  }
+  return all;
+}
+
+/// Constraint::speed() of the rows of a constraint.
+std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
+  if (at.rows == 2) {
+    const std::array<double, 2> both = speeds_of_both_rows(at, velocities);
+    return {both[0], both[1], 0.0};
+  }
+  std::array<double, 3> all{};
+  for (int row = 0; row < at.rows; ++row) all[static_cast<std::size_t>(row)] = at.speed(row, velocities);
+  return all;
+}
+
+}  // namespace
 
 void StepBalance::begin(const StepInput& in) {
   result_.flows = {};
@@ -161,31 +191,33 @@ void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact
   const auto first = static_cast<std::size_t>(problem.first_row(contact));
   const double *const before = problem.before().data() + first, *const impulses =
                                                                     problem.impulses().data() + first;
-  ContactRecord& entry = record(problem, contact);
+  const BodySlot body = assembly_->layout()->bodies()[at.body()];
+  ContactRecord& entry = record(problem, contact, body.serial);
   entry.time = time;
-  const PointOfContact place =
-      point_of_contact(at, in.start.q.data() + assembly_->layout()->bodies()[at.body()].q);
-  entry.point = place.point;
-  entry.normal = place.normal;
+  find_point_of_contact(at, in.start.q.data() + body.q, entry.point, entry.normal);
   entry.impact = before[0] < -capture_speed_;
   impact = impact || entry.impact;
-  double on_surface = 0.0;
-  for (int row = 0; row < at.rows; ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    const double impulse = impulses[i], with = at.velocity_after(row, after);
-    const double work = sum.add(impulse, before[i], with);
-    entry.velocity_before[i] = before[i];
-    entry.velocity_after[i] = with;
+  const std::array<double, 3> with = velocities_after(at, after);
+  ImpulseWork works = sum;
+  double all = 0.0, on_surface = 0.0;
+  const auto book_row = [&](std::size_t i) {  // row by row: a loop over two or three costs more than they do
+    const double impulse = impulses[i], gamma = before[i];
+    const double work = works.add(impulse, gamma, with[i]);
+    all += work;
+    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
+    entry.velocity_before[i] = gamma;
+    entry.velocity_after[i] = with[i];
     entry.impulse[i] = impulse;
     entry.work[i] = work;
-    entry.contact_work += work;
-    const EnergyFlow line = entry.impact
-                                ? (row == 0 ? EnergyFlow::impact_normal : EnergyFlow::impact_tangential)
-                                : (row == 0 ? EnergyFlow::contact_normal : EnergyFlow::sliding);
-    result_.flows[line] -= work;
-    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
-  }
-  result_.flows[EnergyFlow::external] += on_surface;
+    return work;
+  };
+  result_.flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
+  double& tangential = result_.flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
+  if (at.rows > 1) tangential -= book_row(1);
+  if (at.rows > 2) tangential -= book_row(2);
+  sum = works;
+  entry.contact_work += all;
+  if (on_surface != 0.0) result_.flows[EnergyFlow::external] += on_surface;
 }
 
 /// Rolling resistance, in the record of the contact before it.
@@ -213,14 +245,13 @@ double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& w
   if (!impact) {
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the surfaces.
-    for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
-      const Constraint& contact = problem.constraints()[c];
-      for (int i = 0; i < contact.rows; ++i) {
-        const auto row = static_cast<std::size_t>(problem.first_row(c) + i);
-        const double size = std::abs(problem.problem().vector()[row]) + contact.speed(i, trial.end.v.data());
-        sum.scale += std::abs(problem.impulses()[row]) * size;
-        if (!sum.is_gain()) return 0.0;  // the scale only grows
+    const double *b = problem.problem().vector().data(), *impulse = problem.impulses().data();
+    for (const Constraint& contact : problem.constraints()) {
+      const std::array<double, 3> speeds = speeds_of_rows(contact, trial.end.v.data());
+      for (std::size_t i = 0; i < static_cast<std::size_t>(contact.rows); ++i) {
+        sum.scale += std::abs(*impulse++) * (std::abs(*b++) + speeds[i]);
       }
+      if (!sum.is_gain()) return 0.0;  // the scale only grows
     }
   }
   result_.report.energy_gain += sum.gain;
@@ -259,15 +290,15 @@ void fetch_ahead(const std::vector<ContactRecord>& records) {
 
 }  // namespace
 
-/// Names a contact, and how its problem was solved.
-ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact) {
+/// Names a contact, and how its problem was solved. \param serial of its first body
+ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact, Index serial) {
   const Constraint& at = problem.constraints()[contact];
   const ContactReport& report = problem.report();
   fetch_ahead(result_.report.contacts);
   ContactRecord& entry = result_.report.contacts.emplace_back();
   entry.key = at.key;
   const Layout& layout = *assembly_->layout();
-  entry.body = layout.id(at.body());
+  entry.body = {serial, layout.token()};
   if (at.type == ConstraintType::contact && at.bodies == 2) entry.other = layout.id(at.blocks[1].body);
   if (at.key.b.owner == FeatureKey::Owner::obstacle) {
     entry.obstacle = {at.key.b.serial, assembly_->system().token()};

@@ -84,7 +84,7 @@ private:
   void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
-  ContactRecord& record(const IslandProblem& problem, std::size_t contact);
+  ContactRecord& record(const IslandProblem& problem, std::size_t contact, Index serial);
   void keep_impulses(const IslandProblem& problem);
 
   const Assembly* assembly_;

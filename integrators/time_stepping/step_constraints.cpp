@@ -18,7 +18,8 @@ constexpr double rounding = 1e-12;
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
-      rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0},
+      rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0,
+             options.impacts == ImpactTimes::located},
       islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
@@ -152,7 +153,11 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       constraints_.push_back(rolling_resistance(constraints_.back(), nullptr));
       continue;
     }
-    bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
+    if (rules_.drifts) {
+      bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
+    } else {
+      bodies.write_rows(touching[source], search_, in.start.view(), constraints_.emplace_back());
+    }
     take_sticking({&constraints_.back(), 1});
   }
   islands_.take(constraints_);

@@ -76,6 +76,7 @@ private:
   struct {
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
+    bool drifts;                      // contacts of two bodies need their drifts
     Parting parting = Parting::acts;  // in the last find()
     bool by_part = false;             // large batches go part by part, likewise
     bool in_parts = false;            // allow_parts()

@@ -2,6 +2,7 @@
 
 #include <carom/integrators/time_stepping/step_islands.h>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -46,6 +47,11 @@ void StepIslands::part(std::span<const Range> batches) {
 
 std::span<const Index> StepIslands::find(std::span<const Range> batches,
                                          std::span<const JoinedNodes> joined) {
+  // Islands follow from what is joined alone; at rest that stays the same step after step.
+  const bool same = apart_ == nullptr && !islands_.empty() &&
+                    std::equal(joined.begin(), joined.end(), known_.begin(), known_.end());
+  if (same) return partition_.order();
+  known_.assign(joined.begin(), joined.end());
   partition_.arrange(joined, static_cast<Index>(alone_.size()));
   order_components();
   add_islands(batches, joined);

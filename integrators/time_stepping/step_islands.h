@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Islands of a step: components that constraints join while these are active. They are found anew in every
-/// step and are the unit of its coupling iteration.
+/// Islands of a step: components that constraints join while these are active. They are found in every step,
+/// anew where constraints join others than in the step before, and are the unit of its coupling iteration.
 
 #include <carom/contact/island_partition.h>
 #include <carom/core/assembly.h>
@@ -55,6 +55,7 @@ private:
   std::vector<Range> ranges_;          // of joined_
   std::vector<StepIsland> islands_;
   std::vector<Range> constraints_;  // of each island; empty where batches are the islands
+  std::vector<JoinedNodes> known_;  // components that the constraints of the last find() joined
   const Range* apart_ = nullptr;    // the batches that are the islands; null where constraints join some
   IslandPartition partition_;
 };

@@ -85,6 +85,37 @@ TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
 }
 
 /// Uncoupled bodies are one island; what a constraint joins leaves it for as long as it acts.
+/// Order of constraints, and components and constraints of the islands.
+std::vector<std::vector<Index>> found(StepIslands& islands, std::span<const Range> batches,
+                                      std::span<const JoinedNodes> joined) {
+  const std::span<const Index> order = islands.find(batches, joined);
+  std::vector<std::vector<Index>> out{{order.begin(), order.end()}};
+  std::vector<Constraint> constraints(joined.size());
+  islands.take(constraints);
+  for (const StepIsland& island : islands.list()) {
+    out.push_back(components(island));
+    out.push_back({static_cast<Index>(island.constraints.size()), island.joined ? 1U : 0U});
+    for (const Range range : island.batches) out.insert(out.end(), {{range.begin, range.end}});
+  }
+  return out;
+}
+
+TEST(StepIslands, WhatIsKnownFromTheStepBeforeIsWhatIsFoundAnew) {
+  const Assembly assembly = particles();
+  const std::span<const Range> batches = assembly.batches();
+  const std::vector<JoinedNodes> pair{{0, 1}}, other{{2, 3}}, chain{{0, 1}, {1, 1}, {2, 1}},
+      turned{{0, 2}, {1, 1}, {2, 1}}, apart{{0, 1}, {2, 3}};
+  StepIslands kept(assembly);
+  for (const auto* const joined : {&pair, &pair, &other, &chain, &chain, &turned, &apart, &apart, &chain}) {
+    StepIslands fresh(assembly);
+    const std::vector<std::vector<Index>> anew = found(fresh, batches, *joined);
+    EXPECT_EQ(found(kept, batches, *joined), anew);
+    EXPECT_EQ(found(kept, batches, *joined), anew);
+    kept.find(batches);  // a step in which nothing joins
+    EXPECT_EQ(found(kept, batches, *joined), anew);
+  }
+}
+
 TEST(StepIslands, BatchesStayTogetherUnlessConstraintsJoin) {
   System system;
   for (int i = 0; i < 6; ++i) system.add(Particle{.mass = 1.0, .position = {1.0 * i, 0.0}});
