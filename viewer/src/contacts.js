@@ -70,7 +70,7 @@ const COLUMNS = (corners, colours) => `
 precision highp sampler2D;
 uniform sampler2D contactPoints, contactNormals, contactImpulses, contactModes, contactImpacts;
 uniform vec3 contactColours[${colours}]; // of the modes, and of an impact
-out vec3 inside;
+flat out vec3 inside;
 ivec2 contact() { int item = gl_VertexID / ${corners}; return ivec2(item % ${PER_ROW}, item / ${PER_ROW}); }
 vec3 colourOf(ivec2 at) {
   bool isImpact = texelFetch(contactImpacts, at, 0).r > 0.0;
@@ -113,7 +113,7 @@ function dots(most, colours, uniforms, order) {
   const mesh = layer(repeated(1, [0], most), uniforms, `
 uniform float dotSize;
 ${COLUMNS(1, colours)}
-out float size;
+flat out float size;
 void main() {
   ivec2 at = contact();
   inside = colourOf(at);
@@ -121,7 +121,7 @@ void main() {
   gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, vec2(0.0));
   gl_PointSize = density * 2.0 * (size + 1.0);
 }`, `
-in vec3 inside; in float size;
+flat in vec3 inside; flat in float size;
 void main() {
   float d = length((2.0 * gl_PointCoord - 1.0) * (size + 1.0)) - size;
   paint = vec4(mix(inside, inside * 0.55, clamp(2.0 + d, 0.0, 1.0)), clamp(0.5 - d, 0.0, 1.0));
@@ -150,7 +150,7 @@ void main() {
   inside = colourOf(at);
   gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, along * u + across * vec2(-u.y, u.x));
 }`, `
-in vec3 inside;
+flat in vec3 inside;
 void main() { paint = vec4(inside, 1.0); }`, order);
   mesh.userData.perItem = triangles.length;
   return mesh;
@@ -173,7 +173,7 @@ void main() {
   inside = colourOf(at);
   gl_Position = projectionMatrix * eye(texelFetch(contactPoints, at, 0).xyz, corner.x * u + corner.y * vec2(-u.y, u.x));
 }`, `
-in vec3 inside;
+flat in vec3 inside;
 void main() { paint = vec4(inside, 1.0); }`, order);
   mesh.userData.perItem = 3;
   return mesh;
