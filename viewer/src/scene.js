@@ -200,9 +200,10 @@ export class RunScene {
     this.renderer.render(this.three, camera.three);
   }
 
-  resize() {
+  /** Takes the size of the canvas. most: dots of the screen that a pixel has on a side, at most. */
+  resize(most = 2) {
     const { clientWidth, clientHeight } = this.renderer.domElement;
-    this.uniforms.density.value = Math.min(window.devicePixelRatio, 2);
+    this.uniforms.density.value = Math.min(window.devicePixelRatio, most);
     this.renderer.setPixelRatio(this.uniforms.density.value);
     this.renderer.setSize(clientWidth, clientHeight, false);
   }
