@@ -10,7 +10,8 @@ from carom import Surface, System, TimeStepping, write_view
 from carom.planar import Disc, Gravity, HalfPlane, Polygon, RigidBody, Segment, box, disc, rod
 
 COUNT = """
-const done = arguments[2], page = caromPage, gl = page.scene.renderer.getContext(), { times } = page.recording;
+const done = arguments[2], page = caromPage, gl = page.scene.renderer.getContext();
+const { times } = page.recording;
 page.player.play(false);
 document.getElementById("contacts").checked || document.getElementById("contacts").click();
 page.camera.scale = arguments[0]; // pixels of a metre
@@ -20,7 +21,7 @@ for (const part of [0.2, 0.4]) { // what is used the first time is made once
   page.draw();
 }
 const found = { calls: 0, draws: 0, corners: 0, bytes: 0 }, original = {};
-const size = (words) => words.reduce((sum, word) => sum + (ArrayBuffer.isView(word) ? word.byteLength : 0), 0);
+const size = (words) => words.filter(ArrayBuffer.isView).reduce((sum, word) => sum + word.byteLength, 0);
 for (const name in gl) {
   if (typeof gl[name] !== "function") continue;
   original[name] = gl[name];
