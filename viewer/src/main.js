@@ -112,8 +112,8 @@ class Page {
       camera.show();
     });
     element("names").replaceChildren(...recording.bodies.slice(0, 2000).map((name) => new Option(name)));
-    element("followed").addEventListener("change", (event) => (
-      this.follow(recording.bodies.indexOf(event.target.value.trim()) + 1)));
+    element("followed").addEventListener("change", (event) => this.followNamed(event.target.value.trim()));
+    element("followed").addEventListener("input", (event) => event.target.setCustomValidity(""));
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -129,6 +129,18 @@ class Page {
     actions[event.key]();
   }
 
+  /** Follows a body by its full name, or by its own where only one has it; says so where there is none. */
+  followNamed(name) {
+    const { bodies } = this.recording, field = element("followed");
+    const own = bodies.filter((full) => full.endsWith(` '${name}'`));
+    const pose = bodies.indexOf(own.length === 1 ? own[0] : name) + 1;
+    this.follow(pose);
+    if (pose > 0 || name === "") return;
+    field.value = name; // to be mended
+    field.setCustomValidity(own.length > 1 ? `${own.length} bodies have this name` : "there is no body of this name");
+    field.reportValidity();
+  }
+
   /** Follows the body of a pose; 0: none. */
   follow(pose) {
     const { camera, scene, recording } = this;
@@ -136,6 +148,7 @@ class Page {
     camera.last = null;
     camera.follows = isBody ? () => scene.poses.place(pose) : () => null;
     element("followed").value = isBody ? recording.bodies[pose - 1] : "";
+    element("followed").setCustomValidity("");
     this.dirty = true;
   }
 
