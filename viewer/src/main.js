@@ -4,6 +4,7 @@ import { Camera } from "./camera.js";
 import { IMPACT, MODES } from "./colours.js";
 import { readRecording, shown } from "./data.js";
 import { EventList } from "./events.js";
+import { Pace } from "./pace.js";
 import { contactAt, poseAt } from "./pick.js";
 import { Player } from "./player.js";
 import { LedgerPlot } from "./plot.js";
@@ -29,6 +30,7 @@ class Page {
     this.events = new EventList(element("events"), this.recording, seek);
     this.plot = new LedgerPlot(
       element("ledger"), element("cursor"), element("legend"), this.recording, (time) => this.player.seek(time));
+    this.pace = new Pace();
     this.frames = 0;
     this.addTexts();
     this.addControls();
@@ -39,6 +41,7 @@ class Page {
     let before = performance.now();
     const frame = (now) => {
       this.player.advance(Math.min(0.25, (now - before) / 1000));
+      if (this.pace.note(now - before, this.player.isPlaying)) this.changePace();
       before = now;
       if (this.dirty) this.draw();
       requestAnimationFrame(frame);
@@ -46,8 +49,15 @@ class Page {
     requestAnimationFrame(frame);
   }
 
+  changePace() {
+    const { isSparing } = this.pace;
+    element("pace").hidden = !isSparing;
+    this.scene.resize(isSparing ? 1 : undefined);
+    this.dirty = true;
+  }
+
   resize() {
-    this.scene.resize();
+    this.scene.resize(this.pace.isSparing ? 1 : undefined);
     this.camera.resize();
     this.plot.resize();
     this.events.resize();
@@ -102,8 +112,8 @@ class Page {
       camera.show();
     });
     element("names").replaceChildren(...recording.bodies.slice(0, 2000).map((name) => new Option(name)));
-    element("followed").addEventListener("change", (event) => (
-      this.follow(recording.bodies.indexOf(event.target.value.trim()) + 1)));
+    element("followed").addEventListener("change", (event) => this.followNamed(event.target.value.trim()));
+    element("followed").addEventListener("input", (event) => event.target.setCustomValidity(""));
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
@@ -119,6 +129,18 @@ class Page {
     actions[event.key]();
   }
 
+  /** Follows a body by its full name, or by its own where only one has it; says so where there is none. */
+  followNamed(name) {
+    const { bodies } = this.recording, field = element("followed");
+    const own = bodies.filter((full) => full.endsWith(` '${name}'`));
+    const pose = bodies.indexOf(own.length === 1 ? own[0] : name) + 1;
+    this.follow(pose);
+    if (pose > 0 || name === "") return;
+    field.value = name; // to be mended
+    field.setCustomValidity(own.length > 1 ? `${own.length} bodies have this name` : "there is no body of this name");
+    field.reportValidity();
+  }
+
   /** Follows the body of a pose; 0: none. */
   follow(pose) {
     const { camera, scene, recording } = this;
@@ -126,6 +148,7 @@ class Page {
     camera.last = null;
     camera.follows = isBody ? () => scene.poses.place(pose) : () => null;
     element("followed").value = isBody ? recording.bodies[pose - 1] : "";
+    element("followed").setCustomValidity("");
     this.dirty = true;
   }
 
@@ -187,6 +210,12 @@ class Page {
     const { player, scene, camera } = this;
     const { sample, fraction } = player.place();
     scene.draw(camera, { sample, fraction, time: player.time, speed: player.speed });
+    if (this.pace.isTimeForControls(performance.now(), player.isPlaying)) this.drawControls(sample);
+    ++this.frames;
+  }
+
+  drawControls(sample) {
+    const { player } = this;
     this.plot.draw(player.time, sample, player.isPlaying);
     this.events.follow(player.time, player.isPlaying);
     element("time").value = player.end > player.start ? (player.time - player.start) / (player.end - player.start) : 0;
@@ -194,7 +223,6 @@ class Page {
     element("play").dataset.playing = String(player.isPlaying);
     element("play").setAttribute("aria-label", player.isPlaying ? "Pause" : "Play");
     this.drawScale();
-    ++this.frames;
   }
 
   /** A round length that is about 100 pixels long. */

@@ -36,13 +36,6 @@ function counterClockwise(points) {
   return turned;
 }
 
-/** Triangles of a convex polygon, by the numbers of its corners. */
-export function fan(points) {
-  const out = [];
-  for (let i = 2; i < points.length / 2; ++i) out.push(0, i - 1, i);
-  return out;
-}
-
 /** Lines along points of one pose. */
 export function along(pose, points, isClosed, width, colour) {
   const list = [], count = points.length / 2;

@@ -1,11 +1,13 @@
 // The scene: what the recording has, as layers, and what changes with time in them.
 
 import { Color, OrthographicCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { polygons, rounds, smallRounds } from "./bodies.js";
 import * as colours from "./colours.js";
 import { Contacts } from "./contacts.js";
 import { lastNotAfter } from "./data.js";
-import { capsules, fills, lines, Marks, smallDiscs } from "./layers.js";
-import { along, fan, link, widened } from "./outlines.js";
+import { fills, lines } from "./layers.js";
+import { Marks } from "./marks.js";
+import { along, link, widened } from "./outlines.js";
 import { Poses } from "./poses.js";
 import { around, plain, thickened } from "./solids.js";
 import { Space } from "./space.js";
@@ -14,7 +16,7 @@ const FLASH = 0.35; // seconds on the screen that the mark of an event is seen
 const MOST_FLASHES = 400;
 const CLEAR_FLASHES = 20; // the marks of older events are fainter, so that many do not hide the bodies
 const ARROW = [10, 60]; // least and most pixels of the arrow of a large impulse, three bodies long between
-const SMALL = 4; // pixels of the radius up to which discs are points
+const SMALL = 4; // pixels from the middle to the end up to which discs and capsules are points
 const DOT = [0.8, 2.2]; // least and most pixels of the radius of a contact's mark
 
 const within = ([least, most], value) => Math.min(Math.max(value, least), most);
@@ -26,7 +28,9 @@ export class RunScene {
   constructor(canvas, recording) {
     this.recording = recording;
     this.poses = new Poses(recording);
-    this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    // Nothing shines through an opaque picture, which the browser need not mix with the page behind it.
+    const context = canvas.getContext("webgl2", { alpha: false, antialias: false, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.setClearColor(new Color("#fbfbf9"), 1);
     this.three = new Scene();
     this.uniforms = {
@@ -65,7 +69,7 @@ export class RunScene {
   showSpace(on) {
     if (on && !this.space) {
       const solids = this.isSpatial ? this.recording.solids : thickened(this.recording, this.bodySize);
-      this.space = new Space(this.three, solids, this.uniforms, (pose) => this.look(pose), this.bounds, this.frame);
+      this.space = new Space(this.three, solids, this.uniforms, (pose) => this.fill(pose), this.bounds, this.frame);
     }
     if (this.space) this.space.visible = on;
     for (const mesh of this.planar) mesh.visible = !on;
@@ -82,12 +86,8 @@ export class RunScene {
 
   isGround(pose) { return pose === 0 || pose > this.recording.bodies.length; }
 
-  look(pose) {
-    const ground = this.isGround(pose);
-    return {
-      fill: colours.rgb(ground ? colours.GROUND : colours.BODIES[(pose - 1) % colours.BODIES.length]),
-      edge: colours.rgb(ground ? colours.GROUND_EDGE : colours.BODY_EDGE),
-    };
+  fill(pose) {
+    return colours.rgb(this.isGround(pose) ? colours.GROUND : colours.BODIES[(pose - 1) % colours.BODIES.length]);
   }
 
   addGround() {
@@ -101,19 +101,20 @@ export class RunScene {
   addBodies() {
     const { recording, uniforms } = this;
     const round = recording.capsules.map(([pose, ax, ay, bx, by, radius]) => (
-      { pose, ax, ay, bx, by, radius, ...this.look(pose) }));
-    const outlines = recording.polygons.map(([pose, radius, points]) => ({ pose, points: widened(points, radius) }));
-    const bodies = round.filter((item) => !this.isGround(item.pose));
-    const isDisc = ({ ax, ay, bx, by }) => ax === bx && ay === by;
-    const discs = bodies.filter(isDisc), largest = discs.reduce((most, { radius }) => Math.max(most, radius), 0);
-    this.discs = { largest, small: smallDiscs(discs, uniforms, 5), large: capsules(discs, uniforms, 5) };
+      { pose, ax, ay, bx, by, radius, fill: this.fill(pose) }));
+    const outlines = recording.polygons.map(([pose, radius, points]) => (
+      { pose, points: widened(points, radius), fill: this.fill(pose) }));
+    const onGround = (item) => this.isGround(item.pose), ofBody = (item) => !this.isGround(item.pose);
+    const isDisc = ({ ax, ay, bx, by }) => ax === bx && ay === by, ground = colours.rgb(colours.GROUND_EDGE);
+    const edge = colours.rgb(colours.BODY_EDGE), bodies = round.filter(ofBody);
+    const bySize = (list, areLong) => ({
+      reach: list.reduce((most, { ax, ay, bx, by, radius }) => Math.max(most, radius + 0.5 * Math.hypot(bx - ax, by - ay)), 0),
+      small: smallRounds(list, areLong, edge, uniforms, 5), large: rounds(list, edge, uniforms, 5),
+    });
+    this.rounds = [bySize(bodies.filter((item) => !isDisc(item)), true), bySize(bodies.filter(isDisc), false)];
     this.addPlanar(
-      capsules(round.filter((item) => this.isGround(item.pose)), uniforms, 2),
-      fills(outlines.map(({ pose, points }) => (
-        { pose, points, triangles: fan(points), colour: this.look(pose).fill })), uniforms, 3),
-      lines(outlines.flatMap(({ pose, points }) => (
-        along(pose, points, true, 1.4, this.look(pose).edge))), uniforms, 4),
-      capsules(bodies.filter((item) => !isDisc(item)), uniforms, 5), this.discs.small, this.discs.large);
+      rounds(round.filter(onGround), ground, uniforms, 2), polygons(outlines.filter(onGround), ground, uniforms, 3),
+      polygons(outlines.filter(ofBody), edge, uniforms, 4), ...this.rounds.flatMap(({ small, large }) => [small, large]));
   }
 
   addLinks() {
@@ -189,17 +190,20 @@ export class RunScene {
     camera.update();
     if (this.inSpace) this.uniforms.toScene.value = camera.three.matrixWorld;
     this.uniforms.pixel.value = 1 / camera.scale;
-    const isSmall = this.discs.largest * camera.scale <= SMALL;
-    this.discs.small.visible = !this.inSpace && isSmall;
-    this.discs.large.visible = !this.inSpace && !isSmall;
+    for (const { reach, small, large } of this.rounds) {
+      const isSmall = reach * camera.scale <= SMALL;
+      small.visible = !this.inSpace && isSmall;
+      large.visible = !this.inSpace && !isSmall;
+    }
     this.uniforms.arrowScale.value =
       this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
     this.renderer.render(this.three, camera.three);
   }
 
-  resize() {
+  /** Takes the size of the canvas. most: dots of the screen that a pixel has on a side, at most. */
+  resize(most = 2) {
     const { clientWidth, clientHeight } = this.renderer.domElement;
-    this.uniforms.density.value = Math.min(window.devicePixelRatio, 2);
+    this.uniforms.density.value = Math.min(window.devicePixelRatio, most);
     this.renderer.setPixelRatio(this.uniforms.density.value);
     this.renderer.setSize(clientWidth, clientHeight, false);
   }

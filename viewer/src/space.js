@@ -18,11 +18,11 @@ export function roundLength(rough) {
 }
 
 export class Space {
-  /** bounds and frame: as of the camera. look: colours of a pose. */
-  constructor(three, solids, uniforms, look, bounds, [right, up, back]) {
+  /** bounds and frame: as of the camera. fill: colour of a pose. */
+  constructor(three, solids, uniforms, fill, bounds, [right, up, back]) {
     const middle = [0, 1, 2].map((k) => 0.5 * (bounds[k] + bounds[k + 3]));
     const reach = 0.5 * Math.hypot(...[0, 1, 2].map((k) => bounds[k + 3] - bounds[k]));
-    const all = plain(solids).map((solid) => ({ ...solid, fill: look(solid.pose).fill }));
+    const all = plain(solids).map((solid) => ({ ...solid, fill: fill(solid.pose) }));
     this.depth = 40 * reach;
     this.rays = new Rays(all);
     const towards = unit(plus(plus(up, 0.45, back), -0.4, right));

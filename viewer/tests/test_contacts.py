@@ -65,14 +65,18 @@ def test_contacts_of_a_sample_are_those_that_are_drawn(show):
         page.seek(recording.times[sample])
         page.picture()
         contacts = recording.contacts_at(sample)
-        drawn = page.script(
-            "const columns = Object.values(caromPage.scene.contacts.columns);"
-            "return columns.map(({shown}) => Array.from(shown))"
-        )
-        for numbers, name in zip(drawn, ("point", "normal", "impulse", "mode", "impact")):
-            # Rounded to 24 bits.
-            expected = contacts[name].astype("f4" if contacts[name].ndim > 1 else float).reshape(-1)
-            numpy.testing.assert_array_equal(numpy.array(numbers[: expected.size]), expected, name)
+        drawn = numpy.array(page.script("return Array.from(caromPage.scene.contacts.numbers)")).reshape(-1, 8)
+        drawn, expected = drawn[: len(contacts)], contacts["point"].astype("f4")
+        numpy.testing.assert_array_equal(drawn[:, :2], expected)  # rounded to 24 bits
+        modes = page.script("return caromPage.recording.modes")
+        colours = numpy.where(contacts["impact"], len(modes), contacts["mode"])
+        numpy.testing.assert_array_equal(drawn[:, 3], colours)
+        normal, impulse = contacts["normal"], contacts["impulse"]
+        tangent = numpy.stack([normal[:, 1], -normal[:, 0]], axis=1)
+        vectors = impulse[:, :1] * normal + impulse[:, 1:2] * tangent
+        # Normal and impulse are rounded to 24 bits, and so is what comes of them.
+        assert numpy.abs(drawn[:, 4:6] - vectors).max() <= 4 * 2.0**-24 * numpy.abs(impulse).max()
+        assert not drawn[:, [2, 6, 7]].any()
 
 
 CALLS = """

@@ -201,6 +201,21 @@ def test_a_followed_body_stays_in_the_middle(show):
     assert field.get_attribute("value") == ""
 
 
+def test_a_body_is_followed_by_its_own_name(show):
+    page = show("everything")
+    field = page.element("followed")
+    field.send_keys("ball", Keys.ENTER)
+    assert field.get_attribute("value") == "rigid body 'ball'"
+    assert page.script("return caromPage.camera.follows()[0]") == pytest.approx(1.2, abs=1e-6)
+    field.clear()
+    field.send_keys("bal", Keys.ENTER)
+    assert field.get_attribute("value") == "bal"  # and not without a word
+    assert field.get_property("validationMessage") == "there is no body of this name"
+    assert page.script("return caromPage.camera.follows()") is None
+    page.element("fit").click()
+    assert field.get_property("validationMessage") == ""
+
+
 def test_the_pointer_shows_names(show):
     page = show("everything")
     page.point_at(*place(page.recording, "brick", 0))
