@@ -111,6 +111,15 @@ TEST(EventPiles, DiscsThatBounceAndWhoseForcesAreNotUniqueComeToRest) {
   EXPECT_EQ(runs.at_rest, 1);
 }
 
+// Three discs in a row on a wall, of which the outer ones roll and the middle one slides: its normal force is
+// not unique, and with it the friction that moves them. Forces that were shared out so that margins are
+// largest moved them as the answer did, those that the flow had did not: one event after the other.
+TEST(EventPiles, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
+  Runs runs;
+  run({20, true, 0.5, 0.3, 5}, 0.9, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 // A rounded corner rolls off the end of an edge in the instant of an impact: its force is that of the corner.
 TEST(EventPiles, ModesAreThoseOfTheFeatureThatComesNext) {
   Runs runs;
