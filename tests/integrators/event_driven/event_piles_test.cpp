@@ -120,6 +120,15 @@ TEST(EventPiles, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
   EXPECT_EQ(runs.failed, 0);
 }
 
+// A step of two of these boxes was wrong far behind its own event, and interpolated in front of it too: the
+// search for meetings looked at a million places.
+TEST(EventPiles, MeetingsAreSearchedInTheMotionThatIs) {
+  const RandomPile pile({4, false, 0.0, 0.5, 3, true});
+  Simulation simulation(pile.system(), EventDriven{.record_events = false});
+  simulation.run_until(0.81);
+  EXPECT_LT(simulation.statistics().flow_evaluations, 100'000);
+}
+
 // A rounded corner rolls off the end of an edge in the instant of an impact: its force is that of the corner.
 TEST(EventPiles, ModesAreThoseOfTheFeatureThatComesNext) {
   Runs runs;
