@@ -73,6 +73,12 @@ public:
     if (contacts_.empty()) return {};  // no forces were asked for
     return memory_->pivots;
   }
+  /// Calls f(first, numbers) for every change of the forces of the last add_reactions() that no constraint
+  /// feels, as ForceMargins::for_vectors(): others may have found other forces.
+  template <class F>
+  void for_open_forces(F&& f) const {
+    memory_->margins.for_vectors(f);
+  }
   /// Margins of the forces of the last add_reactions(), a number for every island of bodies that touch. Where
   /// forces are not unique, they are distributed so that the margin is largest.
   void margins(std::vector<ForceMargin>& out);

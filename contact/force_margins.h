@@ -35,6 +35,14 @@ public:
   /// least margin by chance do not set it (ActiveContact::sets_margin).
   /// \param mark whether to find out which contacts set the margin
   void distribute(std::span<ActiveContact> contacts, bool mark);
+  /// Calls f(first, numbers) for every null vector, numbers: a normal and a tangential force for each contact
+  /// of a group in turn, beginning with the contact `first`.
+  template <class F>
+  void for_vectors(F&& f) const {
+    for (const NullVector& vector : vectors_) {
+      f(vector.first, std::span(numbers_).subspan(vector.begin, 2 * (vector.last - vector.first)));
+    }
+  }
   /// Least margin of some contacts, as their forces are.
   [[nodiscard]] double least(std::span<const ActiveContact> contacts);
 

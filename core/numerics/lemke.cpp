@@ -15,9 +15,6 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 // Pivots between two rebuilds of the tableau in the careful pass.
 constexpr int rebuild_interval = 4;
 
-// A first pass whose answer is worse than this is repeated with care.
-constexpr double doubtful_accuracy = 1e-13;
-
 // Pivots below this part of the largest one make a basis singular when it is solved anew.
 constexpr double basis_rank_tolerance = 1e-14;
 
@@ -223,7 +220,9 @@ LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots)
   read_solution(problem, z);
   double error = lcp_residual(problem, z);
   LcpStatus status = first;
-  if (error > doubtful_accuracy && first != LcpStatus::pivot_bound) {
+  // Answers that are accepted are not repeated: most often that ends in the same basis, at many times the
+  // cost.
+  if (error > lcp_accuracy && first != LcpStatus::pivot_bound) {
     // The tableau has lost digits, or has pivoted on rounding: once more, with a tableau that has not.
     best_.assign(z.begin(), z.end());
     status = run(true, most_pivots, answer.pivots);

@@ -31,8 +31,18 @@ std::vector<std::string> nearly_singular(const JointConstraints& joints, const S
 }  // namespace
 
 void GroupLimits::start(double time) {
-  events_.start(time);
-  steps_.start(time);
+  for (const MotionUnknowns::Part& part : motion_->model().parts()) {
+    counts_->events[part.component].start(time);
+    counts_->steps[part.component].start(time);
+  }
+}
+
+/// Counts one more of each component; true if that of any is too often.
+bool GroupLimits::exceeds(std::vector<RateLimit>& counts, double most, double time) {
+  bool too_often = false;
+  for (const MotionUnknowns::Part& part : motion_->model().parts())
+    too_often = counts[part.component].exceeds(most, time) || too_often;
+  return too_often;
 }
 
 double GroupLimits::longest_step() const {
@@ -52,7 +62,7 @@ void GroupLimits::demand_reachable(double target) const {
 void GroupLimits::count_step(double time, const double* y, MotionSample& memory) {
   const GroupModel& model = motion_->model();
   const double limit = model.options->step_limit;
-  if (!steps_.exceeds(limit, time)) return;
+  if (!exceeds(counts_->steps, limit, time)) return;
   const std::string what = "more than " + to_text(limit) + " steps of the integrator per second (step_limit)";
   const System& system = model.assembly->system();
   motion_->sample(time, y, Forces::all, memory);
@@ -69,15 +79,16 @@ void GroupLimits::count_step(double time, const double* y, MotionSample& memory)
   failure_->fail(what, {});
 }
 
-void GroupLimits::count_event(const Event& event, const MotionSample& at) {
+void GroupLimits::count_event(const Event& event, const double* y, MotionSample& memory) {
   const GroupModel& model = motion_->model();
-  if (!events_.exceeds(model.options->event_limit, event.time)) return;
+  if (!exceeds(counts_->events, model.options->event_limit, event.time)) return;
+  motion_->sample(event.time, y, Forces::all, memory);
   std::string what = "more than " + to_text(model.options->event_limit) + " events per second (event_limit)";
   // Where two ends have met, their line turns round by rounding, and with it the force, at one event after
   // the other.
-  const ElementId lost = model.find_without_direction(at, std::numeric_limits<double>::infinity());
+  const ElementId lost = model.find_without_direction(memory, std::numeric_limits<double>::infinity());
   if (lost.valid()) what += "; " + tell_without_direction(*model.assembly, lost);
-  failure_->fail(what, parts_of(event, at));
+  failure_->fail(what, parts_of(event, memory));
 }
 
 /// Names of the parts of an event; empty where it is of no part, or of nothing that touches.
@@ -92,8 +103,17 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
     motion_->contact(event.which, at, contact);
     return {failure_->name(contact)};
   }
-  // A force, or a sum of them: of any that touches.
   std::vector<std::string> names;
+  if (event.guard == Guard::meeting) {
+    Constraint contact;
+    for (std::size_t i = 0; i < motion_->model().pairs.size(); ++i) {
+      if (motion_->model().pairs[i].rolling) continue;
+      motion_->contact(i, at, contact);
+      if (contact.gap <= motion_->model().options->gap_tolerance) names.push_back(failure_->name(contact));
+    }
+    return names;
+  }
+  // A force, or a sum of them: of any that touches.
   names.reserve(closed.size());
   for (const ActiveContact& contact : closed) names.push_back(failure_->name(contact.at));
   return names;

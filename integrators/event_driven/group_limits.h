@@ -10,18 +10,30 @@
 #include <carom/integrators/event_driven/smooth_motion.h>
 #include <carom/integrators/run/work_limits.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace carom {
 
-/// Limits of one clock group, and its counts.
+/// Events and steps of every component, counted through all groups that it becomes part of: groups that join
+/// and part again and again would begin anew each time.
+struct CAROM_API WorkCounts {
+  /// \param components of the model
+  explicit WorkCounts(std::size_t components)
+      : events(components, RateLimit(1000)), steps(components, RateLimit(10'000)) {}
+
+  std::vector<RateLimit> events, steps;  ///< by component
+};
+
+/// Limits of one clock group.
 class CAROM_API GroupLimits {
 public:
-  /// Both must outlive it.
-  GroupLimits(SmoothMotion& motion, const GroupFailure& failure) : motion_(&motion), failure_(&failure) {}
+  /// All must outlive it.
+  GroupLimits(SmoothMotion& motion, const GroupFailure& failure, WorkCounts& counts)
+      : motion_(&motion), failure_(&failure), counts_(&counts) {}
 
-  /// Begins with a new motion.
+  /// Begins with a new motion of its components.
   void start(double time);
   /// Longest step that a flow may make [s].
   [[nodiscard]] double longest_step() const;
@@ -29,17 +41,18 @@ public:
   void demand_reachable(double target) const;
   /// Counts a step; fails beyond the limit. \param y the state \param memory overwritten then
   void count_step(double time, const double* y, MotionSample& memory);
-  /// Counts an event; fails beyond the limit. \param at sample of the state there
-  void count_event(const Event& event, const MotionSample& at);
+  /// Counts an event; fails beyond the limit. \param y the state there \param memory overwritten then
+  void count_event(const Event& event, const double* y, MotionSample& memory);
   /// Fails where there were too many evaluations.
   [[noreturn]] void fail_evaluations() const;
 
 private:
+  [[nodiscard]] bool exceeds(std::vector<RateLimit>& counts, double most, double time);
   [[nodiscard]] std::vector<std::string> parts_of(const Event& event, const MotionSample& at) const;
 
   SmoothMotion* motion_;
   const GroupFailure* failure_;
-  RateLimit events_{1000}, steps_{10'000};
+  WorkCounts* counts_;
 };
 
 }  // namespace carom

@@ -1,12 +1,10 @@
 // Problem: many groups at their own pace, of which few meet at a time.
 
-#include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/group_meetings.h>
 #include <carom/integrators/event_driven/joinable_group.h>
 
 #include <algorithm>
 #include <limits>
-#include <string>
 #include <utility>
 
 namespace carom {
@@ -54,7 +52,6 @@ void GroupMeetings::regroup(const State& state) {
 void GroupMeetings::start(double time) {
   queue_.start(static_cast<Index>(assembly_->components().size()));
   groups_->for_each([&](ClockGroup& group) { queue_.add(time, GroupSet::first_component(group), none); });
-  meetings_.start(time);
   target_ = time;
 }
 
@@ -74,7 +71,7 @@ void GroupMeetings::keep(const Appointment& at, EventBalance& balance) {
     list_.assign({&group, &other});
     search_.add_near(at.time, near(), list_);
     ClockGroup& joined = join(at.time, balance);
-    count_meeting(at.time, joined);
+    JoinableGroup(joined).count_meeting();
     return resolve(joined, balance);
   }
   if (group.is_at_event()) return resolve(group, balance);
@@ -147,20 +144,6 @@ void GroupMeetings::go_on(double time) {
     const double horizon = flights_.horizon(first);
     if (horizon < std::numeric_limits<double>::infinity()) queue_.add(horizon, first, none);
   }
-}
-
-void GroupMeetings::count_meeting(double time, const ClockGroup& group) {
-  const double most = options_->event_limit * static_cast<double>(assembly_->components().size());
-  if (!meetings_.exceeds(most, time)) return;
-  SolverFailure failure;
-  failure.time = from_;
-  std::string message = "event-driven at t = " + to_text(time) + " s: more than " +
-                        to_text(options_->event_limit) + " events per second and component (event_limit)";
-  for (const MotionUnknowns::Part& part : group.motion().model().parts()) {
-    const BodyId body = assembly_->layout()->id(part.ranges.bodies.begin);
-    failure.parts.push_back(assembly_->system().name(body));
-  }
-  throw SolverError(message, std::move(failure));
 }
 
 }  // namespace carom

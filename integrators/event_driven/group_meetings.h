@@ -18,7 +18,6 @@
 #include <carom/integrators/event_driven/meeting_queue.h>
 #include <carom/integrators/event_driven/meeting_search.h>
 #include <carom/integrators/run/event_driven.h>
-#include <carom/integrators/run/work_limits.h>
 
 #include <vector>
 
@@ -44,7 +43,6 @@ private:
   void resolve(ClockGroup& group, EventBalance& balance);
   void part(ClockGroup& group, EventBalance& balance);
   void go_on(double time);
-  void count_meeting(double time, const ClockGroup& group);
   [[nodiscard]] double near() const;
 
   const Assembly* assembly_;
@@ -58,7 +56,6 @@ private:
   State joined_;                      // of groups that are joined or parted
   std::vector<ClockGroup*> list_;     // groups that are joined, or go on
   double from_ = 0.0, target_ = 0.0;  // of the advance [s]
-  RateLimit meetings_{1000};
 };
 
 }  // namespace carom

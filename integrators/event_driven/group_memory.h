@@ -9,6 +9,7 @@
 #include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_limits.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 #include <carom/integrators/event_driven/motion_memory.h>
@@ -25,7 +26,8 @@ struct CAROM_API GroupMemory {
       : motion(assembly),
         flows(options.method, options.relative_tolerance),
         instant(assembly),
-        detection(instant.now) {
+        detection(instant.now),
+        work(assembly.components().size()) {
     motion.limit = EvaluationLimit(options.evaluation_limit, stop);
   }
 
@@ -37,6 +39,7 @@ struct CAROM_API GroupMemory {
   ModeMemory modes;
   DetectionMemory detection;
   UnionFind components;  ///< of a group, that closed contacts connect
+  WorkCounts work;
 };
 
 }  // namespace carom

@@ -12,7 +12,7 @@ GroupParts::GroupParts(const Assembly& assembly, const Detector& contacts, const
       impacts(options, failure, shared.impacts, shared.chain),
       modes(failure, impacts, unbounded, shared.modes, shared.chain),
       projection(motion, failure),
-      limits(motion, failure),
+      limits(motion, failure, shared.work),
       flow(shared.flows, motion),
       output(motion.model().unknowns),
       y(motion.size()) {

@@ -85,7 +85,8 @@ void accept_step(GroupParts& group, EventBalance& balance) {
 
 void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
   group.motion.sample(at.time, at.y.data(), Forces::all, at.now);
-  group.limits.count_event(event, at.now);
+  // A meeting is counted where groups meet: others join at an event of one of them.
+  if (event.guard != Guard::meeting) group.limits.count_event(event, at.y.data(), at.now);
   if (event.guard != Guard::meeting)
     group.modes.note(event, group.motion.active(), 4.0 * group.detector.force_noise(event));
   record_event(event, group, at.balance);

@@ -109,10 +109,16 @@ void JoinableGroup::join(std::span<ClockGroup* const> groups, double time, doubl
   group_->clock = {time, output};
   group_->motion.model().unknowns.gather(state, group_->y);
   group_->output.start(group_->y);
-  group_->limits.start(time);
   group_->detector.start();
   group_->flow.keep_step(step < std::numeric_limits<double>::infinity() ? step : 0.0);
   group_->phase = {Phase::at_event, {time, Guard::meeting}};
+} catch (const EvaluationLimit::Reached&) {
+  group_->limits.fail_evaluations();
+}
+
+void JoinableGroup::count_meeting() try {
+  group_->memory->motion.limit.restart();
+  group_->limits.count_event(group_->phase.event, group_->y.data(), group_->memory->instant.now);
 } catch (const EvaluationLimit::Reached&) {
   group_->limits.fail_evaluations();
 }
@@ -127,7 +133,6 @@ void JoinableGroup::part(const ClockGroup& last, State& state, EventBalance& bal
   group_->impacts.start();
   group_->impacts.take(from.impacts);
   group_->modes.start();
-  group_->limits.start(group_->clock.now);
   group_->detector.start();
   group_->flow.keep_step(from.flow.kept_step());
   std::vector<ActiveContact>& active = group_->motion.active().list();

@@ -39,6 +39,8 @@ public:
   /// touch: that is an event. \param output time of the last good state [s] \param state memory
   void join(std::span<ClockGroup* const> groups, double time, double output, State& state,
             EventBalance& balance);
+  /// Counts the meeting that it began with; fails where its components have too many events.
+  void count_meeting();
   /// Becomes the motion of some components of a group whose resolve() was false. \param state memory
   void part(const ClockGroup& last, State& state, EventBalance& balance);
   /// Writes the output state, as ClockGroup::advance() does.

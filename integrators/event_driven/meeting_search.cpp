@@ -153,23 +153,33 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
   constexpr double unseen = 2.0;
   rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
   rule.level = std::min(0.0, from.gap.value);
-  return located(bodies, gap, rule, from, to, 0);
+  return located(bodies, gap, rule, from, to, {});
 }
 
 /// The first closing between two looks, located. Where a closing that was predicted is none, the motion after
-/// it is searched anew.
+/// it is searched anew. A step may be wrong far behind its own event, and what is interpolated in front of it
+/// too: where that is not the motion that is landed on, the search is made in landings.
 double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
-                              const GapLook& from, const GapLook& to, int depth) {
+                              const GapLook& from, const GapLook& to, const Depth& at_depth) {
   constexpr int most_landings = 60, deepest = 20;
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  constexpr double interpolated = 1e-8;  // errors of looks up to this are those of tolerances [m]
   if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
-  GroupsPath looks(bodies.of_a, bodies.of_b, false, at_), landings(bodies.of_a, bodies.of_b, true, at_);
+  GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, at_),
+      landings(bodies.of_a, bodies.of_b, true, at_);
   double time = first_closing(looks, gap, rule, from, to);
   if (!(time < never)) return never;
   double low = from.time, high = to.time;
   time = std::clamp(time, low, high);
   for (int i = 0; i < most_landings; ++i) {
     const StepPolynomial::End at = gap_in(gap, landings.sample(time));
+    if (i == 0 && !at_depth.landed &&
+        std::abs(gap_in(gap, looks.sample(time)).value - at.value) > interpolated) {
+      const GapLook begin{from.time, true, gap_in(gap, landings.sample(from.time))},
+          end{to.time, true, gap_in(gap, landings.sample(to.time))};
+      rule.level = std::min(0.0, begin.gap.value);
+      return located(bodies, gap, rule, begin, end, {at_depth.halvings, true});
+    }
     const double rest = at.value - rule.level;
     if (std::abs(rest) <= 0.25 * rule.noise && !(at.first >= 0.0 && time == from.time)) return time;
     if (rest > 0.0 && at.first >= 0.0) break;
@@ -178,17 +188,18 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
     const double next = time - rest / at.first;
     time = next > low && next < high && i % 8 != 7 ? next : 0.5 * (low + high);
   }
-  if (depth == deepest) return never;
+  if (at_depth.halvings == deepest) return never;
   // It opens there: halves are searched each by itself.
   const bool progress = time > from.time && time < to.time;
   const double between = progress ? time : 0.5 * (from.time + to.time);
   if (!(between > from.time && between < to.time)) return never;
   const GapLook middle{between, true, gap_in(gap, looks.sample(between))};
+  const Depth deeper{at_depth.halvings + 1, at_depth.landed};
   if (!progress) {
-    const double first = located(bodies, gap, rule, from, middle, depth + 1);
+    const double first = located(bodies, gap, rule, from, middle, deeper);
     if (first < never) return first;
   }
-  return located(bodies, gap, rule, middle, to, depth + 1);
+  return located(bodies, gap, rule, middle, to, deeper);
 }
 
 /// The least gap of two bodies at a time, or a lower bound of it.

@@ -63,11 +63,16 @@ private:
     const BodyFlight &a, &b;
     ClockGroup &of_a, &of_b;
   };
+  /// How deep the search for a closing is.
+  struct Depth {
+    int halvings = 0;
+    bool landed = false;  ///< in motion as accurate as steps
+  };
   template <class F>
   void for_neighbours(ClockGroup& group, F&& f);
   [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, double end);
   [[nodiscard]] double located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
-                               const GapLook& from, const GapLook& to, int depth);
+                               const GapLook& from, const GapLook& to, const Depth& at_depth);
   [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
   [[nodiscard]] double noise(const Bodies& bodies) const;
 

@@ -248,7 +248,7 @@ bool ModeDecision::keeps_motion(SmoothMotion& motion, MotionSample& now,
   BoundIteration once;
   if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))
     return false;
-  return motion_apart(problem_, active_, comparison_) <= same * size_;
+  return motion_apart(problem_, active_, motion.active(), comparison_) <= same * size_;
 }
 
 /// The contacts that stay closed, in their modes.

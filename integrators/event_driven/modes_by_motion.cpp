@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
@@ -77,28 +78,66 @@ bool forces_may_move(std::span<const Constraint> contacts, std::span<const std::
   return slides && closed > 1;
 }
 
-double motion_apart(const IslandProblem& problem, std::span<const ActiveContact> closed,
-                    MotionComparison& memory) {
+namespace {
+
+/// Writes numbers of closed contacts, normal and tangential, to the rows of a problem; 0 elsewhere.
+template <class F>
+void place_numbers(const IslandProblem& problem, std::span<const ActiveContact> closed, F&& numbers_of,
+                   std::vector<double>& rows) {
   const std::span<const Constraint> contacts = problem.constraints();
-  const std::size_t rows = problem.problem().vector().size();
-  memory.force.assign(rows, 0.0);
-  memory.answered.resize(rows);
-  memory.given.resize(rows);
-  auto at = closed.begin();
-  for (std::size_t c = 0; c < contacts.size() && at != closed.end(); ++c) {
-    if (contacts[c].key != at->at.key) continue;
+  rows.assign(problem.problem().vector().size(), 0.0);
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < contacts.size() && at < closed.size(); ++c) {
+    if (contacts[c].key != closed[at].at.key) continue;
     const auto row = static_cast<std::size_t>(problem.first_row(c));
-    if (!contacts[c].has_dry_friction()) memory.force[row] = at->normal;
+    const auto [normal, tangential] = numbers_of(at++);
+    if (!contacts[c].has_dry_friction()) rows[row] = normal;
     if (contacts[c].rows > 1 || contacts[c].has_dry_friction())
-      memory.force[row + static_cast<std::size_t>(contacts[c].tangent_row())] = at->tangential;
-    ++at;
+      rows[row + static_cast<std::size_t>(contacts[c].tangent_row())] = tangential;
   }
-  problem.problem().velocities(problem.impulses(), memory.answered);
-  problem.problem().velocities(memory.force, memory.given);
-  double apart = 0.0;
-  for (std::size_t i = 0; i < rows; ++i)
-    apart = std::max(apart, std::abs(memory.given[i] - memory.answered[i]));
-  return apart;
+}
+
+/// Largest difference between the accelerations that two lists of forces lead to.
+double largest_difference(const IslandProblem& problem, std::span<const double> a, std::span<const double> b,
+                          MotionComparison& memory) {
+  memory.answered.resize(a.size());
+  memory.given.resize(a.size());
+  problem.problem().velocities(a, memory.answered);
+  problem.problem().velocities(b, memory.given);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, std::abs(memory.given[i] - memory.answered[i]));
+  return largest;
+}
+
+/// Largest acceleration by changes of forces that no constraint feels.
+double motion_left_open(const IslandProblem& problem, std::span<const ActiveContact> closed,
+                        const ActiveSet& set, MotionComparison& memory) {
+  double force = 0.0, largest = 0.0;
+  for (const ActiveContact& contact : closed) force = std::max(force, std::abs(contact.normal));
+  set.for_open_forces([&](std::size_t first, std::span<const double> numbers) {
+    double size = 0.0;
+    for (const double number : numbers) size = std::max(size, std::abs(number));
+    const auto change = [&](std::size_t i) {
+      if (i < first || 2 * (i - first) >= numbers.size()) return std::pair(0.0, 0.0);
+      const double* const number = numbers.data() + 2 * (i - first);
+      return std::pair(force / size * number[0], force / size * number[1]);
+    };
+    place_numbers(problem, closed, change, memory.force);
+    memory.none.assign(memory.force.size(), 0.0);
+    largest = std::max(largest, largest_difference(problem, memory.none, memory.force, memory));
+  });
+  return largest;
+}
+
+}  // namespace
+
+double motion_apart(const IslandProblem& problem, std::span<const ActiveContact> closed, const ActiveSet& set,
+                    MotionComparison& memory) {
+  const auto forces = [&](std::size_t i) { return std::pair(closed[i].normal, closed[i].tangential); };
+  place_numbers(problem, closed, forces, memory.force);
+  const double apart = largest_difference(problem, problem.impulses(), memory.force, memory);
+  return std::max(apart, motion_left_open(problem, closed, set, memory));
 }
 
 }  // namespace carom

@@ -13,6 +13,7 @@
 /// its bound or none, which leaves the flow as few unknown forces as the answer has.
 
 #include <carom/contact/active_contact.h>
+#include <carom/contact/active_set.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -34,7 +35,7 @@ struct DecidedContacts {
 
 /// Memory of motion_apart().
 struct MotionComparison {
-  std::vector<double> force, answered, given;  ///< by row
+  std::vector<double> force, none, answered, given;  ///< by row
 };
 
 /// Opens closed candidates whose contacts part.
@@ -59,8 +60,12 @@ inline void take_modes(std::span<const ContactMode> modes, std::span<Candidate> 
   }
 }
 /// Largest difference of the accelerations along rows between the answer of a problem and forces of some of
-/// its contacts, nothing at the others [m/s^2]. \param closed these, in the order of the problem
+/// its contacts, nothing at the others [m/s^2]. Forces that none of their constraints feels may differ by as
+/// much as the forces themselves: where friction of what slips moves bodies by them, which of these forces a
+/// flow has is chance. \param closed these, in the order of the problem \param set that found their forces
+/// last
 [[nodiscard]] CAROM_API double motion_apart(const IslandProblem& problem,
-                                            std::span<const ActiveContact> closed, MotionComparison& memory);
+                                            std::span<const ActiveContact> closed, const ActiveSet& set,
+                                            MotionComparison& memory);
 
 }  // namespace carom

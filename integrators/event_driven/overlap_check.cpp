@@ -16,17 +16,40 @@ OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, c
   found_.reserve(few);
 }
 
-double OverlapCheck::allowed(const State& state) const {
+double allowed_overlap(const EventDriven& options, std::span<const double> places) {
   constexpr double tolerances = 10.0;  // output within a step is less exact than its end
   double size = 0.0;
-  for (const double place : state.q) size = std::max(size, std::abs(place));
-  const double of_integrator = options_->relative_tolerance * size + options_->absolute_tolerance;
-  return tolerances * (options_->gap_tolerance + of_integrator);
+  for (const double place : places) size = std::max(size, std::abs(place));
+  const double of_integrator = options.relative_tolerance * size + options.absolute_tolerance;
+  return tolerances * (options.gap_tolerance + of_integrator);
+}
+
+namespace {
+
+std::string tell_overlap(const std::string& contact, double gap, double allowed) {
+  return "gap of " + contact + " is " + to_text(gap) + " m; allowed: not below " + to_text(allowed) +
+         " m. Its closing was missed";
+}
+
+}  // namespace
+
+void demand_apart(const EventInstant& at, const GroupFailure& failure) {
+  const GroupModel& model = at.motion.model();
+  const Constraint* deepest = nullptr;
+  for (const Constraint& contact : at.contacts) {
+    if (contact.type != ConstraintType::contact || !(contact.gap < (deepest ? deepest->gap : 0.0))) continue;
+    deepest = &contact;
+  }
+  if (deepest == nullptr || deepest->gap >= -model.options->gap_tolerance) return;
+  const double allowed = -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()));
+  if (deepest->gap >= allowed) return;
+  const std::string name = failure.name(*deepest);
+  failure.fail(tell_overlap(name, deepest->gap, allowed), {name});
 }
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
 void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
-  const double allowed_gap = -allowed(state);
+  const double allowed_gap = -allowed_overlap(*options_, state.q);
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();
@@ -52,9 +75,8 @@ void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation
   failure.time = from;
   failure.step = state.time - from;
   failure.parts.push_back(detector_->name(worst));
-  const std::string what = "event-driven at t = " + to_text(state.time) + " s: gap of " +
-                           failure.parts.front() + " is " + to_text(deepest) + " m; allowed: not below " +
-                           to_text(allowed_gap) + " m. Its closing was missed";
+  const std::string what = "event-driven at t = " + to_text(state.time) +
+                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap);
   throw SolverError(what, std::move(failure));
 }
 

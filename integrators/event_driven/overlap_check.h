@@ -2,8 +2,9 @@
 
 /// \file
 /// Nothing overlaps at the end of a step, whatever the search for events has seen: all shapes are looked at
-/// with the contact search of the time-stepping mode, which knows nothing of groups and pairs. A closing that
-/// was missed is an error that names the contact, never a motion of bodies in each other.
+/// with the contact search of the time-stepping mode, which knows nothing of groups and pairs. At events the
+/// contacts of the group that takes part are looked at, which are at hand there. A closing that was missed is
+/// an error that names the contact, never a motion of bodies in each other.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
@@ -11,11 +12,21 @@
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
+#include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/run/event_driven.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
+
+/// How deep shapes may be in each other [m]: ten times the tolerance of gaps, and what the tolerances of the
+/// integrator leave of a place. \param places coordinates of bodies
+[[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places);
+/// Throws SolverError naming the deepest contact of a clock group at an event where one is deeper. \param at
+/// brought to the state
+CAROM_API void demand_apart(const EventInstant& at, const GroupFailure& failure);
 
 /// The check of the states of one model. Keeps memory only.
 class CAROM_API OverlapCheck {
@@ -23,9 +34,6 @@ public:
   /// All must outlive it.
   OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options);
 
-  /// How deep shapes may be in each other at the end of a step [m]: ten times the tolerance of gaps, and what
-  /// the tolerances of the integrator leave of a place.
-  [[nodiscard]] double allowed(const State& state) const;
   /// Throws SolverError naming the deepest contact where one is deeper.
   /// \param evaluation position group up to date \param from begin of the step, the last good state [s]
   void demand_apart(const State& state, const Evaluation& evaluation, double from);

@@ -168,6 +168,25 @@ TEST(EventBadInput, MoreEventsThanAllowed) {
   EXPECT_NEAR(simulation.energy().total(), 9.81 * 5e-6, 1e-12);
 }
 
+// Each impact of a disc on the floor joins the neighbour that it touches, and parts from it again: events are
+// counted through all that.
+TEST(EventBadInput, MoreEventsThanAllowedOfGroupsThatJoinAndPart) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
+  constexpr double radius = 0.1, height = 5e-6;
+  for (const char* const name : {"left disc", "right disc"}) {
+    const double x = system.bodies().empty() ? 0.0 : 2.0 * radius;
+    const BodyId body =
+        system.add(RigidBody{.mass = disc(1.0, radius), .position = {x, radius + height}}, name);
+    system.add(Disc{.body = body, .radius = radius});
+  }
+  Simulation simulation(system, EventDriven{.event_limit = 10.0, .record_events = false});
+  EXPECT_THROWS(SolverError, simulation.run_until(100.0), "event_limit", "10", "disc'", "half-plane 'floor'");
+  EXPECT_LT(simulation.time(), 5.0);  // 1,000 events last 2 s
+}
+
 TEST(EventBadInput, AnEnergyGainThatIsRefused) {
   // The example of the paper with (e_n, e_t) = (1, 0): r_1 = r, r_2 = -r, I = m r^2, mu = 1.
   System system;

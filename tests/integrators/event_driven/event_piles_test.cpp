@@ -111,6 +111,24 @@ TEST(EventPiles, DiscsThatBounceAndWhoseForcesAreNotUniqueComeToRest) {
   EXPECT_EQ(runs.at_rest, 1);
 }
 
+// Three discs in a row on a wall, of which the outer ones roll and the middle one slides: its normal force is
+// not unique, and with it the friction that moves them. Forces that were shared out so that margins are
+// largest moved them as the answer did, those that the flow had did not: one event after the other.
+TEST(EventPiles, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
+  Runs runs;
+  run({20, true, 0.5, 0.3, 5}, 0.9, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
+// A step of two of these boxes was wrong far behind its own event, and interpolated in front of it too: the
+// search for meetings looked at a million places.
+TEST(EventPiles, MeetingsAreSearchedInTheMotionThatIs) {
+  const RandomPile pile({4, false, 0.0, 0.5, 3, true});
+  Simulation simulation(pile.system(), EventDriven{.record_events = false});
+  simulation.run_until(0.81);
+  EXPECT_LT(simulation.statistics().flow_evaluations, 100'000);
+}
+
 // A rounded corner rolls off the end of an edge in the instant of an impact: its force is that of the corner.
 TEST(EventPiles, ModesAreThoseOfTheFeatureThatComesNext) {
   Runs runs;
@@ -199,14 +217,14 @@ TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
   EXPECT_GT(runs.jams, 0);  // else what jams was not tried
-  EXPECT_LE(runs.failed, runs.all / 50);
+  EXPECT_EQ(runs.failed, 0);
   record(runs);
 }
 
 TEST(EventPilesLong, OfSharpPolygons) {
   Runs runs;
   run_all({.bodies = 4, .sharp = true}, 1, 16, 1.5, runs);
-  EXPECT_LE(runs.failed, runs.all / 50);
+  EXPECT_EQ(runs.failed, 0);
   record(runs);
 }
 

@@ -4,11 +4,16 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
+#include <carom/integrators/event_driven/event_balance.h>
+#include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/group_memory.h>
+#include <carom/integrators/event_driven/group_set.h>
 #include <carom/integrators/event_driven/overlap_check.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 
 namespace {
@@ -44,6 +49,30 @@ public:
     return {};
   }
 
+  /// At an event of a group of both.
+  [[nodiscard]] std::string told_at_event() const {
+    const Simulation start(system_, TimeStepping{.step = 1e-3});
+    const Assembly assembly(system_);
+    const Detector detector(assembly);
+    const EventDriven options;
+    GroupMemory memory(assembly, options, nullptr);
+    GroupSet groups(assembly, detector, options, memory);
+    const Index both[] = {0, 1};
+    const std::unique_ptr<ClockGroup> group = groups.make(both);
+    GroupParts& parts = group->parts();
+    parts.motion.model().unknowns.gather(start.state(), parts.y);
+    EventBalance balance;
+    EventInstant at(parts.motion, memory.instant, 0.0, parts.y, balance);
+    at.update();
+    try {
+      demand_apart(at, parts.failure);
+    } catch (const SolverError& error) {
+      EXPECT_EQ(error.failure().parts.size(), 1U);
+      return error.what();
+    }
+    return {};
+  }
+
 private:
   System system_;
 };
@@ -62,6 +91,15 @@ TEST(OverlapCheck, NamesTheDeepestContact) {
   const std::string of_ground = TwoBoxes(-1e-4, -2e-3).told();
   EXPECT_NE(of_ground.find("on half-plane #0"), std::string::npos) << of_ground;
   EXPECT_NE(TwoBoxes(-1.3e-8, 0.0).told(), "");
+}
+
+TEST(OverlapCheck, LooksAtTheContactsOfAnEventToo) {
+  EXPECT_EQ(TwoBoxes(0.01, 0.01).told_at_event(), "");
+  EXPECT_EQ(TwoBoxes(0.0, 0.0).told_at_event(), "");
+  EXPECT_EQ(TwoBoxes(0.01, -1.0e-8).told_at_event(), "");
+  EXPECT_NE(TwoBoxes(0.01, -1.3e-8).told_at_event(), "");
+  const std::string of_ground = TwoBoxes(-1e-4, -2e-3).told_at_event();
+  EXPECT_NE(of_ground.find("on half-plane #0 is -0.002"), std::string::npos) << of_ground;
 }
 
 }  // namespace
