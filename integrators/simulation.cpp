@@ -76,11 +76,9 @@ struct Simulation::Impl {
   StepReport report;
   RecordedEvents events;
   std::size_t unlisted = 0;  // of the latest events
-  bool report_seen = false;
   Callbacks callbacks;
   Log log;
-  bool findings_written = false;
-  bool progress = false;
+  bool report_seen = false, findings_written = false, progress = false;
 };
 
 /// One step, ending at `limit` or the next periodic event at the latest, then all who wait for it.

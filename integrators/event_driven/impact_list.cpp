@@ -1,6 +1,8 @@
 #include <carom/contact/impulse_map.h>
 #include <carom/integrators/event_driven/impact_list.h>
 
+#include <algorithm>
+
 namespace carom {
 
 namespace {
@@ -36,7 +38,7 @@ ContactRecord contact_of(const EventRecord& event, int dimension) {
 
 void list_impacts(const RecordedEvents& events, std::size_t latest, int dimension, StepReport& report) {
   const std::size_t size = events.size();
-  for (std::size_t i = size - latest; i < size; ++i) {
+  for (std::size_t i = size - std::min(latest, size); i < size; ++i) {
     const EventRecord event = events.record(i);
     const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
                            event.kind == EventKind::impact_without_collision;

@@ -37,6 +37,14 @@ std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocit
   return all;
 }
 
+/// Asks for the memory of a record that is soon to be written: of many contacts it is in no cache near by.
+void fetch_ahead(const std::vector<ContactRecord>& records) {
+  constexpr std::size_t ahead = 4, line = 64;
+  if (records.capacity() - records.size() <= ahead) return;
+  const auto* const memory = reinterpret_cast<const std::byte*>(records.data() + records.size() + ahead);
+  for (std::size_t i = 0; i < sizeof(ContactRecord); i += line) __builtin_prefetch(memory + i, 1);
+}
+
 }  // namespace
 
 void StepBalance::begin(const StepInput& in) {
@@ -277,18 +285,6 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   const ContactMode mode = problem.modes()[contact];
   result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
-
-namespace {
-
-/// Asks for the memory of a record that is soon to be written: of many contacts it is in no cache near by.
-void fetch_ahead(const std::vector<ContactRecord>& records) {
-  constexpr std::size_t ahead = 4, line = 64;
-  if (records.capacity() - records.size() <= ahead) return;
-  const auto* const memory = reinterpret_cast<const std::byte*>(records.data() + records.size() + ahead);
-  for (std::size_t i = 0; i < sizeof(ContactRecord); i += line) __builtin_prefetch(memory + i, 1);
-}
-
-}  // namespace
 
 /// Names a contact, and how its problem was solved. \param serial of its first body
 ContactRecord& StepBalance::record(const IslandProblem& problem, std::size_t contact, Index serial) {
