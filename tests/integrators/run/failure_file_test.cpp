@@ -95,7 +95,7 @@ TEST_F(FailureFile, AnswersAtTheCapLeaveTheWorstProblemsOnly) {
   double worst = 0.0;
   simulation.log() = Log(
       [&](LogLevel, std::string_view text) {
-        warned += text.find("see " + directory_.string()) != std::string_view::npos ? 1 : 0;
+        warned += text.find("see " + directory_.string()) != std::string_view::npos ? 1U : 0U;
       },
       LogLevel::warning);
   simulation.observe([&](const Simulation& now) {
@@ -103,7 +103,7 @@ TEST_F(FailureFile, AnswersAtTheCapLeaveTheWorstProblemsOnly) {
     for (const ContactRecord& contact : now.report().contacts) {
       if (contact.outcome == Outcome::accepted_at_cap) residual = std::max(residual, contact.residual);
     }
-    capped_steps += residual > 0.0 ? 1 : 0;
+    capped_steps += residual > 0.0 ? 1U : 0U;
     EXPECT_EQ(now.report().capped_problem.empty(), !(residual > worst)) << now.time();
     worst = std::max(worst, residual);
     if (now.report().capped_problem.empty()) return;
