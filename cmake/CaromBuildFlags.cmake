@@ -19,6 +19,11 @@ function(carom_add_build_flags target)
   if(type STREQUAL "SHARED_LIBRARY" AND NOT APPLE)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
     target_link_options(${target} PRIVATE -Wl,-Bsymbolic-functions)
+    # Several sources are compiled as one, which GCC takes for a reason to inline less: small functions that are
+    # called in every evaluation would be calls.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE --param=large-unit-insns=100000)
+    endif()
     # A structure of some hundred bytes is set and copied by plain moves: the string instructions that GCC takes
     # instead begin slowly, and a step of one body has several of them.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
