@@ -26,6 +26,9 @@ namespace carom::planar {
 /// Joints that are sums of constraint parts, whatever their kind: all that does not depend on its type.
 class CAROM_API CompositeJoints : public JointKind {
 public:
+  ~CompositeJoints() override;
+  CompositeJoints& operator=(const CompositeJoints&) = delete;
+
   void remove(Index slot) override;
   [[nodiscard]] std::string_view label() const override { return label_; }
   [[nodiscard]] int dimension() const override { return 2; }
@@ -50,8 +53,6 @@ protected:
   /// \param with_coordinate joints have a coordinate, the gap of one more part behind the rows
   CompositeJoints(std::string_view label, Index row_count, bool with_coordinate);
   CompositeJoints(const CompositeJoints&);
-  CompositeJoints& operator=(const CompositeJoints&) = delete;
-  ~CompositeJoints() override;
 
   /// Checks and stores the parts of a joint. Throws ModelError.
   void store(const PartCheck& check, const std::vector<ConstraintPart>& constraints);
