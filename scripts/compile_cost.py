@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What a program costs to compile: the one of README.md, beside an empty one with Eigen's core alone, and the
-headers that cost most.
+"""What a program costs to compile: one of ten lines and the one of README.md, beside an empty one with Eigen's
+core alone, and the headers that cost most.
 
     scripts/compile_cost.py [<folder>] [--repeat 5] [--write]
 
@@ -18,10 +18,21 @@ import sys
 import tempfile
 from pathlib import Path
 
-from performance_tables import replace_parts, table
+from performance_figures import replace_parts, table
 
 COMPILERS = ("g++", "clang++")
 HEADERS_LISTED = 10
+TEN_LINES = """#include <carom/carom.h>
+#include <iostream>
+int main() {
+  carom::System system;
+  system.add(carom::planar::Gravity{{0.0, -9.81}});
+  system.add(carom::planar::HalfPlane{.normal = {0.0, 1.0}}, carom::Surface{.friction = 0.3, .normal_restitution = 0.5});
+  system.add(carom::planar::Particle{.mass = 1.0, .position = {0.0, 1.0}}, "ball");
+  carom::Simulation simulation(system, carom::EventDriven{});
+  simulation.run_until(1.0);
+  std::cout << simulation.energy() << "\\n"; }
+"""
 root = Path(__file__).resolve().parent.parent
 
 
@@ -34,6 +45,7 @@ def programs() -> dict[str, str]:
     return {
         "empty, `<Eigen/Core>`": "#include <Eigen/Core>\nint main() {}\n",
         "empty, `<carom/carom.h>`": "#include <carom/carom.h>\nint main() {}\n",
+        "of ten lines": TEN_LINES,
         "that of the README": shown[0],
     }
 
