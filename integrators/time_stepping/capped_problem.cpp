@@ -16,7 +16,6 @@ bool CappedProblem::wants(const IslandProblem& problem) const {
 }
 
 std::string CappedProblem::write() {
-  if (!found_) return {};
   const SolverFailure found = std::move(*found_);
   found_.reset();
   worst_ = found.residual;

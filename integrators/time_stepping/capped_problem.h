@@ -26,11 +26,16 @@ public:
   [[nodiscard]] bool wants(const IslandProblem& problem) const;
   /// Keeps it.
   void keep(SolverFailure found) { found_ = std::move(found); }
-  /// Writes what the step has kept. Returns the file, or why it could not be written; nothing where there is
-  /// none.
-  [[nodiscard]] std::string write();
+  /// Writes what the step has kept. `file` becomes its path, or why it could not be written; empty where
+  /// there is none.
+  void write(std::string& file) {
+    file.clear();
+    if (found_) file = write();
+  }
 
 private:
+  [[nodiscard]] std::string write();
+
   std::string directory_;
   std::optional<SolverFailure> found_;
   double worst_ = 0.0;  // residual of those that were written

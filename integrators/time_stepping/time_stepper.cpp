@@ -74,7 +74,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
-    report.capped_problem = capped_.write();
+    capped_.write(report.capped_problem);
   } catch (const SolverError& error) {
     give_up(in, companion);
     throw with_file(with_place(error, in), parts_.options);
