@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a System notes beside its parts, in containers that programs need not compile.
+/// Names, laws and decisions of a System beside its parts, in containers that programs need not compile.
 
 #include <carom/core/surface_table.h>
 #include <carom/core/system.h>

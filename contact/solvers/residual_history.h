@@ -24,7 +24,7 @@ struct HistoryPoint {
   double residual = 0.0;  ///< of the impulses at hand; dimensionless
 };
 
-/// What one solver did on one problem, from no impulses on.
+/// The residuals of one solver on one problem, from no impulses on.
 struct ResidualHistory {
   std::string_view solver{};  ///< name
   Outcome outcome = Outcome::not_solved;

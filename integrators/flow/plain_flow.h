@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What flows without SUNDIALS have in common: the last step, known by y and the rates at its ends.
+/// The last step of flows without SUNDIALS, known by y and the rates at its ends.
 
 #include <carom/core/export.h>
 #include <carom/integrators/flow/flow.h>

@@ -46,7 +46,7 @@ public:
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;
   /// Constraints join components with joints, which are not solved together.
   [[noreturn]] void fail_joined(std::span<const Constraint> constraints) const;
-  /// What is known of a contact problem: its parts by name, its residual, a copy of it.
+  /// A contact problem as a failure tells it: its parts by name, its residual, a copy of it.
   [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
   /// An energy is not finite.
   [[noreturn]] void fail_account() const;

@@ -57,7 +57,7 @@ public:
   void move(const SweepStages& stages) const;
   /// The loads that the guess led to become the guess, of all blocks.
   void improve(const SweepStages& stages) const;
-  /// What is done with some bodies, one after the other.
+  /// A task for some bodies, called for one range after the other.
   using BodyTask = FunctionRef<void(Range bodies)>;
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
   /// before and after some parts, a few of each thread, whose numbers are at hand meanwhile; or nothing
