@@ -219,13 +219,13 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--interval", type=_duration, metavar="TIME", help="between recorded samples [s]")
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
     command.add_argument("--vtk", type=Path, metavar="SERIES", help="write a series for ParaView (.pvd)")
-    command.set_defaults(action=run)
+    command.set_defaults(action=run, parser=command)
 
     command = commands.add_parser(
         "check", help="look for mistakes in a scene", description=check.__doc__, **texts
     )
     command.add_argument("scene", type=Path)
-    command.set_defaults(action=check)
+    command.set_defaults(action=check, parser=command)
 
     command = commands.add_parser(
         "view", help="make a page of a recording", description=view.__doc__, **texts
@@ -233,7 +233,7 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("recording", type=Path)
     command.add_argument("--output", type=Path, metavar="PAGE", help="else the recording's name with .html")
     command.add_argument("--open", action="store_true", help="open it in the browser")
-    command.set_defaults(action=view)
+    command.set_defaults(action=view, parser=command)
 
     command = commands.add_parser(
         "import", help="make a scene of a robot", description=convert.__doc__, **texts
@@ -241,18 +241,20 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("robot", type=Path, help="a file in URDF or MJCF")
     command.add_argument("scene", type=Path, metavar="scene.json")
     command.add_argument("--plane", choices=list(PLANES), default="xz", help="right and up; xz if not given")
-    command.set_defaults(action=convert)
+    command.set_defaults(action=convert, parser=command)
 
     command = commands.add_parser(
         "schema", help="print the JSON schema of scenes", description=print_schema.__doc__, **texts
     )
-    command.set_defaults(action=print_schema)
+    command.set_defaults(action=print_schema, parser=command)
     return parser
 
 
 def main(words: Optional[list[str]] = None) -> int:
     """Runs the command; words: of the command line, those of the program if None. Returns the exit code."""
-    options = arguments().parse_args(words)
+    options, unknown = arguments().parse_known_args(words)
+    if unknown:
+        options.parser.error(f"unrecognized arguments: {' '.join(unknown)}")  # with the usage of its own command
     try:
         code: int = options.action(options)
         sys.stdout.flush()

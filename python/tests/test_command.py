@@ -90,6 +90,25 @@ def test_check_names_what_it_finds(tmp_path, capsys):
     assert "units: bodies[2].position is 2000 m, 2.0e+07 times shapes[0].radius ('dot'), 0.0001 m" in said
 
 
+def test_check_tells_a_missing_law_once(tmp_path, capsys):
+    system = carom.System()
+    wood, stone = system.material("wood"), system.material("stone")
+    system.add(planar.Particle(mass=1.0, position=(0.0, 1.0), material=wood), name="ball")
+    system.add(planar.HalfPlane(normal=(0.0, 1.0), material=stone), name="floor")
+    carom.save_scene(system, tmp_path / "scene.json")
+    assert main(["check", str(tmp_path / "scene.json")]) == 1
+    said = capsys.readouterr().out
+    assert said.count("\n- ") == 1 and "'ball' on half-plane 'floor': law is not given" in said
+
+
+def test_unknown_options_show_the_usage_of_their_command(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(BALL), "-o", "y"])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert said.startswith("usage: carom run") and "unrecognized arguments: -o y" in said
+
+
 def test_schema_is_printed():
     out = subprocess.run(
         [sys.executable, "-m", "carom", "schema"], check=True, capture_output=True, text=True

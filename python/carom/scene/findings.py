@@ -82,7 +82,9 @@ def _units(system: _core.System) -> list[str]:
 
 
 def _materials(system: _core.System) -> list[str]:
-    """Materials that no law is of."""
+    """Materials that no law is of. None where contacts without law are findings already: it is one mistake."""
+    if any(finding.kind == _core.FindingKind.contact_without_law for finding in system.check()):
+        return []
     materials = [system.material(name) for name in system.materials]
     obstacles = system.obstacles()
     found = []
@@ -101,7 +103,8 @@ def examine(scene: Scene) -> Examined:
         simulation = _core.Simulation(system, scene.mode or _core.TimeStepping())
         mobility = simulation.mobility()
     except _core.Error as error:
-        return Examined(None, [*found, str(error)])
+        refused = str(error)
+        return Examined(None, found if refused in found else [*found, refused])
     for redundant in mobility.redundant:
         others = ", ".join(system.name(joint) for joint in redundant.with_)
         found.append(
