@@ -1,7 +1,8 @@
 // Free discs over a floor, in time stepping: time per disc and step, beside one loop by hand that does the
-// same sweep and account, and beside the same discs as one component.
+// same sweep and account, and beside the same discs as one component; and ensembles of small systems.
 //
-// Names: <what>/<N> for N discs. `per_disc` is in seconds, over one step. And balls event-driven:
+// Names: <what>/<N> for N discs in one system. `per_disc` is in seconds, over one step. ensemble and
+// ensemble_rolling/<N>: N simulations of one disc each, stepped in turn. And balls event-driven:
 // `bytes_per_ball`.
 
 #include <carom/carom.h>
@@ -54,21 +55,21 @@ void count_discs(benchmark::State& state) {
       Counter(static_cast<double>(state.range(0)), Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
-void time_steps(benchmark::State& state, Joined joined, double above) {
-  carom::Simulation simulation(discs(static_cast<int>(state.range(0)), joined, above),
-                               carom::TimeStepping{.step = step});
-  simulation.step();
-  const carom::State begin = simulation.state();
+/// Steps of some simulations, one step of each in turn. They start anew in time.
+void time_steps(benchmark::State& state, std::vector<carom::Simulation>& simulations) {
+  for (carom::Simulation& simulation : simulations) simulation.step();
+  std::vector<carom::State> begin;
+  for (const carom::Simulation& simulation : simulations) begin.push_back(simulation.state());
   std::int64_t allocations = 0;
   std::size_t contacts = 0;
   for (auto _ : state) {
-    if (simulation.time() > longest) {
+    if (simulations.front().time() > longest) {
       state.PauseTiming();
-      simulation.set_state(begin);
+      for (std::size_t i = 0; i < begin.size(); ++i) simulations[i].set_state(begin[i]);
       state.ResumeTiming();
     }
     const std::int64_t before = benchmarks::allocations();
-    contacts += simulation.step().contacts.size();
+    for (carom::Simulation& simulation : simulations) contacts += simulation.step().contacts.size();
     allocations += benchmarks::allocations() - before;
   }
   count_discs(state);
@@ -77,9 +78,26 @@ void time_steps(benchmark::State& state, Joined joined, double above) {
   state.counters["allocations"] = Counter(static_cast<double>(allocations), Counter::kAvgIterations);
 }
 
-void uncoupled(benchmark::State& state) { time_steps(state, Joined::not_at_all, height); }
-void uncoupled_rolling(benchmark::State& state) { time_steps(state, Joined::not_at_all, radius); }
-void one_component(benchmark::State& state) { time_steps(state, Joined::by_springs, height); }
+void time_system(benchmark::State& state, Joined joined, double above) {
+  std::vector<carom::Simulation> simulations;
+  simulations.emplace_back(discs(static_cast<int>(state.range(0)), joined, above),
+                           carom::TimeStepping{.step = step});
+  time_steps(state, simulations);
+}
+
+void time_ensemble(benchmark::State& state, double above) {
+  std::vector<carom::Simulation> simulations;
+  for (std::int64_t i = 0; i < state.range(0); ++i) {
+    simulations.emplace_back(discs(1, Joined::not_at_all, above), carom::TimeStepping{.step = step});
+  }
+  time_steps(state, simulations);
+}
+
+void uncoupled(benchmark::State& state) { time_system(state, Joined::not_at_all, height); }
+void uncoupled_rolling(benchmark::State& state) { time_system(state, Joined::not_at_all, radius); }
+void one_component(benchmark::State& state) { time_system(state, Joined::by_springs, height); }
+void ensemble(benchmark::State& state) { time_ensemble(state, height); }
+void ensemble_rolling(benchmark::State& state) { time_ensemble(state, radius); }
 
 // Both sides go the same way, or their ratio says nothing.
 void demand_equal_motion() {
@@ -154,6 +172,8 @@ BENCHMARK(by_hand_with_gaps)->Apply(sizes);
 BENCHMARK(uncoupled)->Apply(sizes);
 BENCHMARK(uncoupled_rolling)->Apply(sizes);
 BENCHMARK(one_component)->Arg(2000);
+BENCHMARK(ensemble)->Arg(1)->Arg(100);
+BENCHMARK(ensemble_rolling)->Arg(1)->Arg(100);
 BENCHMARK(event_storage)->Iterations(1)->Repetitions(1);
 
 }  // namespace

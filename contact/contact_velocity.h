@@ -24,6 +24,19 @@ namespace carom {
           t[0] * a[0] + t[1] * a[1] + t[2] * a[2] + t[3] * b[0] + t[4] * b[1] + t[5] * b[2]};
 }
 
+/// Constraint::velocity_after() of all rows, likewise. \param after velocities of all bodies
+[[nodiscard]] inline std::array<double, 3> velocities_after(const Constraint& at, const double* after) {
+  if (at.rows == 2) {
+    const std::array<double, 2> both = times_both_rows(at, after);
+    return {both[0] - at.surface_velocity_after[0], both[1] - at.surface_velocity_after[1], 0.0};
+  }
+  std::array<double, 3> all{};
+  for (int row = 0; row < at.rows; ++row) {
+    all[static_cast<std::size_t>(row)] = at.velocity_after(row, after);
+  }
+  return all;
+}
+
 /// Constraint::speed() of row 0 and row 1, likewise.
 [[nodiscard]] inline std::array<double, 2> speeds_of_both_rows(const Constraint& at,
                                                                const double* velocities) {

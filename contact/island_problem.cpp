@@ -175,10 +175,10 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   problem_.sets()[1].coefficient = contact.friction;
   restitution_[0] = contact.law.normal_restitution;
   restitution_[1] = contact.law.tangential_restitution;
-  for (int i = 0; i < 2; ++i) {
-    const auto row = static_cast<std::size_t>(i);
+  const std::array<double, 2> along = times_both_rows(contact, velocity_before);
+  for (std::size_t row = 0; row < 2; ++row) {
     directions_[row].constraint = &contact;
-    before_[row] = contact.velocity(i, velocity_before);
+    before_[row] = along[row] - contact.surface_velocity[row];
     answer_.impulse[row] = 0.0;
   }
 }
@@ -289,12 +289,12 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
   const auto b = problem_.vector();
   std::size_t row = 0;
   for (const Constraint& constraint : constraints_) {
+    const std::array<double, 3> after = velocities_after(constraint, velocity_free);
     for (int i = 0; i < constraint.rows; ++i, ++row) {
-      double number = constraint.velocity_after(i, velocity_free) + restitution_[row] * before_[row];
+      double number = after[static_cast<std::size_t>(i)] + restitution_[row] * before_[row];
       if (i == 0 && constraint.allowed_approach > 0.0) number += constraint.allowed_approach;
       const bool held = problem_.diagonal(static_cast<int>(row)) == 0.0;
-      if (held) number = along_held_row(constraint, i, velocity_free, number);
-      b[row] = number;
+      b[row] = held ? along_held_row(constraint, i, velocity_free, number) : number;
     }
   }
 }

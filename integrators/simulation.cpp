@@ -314,7 +314,7 @@ double Simulation::time() const { return impl_->state.time; }
 const EnergyLedger& Simulation::energy() const { return impl_->companion.ledger; }
 const StepReport& Simulation::report() const {
   impl_->report_seen = true;
-  impl_->list_impacts();
+  if (impl_->unlisted > 0) impl_->list_impacts();
   return impl_->report;
 }
 const Statistics& Simulation::statistics() const { return impl_->companion.statistics; }

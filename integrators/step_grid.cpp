@@ -46,14 +46,15 @@ void StepGrid::match(Companion& companion, double time) const {
 
 void StepGrid::demand_times(const char* call, double time, const Companion& companion, double now) const {
   const double shortest = shortest_step_at(time);
+  const auto* const stepping = std::get_if<TimeStepping>(mode_);
+  const bool controlled = stepping != nullptr && stepping->control;
+  const double longest = controlled ? stepping->control->largest : length();
+  if (longest >= shortest && companion.rhythms.empty()) return;  // asked before every step
   const auto refuse = [&](const std::string& quantity, double length, double allowed) {
     throw ModelError(std::string(call) + ": " + quantity + " is " + to_text(length) +
                      " s; allowed: at least " + to_text(allowed) +
                      " s, or it is lost in the rounding of times around " + to_text(time) + " s");
   };
-  const auto* const stepping = std::get_if<TimeStepping>(mode_);
-  const bool controlled = stepping != nullptr && stepping->control;
-  const double longest = controlled ? stepping->control->largest : length();
   if (longest < shortest) {
     refuse(controlled ? "control.largest" : stepping != nullptr ? "step" : "interval", longest, shortest);
   }

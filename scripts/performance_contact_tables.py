@@ -25,6 +25,12 @@ def uncoupled_table(uncoupled):
     return table(["ns per disc and step (ratio to the loop with gaps)"] + [f"{count:,} discs" for count in DISCS], rows)
 
 
+def ensemble_table(uncoupled):
+    rows = [[title] + [figure(1e9 * uncoupled[f"{key}/{count}"]["per_disc"]) for count in (1, 100)]
+            for key, title in (("ensemble", "in free fall"), ("ensemble_rolling", "in contact with the floor"))]
+    return table(["ns per step of a disc", "one simulation", "100 simulations, in turn"], rows)
+
+
 def gap_table(gap):
     rows = [[title, figure(1e9 / gap[key]["items_per_second"])]
             for key, title in (("two_discs", "two discs"), ("disc_and_box", "disc and box"),

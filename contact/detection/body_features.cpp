@@ -26,6 +26,9 @@ bool join(CentreRun& run, const CentreRun& next) {
 BodyFeatures::BodyFeatures(const Assembly& assembly) {
   collect_points(assembly);
   collect_centres(assembly);
+  std::size_t centred = 0;
+  for (const CentreRun& run : centres_) centred += run.points == none ? 0 : run.bodies.size();
+  beside_centres_ = centred < points_.size();
   of_component_.reserve(assembly.components().size());
   OfComponents own{};
   for (const Component& component : assembly.components()) {

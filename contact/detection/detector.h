@@ -111,6 +111,17 @@ public:
   friend bool resists_rolling(const Detector& of) {
     return of.ground_.resists_rolling() || of.bodies_.resists_rolling();
   }
+  /// True if all that can touch are centres of bodies, or rounded points around them, and ground at rest.
+  friend bool only_centres_touch(const Detector& of) {
+    return of.bodies_.empty() && of.pieces_.empty() && of.joints_.empty() && !of.has_moving_ground() &&
+           of.ground_.only_centres();
+  }
+  /// Where that is so: GroundContacts::centre_rows() says what may touch what,
+  friend std::vector<CentreRow> centre_rows(const Detector& of) { return of.ground_.centre_rows(); }
+  /// and GroundContacts::may_touch() whether it does.
+  friend bool may_touch(const Detector& of, const CentreRow& row, const double* q) {
+    return of.ground_.may_touch(row, q);
+  }
   /// True if the law of a pair of shapes has; not of the pair of such a resistance.
   friend bool resists_rolling(const Detector& of, const ContactPair& pair) {
     if (pair.joint_row != none || pair.rolling) return false;

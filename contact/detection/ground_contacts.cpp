@@ -41,6 +41,14 @@ void start(const ConstraintKey& key, Constraint& out) {
   out.allowed_approach = 0.0;
 }
 
+/// Distance of a centre, beyond which no gap of its point is <= `margin` [m].
+double reach_of(const CentreRun& centres, double margin) {
+  if (centres.points == none) return margin;
+  // No distance less its radius is missed by the rounding of this sum.
+  constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
+  return margin + (centres.radius + slack * (std::abs(margin) + centres.radius));
+}
+
 template <class F>
 void for_parts(Range all, Index size, F&& f) {
   for (Index first = all.begin; first < all.end; first += size) {
@@ -89,21 +97,19 @@ void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<
   }
 }
 
+Index GroundContacts::material_of(const CentreRun& centres) const {
+  return centres.points == none ? centres.material : features_.points()[centres.points].material;
+}
+
 bool GroundContacts::any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const {
-  double margin = query.margin;
-  if (centres.points == none) {
-    if (query.lasting != nullptr && query.lasting->any_centre(bodies)) return true;
-  } else {
-    if (query.lasting != nullptr && shapes_.any_moves()) return true;
-    // No distance less its radius is missed by the rounding of this sum.
-    constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
-    margin += centres.radius + slack * (std::abs(margin) + centres.radius);
+  if (query.lasting != nullptr) {
+    const bool bare = centres.points == none;
+    if (bare ? query.lasting->any_centre(bodies) : shapes_.any_moves()) return true;
   }
+  const double margin = reach_of(centres, query.margin);
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
-  const Index material =
-      centres.points == none ? centres.material : features_.points()[centres.points].material;
-  for (const Index shape : laws_.touched_by(material)) {
+  for (const Index shape : laws_.touched_by(material_of(centres))) {
     if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) return true;
   }
   return false;
@@ -120,6 +126,17 @@ void GroundContacts::for_runs(Range components, F&& f) const {
     run.bodies = {first, std::min(all.end, run.bodies.end)};
     f(run);
   }
+}
+
+std::vector<CentreRow> GroundContacts::centre_rows() const {
+  std::vector<CentreRow> rows;
+  for (const CentreRun& run : features_.centres()) {
+    const BodySlot first = assembly_->layout()->bodies()[run.bodies.begin];
+    for (const Index shape : laws_.touched_by(material_of(run))) {
+      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), reach_of(run, 0.0)});
+    }
+  }
+  return rows;
 }
 
 /// True if no body of some runs touches at its bare centre.

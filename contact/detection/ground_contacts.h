@@ -17,6 +17,15 @@
 
 namespace carom {
 
+/// Centres of neighbouring bodies, with rounded points around them or none, and a shape that they may touch.
+struct CentreRow {
+  Index shape = 0;     ///< number of the shape
+  Index q = 0;         ///< first coordinate of the first body
+  Index stride = 0;    ///< numbers from one body to the next
+  Index count = 0;     ///< of bodies
+  double reach = 0.0;  ///< no contact has a gap <= 0 whose centre is farther away [m]
+};
+
 /// Features of the bodies of an assembly, shapes on ground, and the laws between them.
 class CAROM_API GroundContacts {
 public:
@@ -37,6 +46,14 @@ public:
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// True if bodies touch with their centres, or with rounded points around them, alone.
+  [[nodiscard]] bool only_centres() const { return !features_.any_beside_centres(); }
+  /// All rows of centres. Made at each call.
+  [[nodiscard]] std::vector<CentreRow> centre_rows() const;
+  /// False if surely no contact of a row, whose shape is at rest, has a gap <= 0. \param q all coordinates
+  [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const {
+    return shapes_.any_within(row.shape, nullptr, {q + row.q, row.stride, row.count}, row.reach);
+  }
   /// Likewise those of one body.
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component, in the order of find().
@@ -64,6 +81,7 @@ private:
   template <int D>
   void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
+  [[nodiscard]] Index material_of(const CentreRun& centres) const;
   template <class F>
   void for_runs(Range components, F&& f) const;
   [[nodiscard]] bool only_points(Range runs) const;

@@ -234,13 +234,19 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
   constexpr int of_planar_body = 3;
-  problem.map().for_bodies([&](const Constraint::Block& block) {
+  const auto free = [&](const Constraint::Block& block) {
     if (block.columns == of_planar_body) {
       free_body<of_planar_body>(in, loads, block, trial);
     } else {
       free_body<0>(in, loads, block, trial);
     }
-  });
+  };
+  const std::span<const Constraint> constraints = problem.constraints();
+  if (constraints.size() == 1 && constraints.front().bodies == 1) {
+    free(constraints.front().blocks.front());
+  } else {
+    problem.map().for_bodies(free);
+  }
   problem.set_free_velocity(trial.free.data());
   if (!problem.solve(chain).usable()) return false;
   problem.add_velocities(trial.dv_impulses.data());

@@ -3,6 +3,7 @@
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
 #include <carom/integrators/time_stepping/step_balance.h>
+#include <carom/integrators/time_stepping/step_commit.h>
 
 #include <algorithm>
 #include <array>
@@ -12,19 +13,6 @@
 namespace carom {
 
 namespace {
-
-/// Velocities along the rows of a constraint at the end. \param after of all bodies
-std::array<double, 3> velocities_after(const Constraint& at, const double* after) {
-  if (at.rows == 2) {
-    const std::array<double, 2> both = times_both_rows(at, after);
-    return {both[0] - at.surface_velocity_after[0], both[1] - at.surface_velocity_after[1], 0.0};
-  }
-  std::array<double, 3> all{};
-  for (int row = 0; row < at.rows; ++row) {
-    all[static_cast<std::size_t>(row)] = at.velocity_after(row, after);
-  }
-  return all;
-}
 
 /// Constraint::speed() of the rows of a constraint.
 std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
@@ -66,26 +54,17 @@ void StepBalance::begin(const StepInput& in) {
 bool StepBalance::book_couplings(const StepInput& in, Index component, const StepTrial& trial) {
   const Component& all = assembly_->components()[component];
   StoredEnergies& stored = result_.stored;
-  double total = 0.0, dissipative = 0.0, external = 0.0;
-  for (const BlockWorks& works : trial.account.works) {
-    stored[StoredEnergy::kinetic] += works.kinetic;
-    total += works.total;
-    dissipative += works.dissipative;
-    external += works.external;
-  }
-  // Last: they are written just before, one by one, and are not at hand at once.
-  for (std::size_t i = 0; i < stored_energy_count; ++i)
-    stored.values[i] += trial.account.potentials.values[i];
+  const BlockWorks works = trial.account.add_to(stored);
   double inside = 0.0;
   if (!all.z.empty()) {
     inside = trial.with_step(in, component,
                              [&](const StepContext& at) { return internal_loss(*assembly_, component, at); });
   }
   // Potentials enter the ledger unseen by any sweep.
-  if (!std::isfinite(dissipative + external + inside + stored.total())) return false;
-  coupling_work_.add(total - dissipative - external + inside);
-  result_.flows[EnergyFlow::dashpot] += inside - dissipative;
-  result_.flows[EnergyFlow::external] += external;
+  if (!std::isfinite(works.dissipative + works.external + inside + stored.total())) return false;
+  coupling_work_.add(works.total - works.dissipative - works.external + inside);
+  result_.flows[EnergyFlow::dashpot] += inside - works.dissipative;
+  result_.flows[EnergyFlow::external] += works.external;
   return true;
 }
 
@@ -341,8 +320,9 @@ void StepBalance::book_velocity_projection(double lost) {
 StepResult& StepBalance::finish(const StepInput& in) {
   EnergyFlows& flows = result_.flows;
   flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
-  flows[EnergyFlow::coupling_discretisation] = -(result_.stored.potential() + energy_position_projection_ -
-                                                 in.companion.ledger.potential() + coupling_work_.value());
+  flows[EnergyFlow::coupling_discretisation] =
+      discretisation_loss(result_.stored.potential() + energy_position_projection_,
+                          in.companion.ledger.potential(), coupling_work_.value());
   if (!result_.contacts.empty()) result_.contacts.contacts.finish();
   return result_;
 }

@@ -1,6 +1,7 @@
 // Problem: make the end of a step the state, and tell the report and the statistics what it did.
 
 #include <carom/integrators/time_stepping/step_balance.h>
+#include <carom/integrators/time_stepping/step_commit.h>
 
 #include <algorithm>
 #include <utility>
@@ -25,23 +26,6 @@ void take_contacts(const StepReport& report, double end_time, Companion& compani
   }
 }
 
-void add_to(Statistics& statistics, const StepReport& report) {
-  ++statistics.steps;
-  statistics.sweeps += report.sweeps;
-  ++statistics.steps_by_iteration[static_cast<std::size_t>(report.iteration)];
-  statistics.fallbacks += report.fallbacks;
-  statistics.most_sweeps = std::max(statistics.most_sweeps, report.sweeps);
-  statistics.largest_contraction = std::max(statistics.largest_contraction, report.contraction);
-  if (report.energy_gain > report.lasting_gain) {
-    ++statistics.energy_gains;
-    statistics.energy_gained += report.energy_gain - report.lasting_gain;
-  }
-  if (report.lasting_gain > 0.0) {
-    ++statistics.lasting_gains;
-    statistics.lasting_gained += report.lasting_gain;
-  }
-}
-
 /// Takes the report over, and gives the room of the last one back. Findings stay: they are of the model.
 void hand_over(StepReport& made, StepReport& report) {
   static_cast<StepNumbers&>(report) = made;
@@ -55,15 +39,9 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
             Companion& companion, StepReport& report) {
   const double step = in.step, end_time = in.end_time;
   memory.joints->record(step, companion.joints);
-  std::swap(state.q, trial.end.q);
-  std::swap(state.v, trial.end.v);
-  std::swap(state.z, trial.end.z);
-  state.time = end_time;
-  PresentLoads& loads = companion.loads;
-  loads.valid = true;
-  loads.mean = memory.mean;
-  companion.history.step = step;
+  take_end(in, memory.mean, trial, state, companion);
   if (memory.guesses) {  // else no loads change
+    PresentLoads& loads = companion.loads;
     loads.total.swap(trial.loads_end.total);
     loads.dissipative.swap(trial.loads_end.dissipative);
     loads.external.swap(trial.loads_end.external);
@@ -76,12 +54,11 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   } else {
     companion.iterations.clear();
   }
-  std::swap(companion.rounding, trial.rounding);
   companion.ledger.book(result.flows, result.stored);
   if (!companion.contacts.empty() || !result.contacts.empty()) std::swap(companion.contacts, result.contacts);
   companion.modes = result.joint_friction_modes;
   take_contacts(result.report, end_time, companion);
-  add_to(companion.statistics, result.report);
+  count_step(result.report, companion.statistics);
   companion.statistics.cut_sequences += result.cut_sequences;
   companion.statistics.scaled_impacts += result.scaled_impacts;
   companion.statistics.plastic_jams += result.plastic_jams;

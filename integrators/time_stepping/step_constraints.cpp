@@ -14,12 +14,24 @@ namespace {
 /// A body that was hit where a gap closed stands on the ground to rounding: on either side of it [m].
 constexpr double rounding = 1e-12;
 
+/// True if turning can open contacts: of a feature on an arm, on ground that moves or is curved, of two
+/// bodies, of outlines, at limits (contact/detection/lasting_contacts.h).
+bool turning_opens(const Detector& detector) {
+  const GroundShapes& shapes = detector.pieces().shapes();
+  bool curved = false;
+  for (Index shape = 0; shape < shapes.size(); ++shape) {
+    curved = curved || shapes.has_pieces(shape) || !shapes.is_flat(shape);
+  }
+  return curved || detector.needs_rotations() || detector.bodies_touch() || detector.has_moving_ground();
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
       rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0,
-             options.impacts == ImpactTimes::located},
+             options.impacts == ImpactTimes::located,
+             options.impacts == ImpactTimes::located || turning_opens(detector_)},
       islands_(assembly) {}
 
 void StepConstraints::place_surfaces(const StepInput& in) {
@@ -33,7 +45,9 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
-  detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
+  if (rules_.turning) {
+    detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
+  }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
   for (const auto& [key, mode] : in.companion.modes) {
@@ -109,7 +123,7 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
   constraints_.clear();
   if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
   // Where nothing touched in the step before there is hardly anything to be found.
-  rules_.by_part = rules_.in_parts && !in.companion.modes.empty();
+  rules_.by_part = rules_.part_size != none && !in.companion.modes.empty();
   for (const Range batch : batches) {
     if (!goes_in_parts(batch)) find_in(in, batch, trial, constraints_);
   }

@@ -39,8 +39,8 @@ public:
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
   void place_surfaces(const StepInput& in);
 
-  /// Lets batches of many bodies go part by part: nothing asks for all their contacts at once.
-  void allow_parts() { rules_.in_parts = true; }
+  /// Lets batches of more bodies than `size` go part by part: nothing asks for all their contacts at once.
+  void allow_parts(Index size) { rules_.part_size = size; }
 
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
   /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
@@ -62,7 +62,7 @@ private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
   [[nodiscard]] bool goes_in_parts(Range batch) const {
-    return rules_.by_part && batch.size() > BlockTable::block_size;
+    return rules_.by_part && batch.size() > rules_.part_size;
   }
   [[nodiscard]] bool find_joining(const StepInput& in, std::span<const Range> batches,
                                   const StepTrial& trial);
@@ -77,9 +77,10 @@ private:
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
     bool drifts;                      // contacts of two bodies need their drifts
+    bool turning;                     // contacts may be opened by turning, or by slack
     Parting parting = Parting::acts;  // in the last find()
     bool by_part = false;             // large batches go part by part, likewise
-    bool in_parts = false;            // allow_parts()
+    Index part_size = none;           // allow_parts()
   } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened

@@ -52,13 +52,19 @@ double kinetic_energy(const StepInput& in, Range bodies, const StepTrial& trial)
 
 }  // namespace
 
+void StepRule::move(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses,
+                    const EndLoads& loads, bool with_impulses, StepTrial& trial) const {
+  const Index q = bodies.q, v = bodies.v;
+  sweep_bodies(masses, bodies.slots.size(), in.step,
+               {in.start.q.data() + q, in.start.v.data() + v, in.companion.rounding.data() + v,
+                loads.start + v, loads.end + v, with_impulses ? trial.dv_impulses.data() + v : nullptr,
+                trial.end.q.data() + q, trial.end.v.data() + v, trial.rounding.data() + v, is_mean()});
+}
+
 void StepRule::move(const StepInput& in, Range bodies, const double* load0, const double* load1,
                     bool with_impulses, StepTrial& trial) const {
   in.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    sweep_bodies(kind.masses(slots.begin), slots.size(), in.step,
-                 {in.start.q.data() + q, in.start.v.data() + v, in.companion.rounding.data() + v, load0 + v,
-                  load1 + v, with_impulses ? trial.dv_impulses.data() + v : nullptr, trial.end.q.data() + q,
-                  trial.end.v.data() + v, trial.rounding.data() + v, is_mean()});
+    move(in, {&kind, slots, q, v}, kind.masses(slots.begin), {load0, load1}, with_impulses, trial);
   });
 }
 
@@ -97,6 +103,13 @@ void StepRule::works_constant(const StepInput& in, Range bodies, Range v, const 
                               BlockWorks& out) const {
   out.total = carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
   out.kinetic = kinetic_energy(in, bodies, trial);
+  out.dissipative = out.external = 0.0;
+}
+
+void StepRule::works_constant(const StepInput& in, const BodyPlace& bodies, Range v, const StepTrial& trial,
+                              BlockWorks& out) const {
+  out.total = carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
+  out.kinetic = bodies.kind->kinetic_energy(bodies.slots, trial.end.v.data() + bodies.v);
   out.dissipative = out.external = 0.0;
 }
 

@@ -36,6 +36,14 @@ struct SweepChange {
   void take(const SweepChange& other) { take(other.change, other.size); }
 };
 
+/// Bodies of one kind that follow one another, as they stand in every array.
+struct BodyPlace {
+  const BodyKind* kind = nullptr;
+  Range slots;  ///< within the kind
+  Index q = 0;  ///< first coordinate
+  Index v = 0;  ///< first velocity
+};
+
 /// One of the two rules.
 class CAROM_API StepRule {
 public:
@@ -61,6 +69,11 @@ public:
     const double* const loads = in.companion.loads.total.data();
     move(in, bodies, loads, loads, with_impulses, trial);
   }
+  /// Likewise of bodies that nothing touches, whose place and masses are known.
+  void fly(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses, StepTrial& trial) const {
+    const double* const loads = in.companion.loads.total.data();
+    move(in, bodies, masses, {loads, loads}, false, trial);
+  }
   /// Change that another move would make, by the loads that the guess led to: velocities by M^-1 times their
   /// change, coordinates by h/2 times that, which is less than h times it.
   [[nodiscard]] SweepChange next_change(const StepInput& in, Range bodies, const StepTrial& trial) const;
@@ -73,8 +86,18 @@ public:
   /// Works of loads that do not change over some bodies, whose velocities are `v`.
   void works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                       BlockWorks& out) const;
+  /// Likewise where their place is known.
+  void works_constant(const StepInput& in, const BodyPlace& bodies, Range v, const StepTrial& trial,
+                      BlockWorks& out) const;
 
 private:
+  // Loads at both ends of a step, over all velocities.
+  struct EndLoads {
+    const double* start;
+    const double* end;
+  };
+  void move(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses, const EndLoads& loads,
+            bool with_impulses, StepTrial& trial) const;
   void move(const StepInput& in, Range bodies, const double* load0, const double* load1, bool with_impulses,
             StepTrial& trial) const;
 

@@ -52,6 +52,20 @@ struct CAROM_API TrialAccount {
 
   /// Forgets what was, and makes room. \param parts blocks, or parts of a batch
   void start(Index parts);
+  /// Adds the energies to `stored`. Returns the sums of the works.
+  BlockWorks add_to(StoredEnergies& stored) const {
+    BlockWorks sum;
+    double& kinetic = stored[StoredEnergy::kinetic];
+    for (const BlockWorks& part : works) {
+      kinetic += part.kinetic;
+      sum.total += part.total;
+      sum.dissipative += part.dissipative;
+      sum.external += part.external;
+    }
+    // Last: they are written just before, one by one, and are not at hand at once.
+    for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += potentials.values[i];
+    return sum;
+  }
 };
 
 /// Quantities of which the model of a run needs some: they save what nobody asks for.

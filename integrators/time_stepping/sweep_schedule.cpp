@@ -93,18 +93,27 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
   if (stages.components.size() > 1) stages.trial.account.of_fields.resize(parts);
   const auto& components = assembly_->components();
   const Range v{components[stages.components.begin].v.begin, components[stages.components.end - 1].v.end};
+  const bool in_pieces = before && threads_ == 1;
+  const auto move_pieces = [&](Range some) {
+    for (Index first = some.begin; first < some.end; first += piece_size) {
+      const Range piece{first, std::min(first + piece_size, some.end)};
+      before(piece);
+      stages.move(piece);
+      after(piece);
+    }
+  };
   const auto run_part = [&](Range some, Range velocities, Index part) {
     if (any_iterated_) stages.load(velocities);
-    stages.move(some);
+    in_pieces ? move_pieces(some) : stages.move(some);
     stages.finish(some, velocities, part);
   };
   const BodySlots& bodies = assembly_->layout()->bodies();
   constexpr Index of_several_threads = 4;  // parts of each: to share them out anew has a price
-  const Index at_once = !before ? parts : threads_ == 1 ? 1 : of_several_threads * threads_;
+  const Index at_once = before && !in_pieces ? of_several_threads * threads_ : parts;
   for (Index next = 0; next < parts; next += at_once) {
     const Index count = std::min(at_once, parts - next);
     const Range some{all.begin + next * size, std::min(all.begin + (next + count) * size, all.end)};
-    if (before) before(some);
+    if (before && !in_pieces) before(some);
     if (parts == 1) {
       run_part(all, v, 0);
     } else {
@@ -113,7 +122,7 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
         run_part({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, next + i);
       });
     }
-    if (after) after(some);
+    if (after && !in_pieces) after(some);
   }
   stages.close();
 }

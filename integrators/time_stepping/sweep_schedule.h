@@ -59,8 +59,11 @@ public:
   void improve(const SweepStages& stages) const;
   /// A task for some bodies, called for one range after the other.
   using BodyTask = FunctionRef<void(Range bodies)>;
+  /// Bodies whose contacts are found, solved and booked together, while their problems are at hand.
+  static constexpr Index piece_size = 16;
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
-  /// before and after some parts, a few of each thread, whose numbers are at hand meanwhile; or nothing
+  /// before and after some bodies move, whose numbers are at hand meanwhile: a piece, or a few parts of each
+  /// thread; or nothing
   void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {}) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);

@@ -23,7 +23,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   if (!impacts_->on()) impacts_.reset();
   if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   if (impacts_ == nullptr && turning_ == nullptr && !parts_.located.on() && !options.project_gaps) {
-    parts_.constraints.allow_parts();
+    parts_.constraints.allow_parts(SweepSchedule::piece_size);
+    if (FreeFlight::fits(parts_)) flight_.emplace(parts_);
   }
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
@@ -31,14 +32,16 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 }
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
-  evaluate_start(state, companion);
+  const bool known = companion.loads.valid && companion.loads.mean == parts_.rule.is_mean();
+  if (!known) evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
-  if (impacts_ == nullptr) return step_from(in, state, companion, report);
   try {
-    if (!strike(in)) return step_from(in, state, companion, report);
+    if (flight_ && flight_->step(in, state, companion, report)) return;
+    struck_ = impacts_ != nullptr && strike(in);
   } catch (const SolverError& error) {
     throw with_file(with_place(error, in), parts_.options);
   }
+  if (!struck_) return step_from(in, state, companion, report);
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
   try {
@@ -57,8 +60,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
 bool TimeStepper::strike(const StepInput& in) {
   prepare(in);
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
-  struck_ = impacts_->resolve(in);
-  return struck_;
+  return impacts_->resolve(in);
 }
 
 /// \param in the step, whose start is the state, or that after impacts
@@ -328,7 +330,6 @@ void TimeStepper::book_contact_problem(const IslandProblem& problem, const doubl
 /// Loads at the start, where the last step did not leave them: a function of the state.
 void TimeStepper::evaluate_start(const State& state, Companion& companion) {
   PresentLoads& loads = companion.loads;
-  if (loads.valid && loads.mean == parts_.rule.is_mean()) return;
   if (loads.valid) companion.history.known = 0;  // of the other rule
   LoadsAtEnd at;
   at.total.swap(loads.total);

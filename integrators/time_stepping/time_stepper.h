@@ -25,6 +25,7 @@
 #include <carom/integrators/time_stepping/capped_problem.h>
 #include <carom/integrators/time_stepping/contact_turning.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
+#include <carom/integrators/time_stepping/free_flight.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_impacts.h>
@@ -32,6 +33,7 @@
 #include <carom/integrators/time_stepping/step_projection.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace carom {
@@ -88,6 +90,7 @@ private:
   StepProjection projection_;
   CouplingWatch couplings_;
   CappedProblem capped_;
+  std::optional<FreeFlight> flight_;  // none where no step is one
 };
 
 }  // namespace carom

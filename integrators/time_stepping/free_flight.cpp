@@ -1,0 +1,115 @@
+// Problem: steps in which bodies fly, without anything that only contact, couplings, joints need.
+
+#include <carom/core/numerics/compensated_sum.h>
+#include <carom/integrators/time_stepping/free_flight.h>
+#include <carom/integrators/time_stepping/step_commit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace carom {
+
+namespace {
+
+/// True if nothing has touched in the step before and surely nothing does at the start of this one.
+bool starts_free(const StepInput& in, const Detector& detector, std::span<const CentreRow> rows) {
+  if (!in.companion.modes.empty() || !in.companion.contacts.empty()) return false;
+  const double* const q = in.start.q.data();
+  for (const CentreRow& row : rows) {
+    if (may_touch(detector, row, q)) return false;
+  }
+  return true;
+}
+
+/// Moves all bodies. Returns the work of their loads [J]. \param stored energies at the end, to be added to
+double fly(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> batches, StepTrial& trial,
+           StoredEnergies& stored) {
+  CompensatedSum work;
+  for (FlyingBodies& batch : batches) {
+    rule.fly(in, batch.place, batch.masses, trial);
+    BlockWorks works;
+    rule.works_constant(in, batch.place, batch.v, trial, works);
+    stored[StoredEnergy::kinetic] += works.kinetic;
+    work.add(works.total);
+    batch.end.state = trial.end.view();
+    StoredEnergies potentials;
+    for (const FlyingBodies::Potential& of : batch.potentials) {
+      potentials[of.form] += of.kind->potential(batch.end, of.elements);
+    }
+    for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += potentials.values[i];
+  }
+  return work.value();
+}
+
+}  // namespace
+
+bool FreeFlight::fits(const StepParts& parts) {
+  const auto is_small = [&](Range batch) {
+    const Range bodies = parts.assembly->bodies_of(batch);
+    const BodySlots& slots = parts.assembly->layout()->bodies();
+    return bodies.size() <= BlockTable::block_size &&
+           slots[bodies.begin].kind == slots[bodies.end - 1].kind && (batch.size() > 1 || bodies.size() == 1);
+  };
+  const auto& batches = parts.schedule.batches();
+  return !parts.schedule.any_iterated() && only_centres_touch(parts.constraints.detector()) &&
+         std::all_of(batches.begin(), batches.end(), is_small);
+}
+
+FreeFlight::FreeFlight(StepParts& parts) : parts_(&parts), rows_(centre_rows(parts.constraints.detector())) {
+  for (const Range batch : parts.schedule.batches()) {
+    // As in every step: components that are taken in one loop are swept.
+    const bool alone = batch.size() == 1 && parts.options.iteration != Iteration::automatic;
+    if (alone) iteration_ = parts.options.iteration;
+    add_batch(batch);
+  }
+}
+
+void FreeFlight::add_batch(Range components) {
+  const Assembly& assembly = *parts_->assembly;
+  const Index component = components.begin;
+  const Range bodies = assembly.bodies_of(components);
+  const auto& all = assembly.components();
+  const StepTrial& trial = parts_->trial;
+  const Range together = components.size() > 1 ? bodies : Range{};
+  FlyingBodies batch{.end = {assembly, trial.end.view(), trial.at_end, component, together},
+                     .v = {all[component].v.begin, all[components.end - 1].v.end}};
+  assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+    batch.place = {&kind, slots, q, v};
+    batch.masses = kind.masses(slots.begin);
+  });
+  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
+    const ForceKind& elements = *assembly.force_kinds()[kind];
+    const Range range = assembly.elements(component, kind);
+    if (!range.empty()) batch.potentials.push_back({&elements, range, elements.stored_as()});
+  }
+  batches_.push_back(std::move(batch));
+}
+
+bool FreeFlight::step(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+  if (!starts_free(in, parts_->constraints.detector(), rows_)) return false;
+  StepTrial& trial = parts_->trial;
+  trial.end.time = in.end_time;
+  StoredEnergies stored;
+  const double work = fly(in, parts_->rule, batches_, trial, stored);
+  if (!std::isfinite(stored.total())) return false;
+  flows_[EnergyFlow::coupling_discretisation] =
+      discretisation_loss(stored.potential(), companion.ledger.potential(), work);
+  companion.ledger.book(flows_, stored);
+  take_end(in, parts_->rule.is_mean(), trial, state, companion);
+  companion.iterations.clear();
+  StepNumbers& numbers = report;
+  numbers = {};
+  numbers.time = in.end_time;
+  numbers.step = in.step;
+  numbers.sweeps = 1;
+  numbers.iteration = iteration_;
+  report.contacts.clear();
+  report.joint_impulses.clear();
+  report.capped_problem.clear();
+  count_step(numbers, companion.statistics);
+  return true;
+}
+
+}  // namespace carom

@@ -1,0 +1,142 @@
+// Steps in which few bodies fly take a short path: with the same bits, reports and errors as any other step.
+
+#include <carom/carom.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/time_stepping/free_flight.h>
+
+#include "tests/allocation_counter.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+enum class Path { short_one, usual };
+
+/// Two discs and a particle in flight over a floor, on which one disc and the particle fall. Steps take the
+/// usual path where ground moves, though far below.
+System scene(Path path, double gravity = 9.81) {
+  System system;
+  const Surface surface{.friction = 0.3, .normal_restitution = 0.5, .tangential_restitution = 0.2};
+  system.add(Gravity{{0.3, -gravity}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
+  for (const double height : {0.12, 50.0}) {
+    const BodyId body = system.add(RigidBody{
+        .mass = disc(2.0, 0.1), .position = {3.0 * height, height}, .velocity = {1.0, 0.5}, .spin = 7.0});
+    system.add(Disc{.body = body, .radius = 0.1});
+  }
+  system.add(Particle{.mass = 0.7, .position = {-1.0, 0.05}, .velocity = {0.2, 0.0}});
+  if (path == Path::usual) {
+    const auto still = [](double) { return 0.0; };
+    system.add(
+        HalfPlane{.point = {0.0, -1e3}, .normal = {0.0, 1.0}, .motion = {.angle = still, .spin = still}},
+        surface);
+  }
+  return system;
+}
+
+bool fits(const System& system, const TimeStepping& mode) {
+  const Assembly assembly(system);
+  return FreeFlight::fits(StepParts(assembly, mode));
+}
+
+TEST(FreeFlight, FitsFewUncoupledBodiesUnderConstantLoads) {
+  EXPECT_TRUE(fits(scene(Path::short_one), {.step = 1e-3}));
+  EXPECT_FALSE(fits(scene(Path::usual), {.step = 1e-3}));
+  EXPECT_FALSE(fits(scene(Path::short_one), {.step = 1e-3, .force_rule = ForceRule::energy_momentum}));
+  System coupled = scene(Path::short_one);
+  coupled.add(SpringDamper{.from = {ground}, .to = {coupled.bodies().back()}, .stiffness = 1.0});
+  EXPECT_FALSE(fits(coupled, {.step = 1e-3}));
+}
+
+void expect_same(const StepReport& a, const StepReport& b) {
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.sweeps, b.sweeps);
+  EXPECT_EQ(a.iteration, b.iteration);
+  EXPECT_EQ(a.fallbacks, b.fallbacks);
+  EXPECT_EQ(a.contraction, b.contraction);
+  EXPECT_EQ(a.energy_gain, b.energy_gain);
+  EXPECT_EQ(a.projected, b.projected);
+  EXPECT_EQ(a.worst_coupling, b.worst_coupling);
+  EXPECT_EQ(a.contacts.size(), b.contacts.size());
+  EXPECT_EQ(a.joint_impulses.size(), b.joint_impulses.size());
+  EXPECT_EQ(a.findings.size(), b.findings.size());
+  EXPECT_EQ(a.capped_problem, b.capped_problem);
+}
+
+void expect_same(const Statistics& a, const Statistics& b) {
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.sweeps, b.sweeps);
+  EXPECT_EQ(a.most_sweeps, b.most_sweeps);
+  EXPECT_EQ(a.steps_by_iteration, b.steps_by_iteration);
+  EXPECT_EQ(a.fallbacks, b.fallbacks);
+  EXPECT_EQ(a.contact_steps, b.contact_steps);
+  EXPECT_EQ(a.impacts, b.impacts);
+}
+
+class FreeFlightBits : public testing::TestWithParam<Iteration> {};
+
+TEST_P(FreeFlightBits, AreThoseOfTheUsualPath) {
+  const TimeStepping mode{.step = 1e-3, .iteration = GetParam()};
+  Simulation a(scene(Path::short_one), mode), b(scene(Path::usual), mode);
+  int free = 0, touching = 0;
+  // Falls of some 0.1 s, impacts, flights between them, in the end lasting contact.
+  for (int i = 0; i < 600 && !HasFailure(); ++i) {
+    // Once per flight cut short, as by periodic events.
+    const auto advance = [i](Simulation& simulation) {
+      if (i % 50 == 7) simulation.run_until(simulation.time() + 0.4e-3);
+      return simulation.step();
+    };
+    const StepReport of_a = advance(a), of_b = advance(b);
+    expect_same(of_a, of_b);
+    expect_same(a.statistics(), b.statistics());
+    EXPECT_EQ(a.state().q, b.state().q);
+    EXPECT_EQ(a.state().v, b.state().v);
+    EXPECT_EQ(a.state().time, b.state().time);
+    EXPECT_EQ(a.energy().save(), b.energy().save());
+    EXPECT_EQ(a.companion().rounding, b.companion().rounding);
+    EXPECT_EQ(a.companion().history.step, b.companion().history.step);
+    EXPECT_EQ(a.companion().modes.size(), b.companion().modes.size());
+    ++(of_a.contacts.empty() ? free : touching);
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(touching, 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Iterations, FreeFlightBits,
+                         testing::Values(Iteration::automatic, Iteration::fixed_point, Iteration::anderson));
+
+TEST(FreeFlight, AnEnergyThatIsNotFiniteIsTheErrorOfAnyStep) {
+  const auto failure = [](Path path) -> std::string {
+    // Upwards: nothing touches. The square of g h overflows.
+    Simulation simulation(scene(path, -1e150), TimeStepping{.step = 1e6});
+    const State start = simulation.state();
+    try {
+      simulation.step();
+    } catch (const SolverError& error) {
+      EXPECT_EQ(simulation.statistics().steps, 0);
+      EXPECT_EQ(simulation.state().q, start.q);
+      EXPECT_EQ(simulation.state().time, 0.0);
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_NE(failure(Path::short_one), "");
+  EXPECT_EQ(failure(Path::short_one), failure(Path::usual));
+}
+
+TEST(FreeFlight, StepsAllocateNothing) {
+  Simulation simulation(scene(Path::short_one), TimeStepping{.step = 1e-4});
+  simulation.step();
+  const std::int64_t before = carom_test::allocations();
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_EQ(carom_test::allocations(), before);
+}
+
+}  // namespace
