@@ -66,7 +66,8 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
         break;
       }
       case SetKind::proportional:
-        worst = larger_magnitude(worst, impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
+        worst = larger_magnitude(worst,
+                                 impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
         break;
     }
   }

@@ -170,21 +170,23 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
 void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touching) {
   const std::vector<BodyOutline>& outlines = detector_.bodies().outlines().list();
   const auto count = static_cast<Index>(touching.size());
+  const bool one_body_each = in.assembly.components().size() == in.assembly.layout()->bodies().size();
+  const auto component_of = [&](Index body) { return one_body_each ? body : in.assembly.component_of(body); };
   joined_.clear();
   sources_.clear();
   Index next = 0;
   const auto add_single_before = [&](Index end) {
     for (; next < single_.size(); ++next) {
-      const Index component = in.assembly.component_of(single_[next].body());
+      const Index component = component_of(single_[next].body());
       if (component >= end) return;
       joined_.push_back({component, component});
       sources_.push_back(count + next);
     }
   };
   for (Index i = 0; i < count; ++i) {
-    const Index first = in.assembly.component_of(outlines[touching[i].a].body);
+    const Index first = component_of(outlines[touching[i].a].body);
     add_single_before(first);
-    joined_.push_back({first, in.assembly.component_of(outlines[touching[i].b].body)});
+    joined_.push_back({first, component_of(outlines[touching[i].b].body)});
     sources_.push_back(i);
     if (!detector_.bodies().resists_rolling(touching[i])) continue;
     joined_.push_back(joined_.back());
