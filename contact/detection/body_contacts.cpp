@@ -243,7 +243,14 @@ void BodyContacts::write(const BodyTouch& touch, const StateView& state, Constra
 void BodyContacts::write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
                               Constraint& out) const {
   const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
-  name_contact(key_of(a, b, touch.gap), *law(a, b), out);
+  const ConstraintKey key = key_of(a, b, touch.gap);
+  if (out.type == ConstraintType::contact && out.key == key) {
+    // To clear all of it costs as much as the rows.
+    out.drift = out.surface_velocity = out.surface_velocity_after = {};
+  } else {
+    out = {};
+  }
+  name_contact(key, *law(a, b), out);
   fill_rows(memory.sides[touch.a], memory.sides[touch.b], touch.gap, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
   out.allowed_approach = touch.allowed_approach;

@@ -77,8 +77,8 @@ public:
                                                          BodyContactSearch& memory) const;
   /// Writes the contact of such outlines. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
-  /// Likewise without its drift, of one of those that find_touching() has found last. \param out as made by
-  /// default
+  /// Likewise without its drift, of one of those that find_touching() has found last. \param out any
+  /// constraint; of the same contact only the numbers are written anew
   void write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
                   Constraint& out) const;
   /// Law of such a pair.

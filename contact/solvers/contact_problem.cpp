@@ -101,6 +101,14 @@ void ContactProblem::group_factors() {
     const std::array<int, 3>& shared = factors_.rows[first].slot;
     if (std::max(std::max(shared[0], shared[1]), shared[2]) >= slots)
       refuse(group.first, "a slot that is none");
+    if (group.size == 2 && sets_[first + 1].kind == SetKind::bounded_interval &&
+        share_two_slots(factors_.rows[first], factors_.rows[first + 1])) {  // the usual case, without loops
+      const std::array<double, 2> both = diagonal_of_both(factors_, &factors_.rows[first]);
+      diagonal_[first] = both[0];
+      diagonal_[first + 1] = both[1];
+      factors_.largest_trace = larger_magnitude(factors_.largest_trace, both[0] + both[1]);
+      continue;
+    }
     double trace = 0.0;
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
       const std::array<int, 3>& slot = factors_.rows[row].slot;

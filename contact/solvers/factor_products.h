@@ -5,6 +5,7 @@
 
 #include <carom/contact/solvers/response_factors.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -19,7 +20,8 @@ namespace carom {
 [[nodiscard]] inline bool share_two_slots(const ResponseFactors::Row& one,
                                           const ResponseFactors::Row& other) {
   constexpr int no_slot = ResponseFactors::no_slot;
-  return one.slot[1] != no_slot && one.slot[2] == no_slot && share_slots(one, other);
+  return one.slot[0] != no_slot && one.slot[1] != no_slot && one.slot[2] == no_slot &&
+         share_slots(one, other);
 }
 
 /// Entry of W on its diagonal, of a row.
@@ -32,6 +34,20 @@ namespace carom {
     sum = sum + h[0] * m[0] * h[0] + h[1] * m[1] * h[1] + h[2] * m[2] * h[2];
   }
   return sum;
+}
+
+/// The same of two rows that share_two_slots().
+[[nodiscard]] inline std::array<double, 2> diagonal_of_both(const ResponseFactors& factors,
+                                                            const ResponseFactors::Row* rows) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  const double* const masses = factors.inverse_mass.data();
+  const double *const m = masses + columns * static_cast<std::size_t>(rows[0].slot[0]),
+                      *const w = masses + columns * static_cast<std::size_t>(rows[0].slot[1]);
+  const auto along = [&](const double* h) {
+    const double first = 0.0 + h[0] * m[0] * h[0] + h[1] * m[1] * h[1] + h[2] * m[2] * h[2];
+    return first + h[3] * w[0] * h[3] + h[4] * w[1] * h[4] + h[5] * w[2] * h[5];
+  };
+  return {along(rows[0].h.data()), along(rows[1].h.data())};
 }
 
 /// H u + c along all rows. \param velocity u, three numbers a slot \param added c, by row

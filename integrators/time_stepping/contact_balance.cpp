@@ -72,7 +72,9 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   ImpulseWork work;
   bool impact = false;
   const std::size_t first = result_.report.contacts.size();
+  const bool is_swept = problem.problem().is_factored();
   for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
+    if (is_swept) keep_impulses(problem, contact);
     if (problem.constraints()[contact].type == ConstraintType::rolling) {
       book_rolling(problem, contact, after, work);
     } else if (problem.constraints()[contact].has_dry_friction()) {
@@ -82,7 +84,6 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     }
   }
   tally(problem, static_cast<int>(result_.report.contacts.size() - first));
-  if (problem.problem().is_factored()) keep_impulses(problem);
   if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
   if (!(work.gain > 0.0)) return 0.0;
   const double gain = book_gain(problem, work, impact, trial);
@@ -217,14 +218,13 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
 }
 
-/// Impulses from which the next step starts.
-void StepBalance::keep_impulses(const IslandProblem& problem) {
-  for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
-    const auto row = static_cast<std::size_t>(problem.first_row(c));
-    std::array<double, 2> impulse{problem.impulses()[row], 0.0};
-    if (problem.constraints()[c].rows > 1) impulse[1] = problem.impulses()[row + 1];
-    result_.contacts.add(problem.constraints()[c].key, impulse);
-  }
+/// Impulses of a constraint, from which the next step starts.
+void StepBalance::keep_impulses(const IslandProblem& problem, std::size_t constraint) {
+  const Constraint& at = problem.constraints()[constraint];
+  const auto row = static_cast<std::size_t>(problem.first_row(constraint));
+  std::array<double, 2> impulse{problem.impulses()[row], 0.0};
+  if (at.rows > 1) impulse[1] = problem.impulses()[row + 1];
+  result_.contacts.add(at.key, impulse);
 }
 
 }  // namespace carom

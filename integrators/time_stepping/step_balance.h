@@ -100,7 +100,7 @@ private:
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
   void tally(const IslandProblem& problem, int contacts);
-  void keep_impulses(const IslandProblem& problem);
+  void keep_impulses(const IslandProblem& problem, std::size_t constraint);
 
   const Assembly* assembly_;
   double capture_speed_;

@@ -106,8 +106,8 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
   rules_.parting = parting;
   rules_.by_part = false;
   remember(in, in.last_step);
-  constraints_.clear();
   if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
+  constraints_.clear();
   // Where nothing touched in the step before there is hardly anything to be found.
   rules_.by_part = rules_.in_parts && !in.companion.modes.empty();
   for (const Range batch : batches) {
@@ -125,7 +125,8 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
 }
 
 /// With contacts of bodies with each other. Constraints are large, and these are many: they are written once,
-/// where they stand among those of their island. False if there are none.
+/// where they stand among those of their island, and where that of the same contact stood in the step before.
+/// False if there are none.
 bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
                                    const StepTrial& trial) {
   const BodyContacts& bodies = detector_.bodies();
@@ -143,22 +144,26 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   for (const Range batch : batches) find_in(in, batch, trial, single_);
   merge(in, touching);
   Index last = none;
-  for (const Index i : islands_.find(batches, joined_)) {
-    const Index source = sources_[i];
+  const std::span<const Index> order = islands_.find(batches, joined_);
+  constraints_.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Index source = sources_[order[k]];
+    Constraint& out = constraints_[k];
     if (source >= touching.size()) {
-      constraints_.push_back(single_[source - touching.size()]);
+      out = single_[source - touching.size()];
       continue;
     }
     if (std::exchange(last, source) == source) {
-      constraints_.push_back(rolling_resistance(constraints_.back(), nullptr));
+      out = rolling_resistance(constraints_[k - 1], nullptr);
       continue;
     }
     if (rules_.drifts) {
-      bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
+      out = {};
+      bodies.write(touching[source], in.start.view(), out);
     } else {
-      bodies.write_rows(touching[source], search_, in.start.view(), constraints_.emplace_back());
+      bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
-    take_sticking({&constraints_.back(), 1});
+    take_sticking({&out, 1});
   }
   islands_.take(constraints_);
   return true;
