@@ -100,7 +100,7 @@ private:
   bool factored_ = false;
   std::vector<Slot> slots_;
   std::vector<int> slot_of_body_;  // of factors, by body; -1 elsewhere
-  std::vector<int> slots_of_row_;  // three a row
+  std::vector<std::array<int, 3>> slots_of_constraint_;
 };
 
 }  // namespace carom

@@ -37,11 +37,6 @@ namespace {
 void write_row(const Constraint& at, const double* h, ResponseFactors::Row& row) {
   constexpr int of_planar_body = ResponseFactors::columns;
   double* to = row.h.data();
-  if (at.bodies == 2 && at.blocks[0].columns == of_planar_body && at.blocks[1].columns == of_planar_body) {
-    std::copy_n(h, 2 * of_planar_body, to);  // the usual case in a pile
-    std::fill_n(to + 2 * of_planar_body, of_planar_body, 0.0);
-    return;
-  }
   row.h = {};
   for (int b = 0; b < at.bodies; ++b, to += of_planar_body) {
     const bool turns = at.blocks[static_cast<std::size_t>(b)].columns == of_planar_body;
@@ -50,6 +45,25 @@ void write_row(const Constraint& at, const double* h, ResponseFactors::Row& row)
     if (turns) to[2] = h[2];
     h += turns ? 3 : 2;
   }
+}
+
+/// Both rows of a contact between two bodies that turn, the usual case in a pile.
+void write_rows_of_two(const Constraint& at, const std::array<int, 3>& slots, ResponseFactors::Row* rows) {
+  constexpr std::size_t width = 2 * ResponseFactors::columns;
+  const double* h = at.jacobian.data();
+  for (ResponseFactors::Row* row = rows; row < rows + 2; ++row, h += width) {
+    row->slot = slots;
+    for (std::size_t k = 0; k < width; ++k) row->h[k] = h[k];
+    for (std::size_t k = width; k < row->h.size(); ++k) row->h[k] = 0.0;
+  }
+}
+
+/// Whether a constraint has such rows, and directions begin with both of them.
+bool has_rows_of_two(const Constraint& at, std::span<const ImpulseDirection> directions) {
+  constexpr int of_planar_body = ResponseFactors::columns;
+  return at.bodies == 2 && at.rows == 2 && at.blocks[0].columns == of_planar_body &&
+         at.blocks[1].columns == of_planar_body && directions.size() > 1 && directions[0].row == 0 &&
+         directions[1].row == 1 && directions[1].constraint == &at;
 }
 
 }  // namespace
@@ -61,8 +75,7 @@ bool Delassus::build_factors(std::span<const ImpulseDirection> directions, BodyR
   slots_.clear();
   factored_ = true;
   ResponseFactors& factors = problem.factors();
-  slots_of_row_.resize(directions.size() * ResponseFactors::most_slots);
-  int* slot = slots_of_row_.data();
+  slots_of_constraint_.clear();
   for (std::size_t r = 0; r < directions.size();) {
     const Constraint& at = *directions[r].constraint;
     // One by one: written as a list and read as one, they would have to wait for each other.
@@ -71,11 +84,15 @@ bool Delassus::build_factors(std::span<const ImpulseDirection> directions, BodyR
     factored_ = at.rows <= 2 && first != no_slot && (at.bodies < 2 || second != no_slot) &&
                 (at.bodies < 3 || third != no_slot);
     if (!factored_) break;
+    slots_of_constraint_.push_back({first, second, third});
+    if (has_rows_of_two(at, directions.subspan(r))) {
+      write_rows_of_two(at, {first, second, third}, &factors.rows[r]);
+      r += 2;
+      continue;
+    }
     for (; r < directions.size() && directions[r].constraint == &at; ++r) {
       ResponseFactors::Row& row = factors.rows[r];
-      *slot++ = row.slot[0] = first;
-      *slot++ = row.slot[1] = second;
-      *slot++ = row.slot[2] = third;
+      row.slot = {first, second, third};
       write_row(at, at.row(directions[r].row), row);
     }
   }
@@ -94,9 +111,11 @@ void Delassus::write_masses(ResponseFactors& factors) const {
 }
 
 void Delassus::add_factored_response(std::span<const double> impulses, double* x, double scale) const {
-  const int* slot = slots_of_row_.data();
-  for (std::size_t r = 0; r < size(); ++r, slot += ResponseFactors::most_slots) {
+  std::size_t constraint = 0;
+  for (std::size_t r = 0; r < size(); ++r) {
     const Constraint& at = *directions_[r].constraint;
+    if (r > 0 && directions_[r - 1].constraint != &at) ++constraint;
+    const std::array<int, 3>& slot = slots_of_constraint_[constraint];
     const double* h = at.row(directions_[r].row);
     const double impulse = scale * impulses[r];
     for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {

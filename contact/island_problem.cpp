@@ -38,10 +38,8 @@ bool is_one_planar_contact(const ContactProblem& problem) {
 
 /// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint
 void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
-  if (row == 0) {
-    set.kind = SetKind::half_line;
-    return;
-  }
+  set = {};  // a half line
+  if (row == 0) return;
   set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
   set.bound = first;
   set.coefficient = at.friction;
@@ -167,6 +165,7 @@ void write_planar_contact(const Constraint& at, const double* velocity_before, i
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = jammed_ = false;
+  answer_.response.clear();
   if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
     return build_any(velocity_before);
   }
@@ -253,9 +252,9 @@ void IslandProblem::update_bound(std::size_t constraint) {
   if (at.type == ConstraintType::rolling) return;
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
   const double slides = slides_[constraint] * at.friction_bound, bound = at.friction * at.friction_bound;
-  set.kind = SetKind::interval;
-  set.lower = slides_[constraint] != 0.0 ? slides : -bound;
-  set.upper = slides_[constraint] != 0.0 ? slides : bound;
+  set = {.kind = SetKind::interval,
+         .lower = slides_[constraint] != 0.0 ? slides : -bound,
+         .upper = slides_[constraint] != 0.0 ? slides : bound};
 }
 
 void IslandProblem::slide(std::size_t constraint, double ratio) {
@@ -273,8 +272,9 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
 
 void IslandProblem::add_velocities(double* velocity) {
   if (!problem_.is_factored()) return map().add_velocities(velocity);
-  problem_.factors().respond(answer_.impulse, scratch_.slot_velocity);
-  const double* change = scratch_.slot_velocity.data();
+  std::vector<double>& response = answer_.response;
+  if (response.empty()) problem_.factors().respond(answer_.impulse, response);
+  const double* change = response.data();
   for (const Delassus::Slot& slot : delassus_.slots()) {
     for (int c = 0; c < slot.block.columns; ++c) velocity[slot.block.v + static_cast<Index>(c)] += change[c];
     change += ResponseFactors::columns;
@@ -333,11 +333,14 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
 }
 
 void IslandProblem::start_from(std::span<const double> impulses) {
-  if (problem_.is_factored()) std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
+  if (!problem_.is_factored()) return;
+  std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
+  answer_.response.clear();
 }
 
 void IslandProblem::set_impulses(std::span<const double> impulses) {
   std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
+  answer_.response.clear();
   xi_.resize(impulses.size());
   problem_.velocities(answer_.impulse, xi_);
   answer_.modes.resize(problem_.groups().size());
@@ -345,6 +348,9 @@ void IslandProblem::set_impulses(std::span<const double> impulses) {
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
 }
 
-void IslandProblem::forget_impulses() { std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0); }
+void IslandProblem::forget_impulses() {
+  std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0);
+  answer_.response.clear();
+}
 
 }  // namespace carom

@@ -23,6 +23,7 @@ std::uint64_t mixed(std::uint64_t hash, const FeatureKey& key) {
 void ConstraintTable::fill_slots() {
   slots_.assign(std::bit_ceil(2 * keys_.size()), none);
   for (Index i = 0; i < keys_.size(); ++i) slots_[slot_of(keys_[i])] = i;
+  filled_ = keys_.size();
 }
 
 /// The slot of a key, or the empty one where it would be.
@@ -35,7 +36,7 @@ std::size_t ConstraintTable::slot_of(const ConstraintKey& key) const {
 
 Index ConstraintTable::find(const ConstraintKey& key) const {
   if (ready_) return slots_[slot_of(key)];
-  for (Index i = 0; i < keys_.size(); ++i) {
+  for (Index i = 0; i < size_; ++i) {
     if (keys_[i] == key) return i;
   }
   return none;

@@ -8,40 +8,52 @@
 #include <carom/core/ids.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace carom {
 
 /// A hash table of keys, each with its place in the order in which they were added. Keeps its memory, and
-/// what it knows of the last keys: contacts that last have the same keys step after step.
+/// what it knows of the last keys: contacts that last have the same keys step after step, which are compared
+/// as they are added, and nothing else is done.
 class CAROM_API ConstraintTable {
 public:
   /// Forgets all keys.
   void clear() {
-    if (ready_) keys_.swap(keys_of_slots_);
+    size_ = 0;
     ready_ = false;
-    keys_.clear();
   }
   /// Adds a key that is not among them. find() knows it after finish().
   void add(const ConstraintKey& key) {
-    if (ready_) keys_of_slots_.clear();
     ready_ = false;
+    if (size_ < keys_.size()) {
+      if (keys_[size_] == key) {
+        ++size_;
+        return;
+      }
+      keys_.resize(size_);
+      filled_ = 0;
+    }
     keys_.push_back(key);
+    ++size_;
   }
   /// Makes the keys ready to be found, after the last add().
   void finish() {
-    if (keys_.size() <= few || ready_) return;
-    if (keys_ != keys_of_slots_) fill_slots();  // what they were filled for is known by the next clear()
-    ready_ = true;
+    if (keys_.size() > size_) {
+      keys_.resize(size_);
+      filled_ = 0;
+    }
+    ready_ = size_ > few;
+    if (ready_ && filled_ != size_) fill_slots();
   }
 
   /// All, in the order of add().
-  [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return keys_; }
+  [[nodiscard]] std::span<const ConstraintKey> keys() const { return {keys_.data(), size_}; }
   /// Place of a key; `none` if it is not among them.
   [[nodiscard]] Index find(const ConstraintKey& key) const;
   /// Likewise, sooner where it is at a place that is likely.
   [[nodiscard]] Index find(const ConstraintKey& key, Index likely) const {
-    return likely < keys_.size() && keys_[likely] == key ? likely : find(key);
+    return likely < size_ && keys_[likely] == key ? likely : find(key);
   }
 
 private:
@@ -49,10 +61,11 @@ private:
   void fill_slots();
   [[nodiscard]] std::size_t slot_of(const ConstraintKey& key) const;
 
-  std::vector<ConstraintKey> keys_;
-  std::vector<ConstraintKey> keys_of_slots_;  // for which the slots were filled, unless ready_: keys_
-  std::vector<Index> slots_;                  // a power of two of them; none: empty
-  bool ready_ = false;                        // the slots are those of keys_
+  std::vector<ConstraintKey> keys_;  // behind the first `size_` some that may be added again
+  std::size_t size_ = 0;
+  std::size_t filled_ = 0;    // so many of keys_ the slots were filled for; 0: for others
+  std::vector<Index> slots_;  // a power of two of them; none: empty
+  bool ready_ = false;        // the slots are those of keys()
 };
 
 }  // namespace carom

@@ -63,10 +63,10 @@ ConvexOutline view(const BodyOutline& outline, const Vec<2>* vertices) {
 
 /// Outlines of the contacts of the step before. Mostly those contacts are the same as in the step before
 /// that.
-void look_up_lasting(const BodyOutlines& outlines, const std::vector<ConstraintKey>& keys,
+void look_up_lasting(const BodyOutlines& outlines, std::span<const ConstraintKey> keys,
                      BodyContactSearch& memory) {
-  if (memory.lasting == keys) return;
-  memory.lasting = keys;
+  if (std::equal(memory.lasting.begin(), memory.lasting.end(), keys.begin(), keys.end())) return;
+  memory.lasting.assign(keys.begin(), keys.end());
   memory.pairs_of_lasting.clear();
   for (const ConstraintKey& key : keys) {
     const bool of_bodies = key.b.owner == FeatureKey::Owner::shape;
@@ -104,6 +104,21 @@ BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   outlines_ = BodyOutlines(assembly);
   find_laws(assembly.system());
   filter_ = PairFilter(assembly);
+  const std::vector<BodyOutline>& list = outlines_.list();
+  in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
+                                     [](const auto& one, const auto& other) { return one.key < other.key; });
+  all_may_touch_ = find_whether_all_touch();
+}
+
+/// Whether may_touch() of outlines of two bodies is true whichever they are.
+bool BodyContacts::find_whether_all_touch() const {
+  const std::vector<BodyOutline>& list = outlines_.list();
+  const auto touches = [&](const BodyOutline& outline) {
+    return !is_point(outline) && outline.filter == list.front().filter;
+  };
+  return !list.empty() && std::all_of(list.begin(), list.end(), touches) &&
+         carom::may_touch(list.front().filter, list.front().filter) && !filter_.excludes_any() &&
+         std::all_of(laws_.begin(), laws_.end(), [](const auto& law) { return law.has_value(); });
 }
 
 void BodyContacts::find_laws(const System& system) {
@@ -145,11 +160,13 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
     memory.broad.reset(owners);
   }
   const auto add = [&](Index i, Index j) {
-    if (!may_touch(list[i], list[j])) return;
-    if (list[j].key < list[i].key) std::swap(i, j);
+    if (!all_may_touch_ && !may_touch(list[i], list[j])) return;
+    if (in_order_of_keys_ ? j < i : list[j].key < list[i].key) std::swap(i, j);
     pairs.emplace_back(i, j);
   };
-  for (const BoxPair& pair : memory.broad.update(memory.boxes, query.margin)) add(pair.first, pair.second);
+  const std::span<const BoxPair> near = memory.broad.update(memory.boxes, query.margin);
+  pairs.reserve(near.size());
+  for (const BoxPair& pair : near) add(pair.first, pair.second);
   if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
   if (query.lasting != nullptr) add_lasting_pairs(query, memory);
 }
@@ -226,7 +243,14 @@ void BodyContacts::write(const BodyTouch& touch, const StateView& state, Constra
 void BodyContacts::write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
                               Constraint& out) const {
   const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
-  name_contact(key_of(a, b, touch.gap), *law(a, b), out);
+  const ConstraintKey key = key_of(a, b, touch.gap);
+  if (out.type == ConstraintType::contact && out.key == key) {
+    // To clear all of it costs as much as the rows.
+    out.drift = out.surface_velocity = out.surface_velocity_after = {};
+  } else {
+    out = {};
+  }
+  name_contact(key, *law(a, b), out);
   fill_rows(memory.sides[touch.a], memory.sides[touch.b], touch.gap, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
   out.allowed_approach = touch.allowed_approach;

@@ -77,8 +77,8 @@ public:
                                                          BodyContactSearch& memory) const;
   /// Writes the contact of such outlines. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
-  /// Likewise without its drift, of one of those that find_touching() has found last. \param out as made by
-  /// default
+  /// Likewise without its drift, of one of those that find_touching() has found last. \param out any
+  /// constraint; of the same contact only the numbers are written anew
   void write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
                   Constraint& out) const;
   /// Law of such a pair.
@@ -101,6 +101,7 @@ private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
+  [[nodiscard]] bool find_whether_all_touch() const;
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
@@ -115,6 +116,8 @@ private:
   bool has_static_friction_ = false;
   bool has_other_impact_law_ = false;
   bool resists_rolling_ = false;
+  bool all_may_touch_ = false;     // outlines of any two bodies
+  bool in_order_of_keys_ = false;  // outlines are
 };
 
 }  // namespace carom

@@ -86,14 +86,14 @@ void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<
   const BodySlot slot = assembly_->layout()->bodies()[body];
   for_runs({component, component + 1}, [&](const CentreRun& run) {
     if (run.points != none || body < run.bodies.begin || body >= run.bodies.end) return;
-    add<D>(slot, BodyFeature::at_centre(slot, body, run.material), query, out);
+    add<D>(slot, BodyFeature::at_centre(slot, body, run.material), all_shapes, query, out);
   });
   const Range own = features_.of({component, component + 1}).points;
   const auto points = features_.points().begin();
   const auto before = [](const BodyFeature& point, Index of) { return point.body < of; };
   for (auto point = std::lower_bound(points + own.begin, points + own.end, body, before);
        point != points + own.end && point->body == body; ++point) {
-    add<D>(slot, *point, query, out);
+    add<D>(slot, *point, all_shapes, query, out);
   }
 }
 
@@ -101,18 +101,25 @@ Index GroundContacts::material_of(const CentreRun& centres) const {
   return centres.points == none ? centres.material : features_.points()[centres.points].material;
 }
 
-bool GroundContacts::any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const {
+GroundContacts::ShapeBits GroundContacts::shapes_near(Range bodies, const CentreRun& centres,
+                                                      const ContactQuery& query) const {
   if (query.lasting != nullptr) {
     const bool bare = centres.points == none;
-    if (bare ? query.lasting->any_centre(bodies) : shapes_.any_moves()) return true;
+    if (bare ? query.lasting->any_centre(bodies) : shapes_.any_moves()) return all_shapes;
   }
   const double margin = reach_of(centres, query.margin);
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
-  for (const Index shape : laws_.touched_by(material_of(centres))) {
-    if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) return true;
+  const std::span<const Index> touched = laws_.touched_by(material_of(centres));
+  ShapeBits near = 0;
+  bool may_open = query.lasting != nullptr && query.lasting->slack() != 0.0;
+  for (std::size_t place = 0; place < touched.size(); ++place) {
+    const Index shape = touched[place];
+    if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) near |= bit_of(place);
+    may_open = may_open || (query.lasting != nullptr && !shapes_.is_flat(shape));
   }
-  return false;
+  // Contacts that last may be open beyond the margin.
+  return near != 0 && may_open ? all_shapes : near;
 }
 
 /// Calls f(run) for the centres of some components.
@@ -156,7 +163,7 @@ void GroundContacts::find_in(Range components, const ContactQuery& query,
   }
   for (Index i = own.points.begin; i < own.points.end; ++i) {
     const BodyFeature& point = features_.points()[i];
-    add<D>(assembly_->layout()->bodies()[point.body], point, query, out);
+    add<D>(assembly_->layout()->bodies()[point.body], point, all_shapes, query, out);
   }
 }
 
@@ -168,29 +175,34 @@ void GroundContacts::find_among(Range components, const ContactQuery& query,
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
-  const auto add_point = [&](Index i) { add<D>(bodies[points[i].body], points[i], query, out); };
+  const auto add_some = [&](Index i, ShapeBits shapes) {
+    add<D>(bodies[points[i].body], points[i], shapes, query, out);
+  };
+  const auto add_point = [&](Index i) { add_some(i, all_shapes); };
   for_runs(components, [&](const CentreRun& centres) {
     const bool rounded = centres.points != none;
     if (rounded) {
       rest.before(centres.bodies.begin, add_point);
       rest.skip_to(centres.points + centres.bodies.size());
     }
-    const auto add_bodies = [&](Range some) {
+    const auto add_bodies = [&](Range some, ShapeBits near) {
       for (Index body = some.begin; body < some.end; ++body) {
         if (rounded) {
-          add_point(centres.points + (body - centres.bodies.begin));
+          add_some(centres.points + (body - centres.bodies.begin), near);
           continue;
         }
         rest.before(body, add_point);
         const BodySlot at = bodies[body];
-        add<D>(at, BodyFeature::at_centre(at, body, centres.material), query, out);
+        add<D>(at, BodyFeature::at_centre(at, body, centres.material), near, query, out);
       }
     };
-    if (centres.bodies.size() <= hardly_any) return add_bodies(centres.bodies);
+    if (centres.bodies.size() <= hardly_any) return add_bodies(centres.bodies, all_shapes);
     for_parts(centres.bodies, many, [&](Range part) {
-      if (!any_touches(part, centres, query)) return;
-      for_parts(part, few, [&](Range near) {
-        if (near.size() == part.size() || any_touches(near, centres, query)) add_bodies(near);
+      const ShapeBits of_part = shapes_near(part, centres, query);
+      if (of_part == 0) return;
+      for_parts(part, few, [&](Range some) {
+        const ShapeBits near = some.size() == part.size() ? of_part : shapes_near(some, centres, query);
+        if (near != 0) add_bodies(some, near);
       });
     });
   });
@@ -198,10 +210,13 @@ void GroundContacts::find_among(Range components, const ContactQuery& query,
 }
 
 template <int D>
-void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,
-                         std::vector<Constraint>& out) const {
+void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
+                         const ContactQuery& query, std::vector<Constraint>& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
-  for (const Index shape : laws_.touched_by(feature.material)) {
+  const std::span<const Index> touched = laws_.touched_by(feature.material);
+  for (std::size_t place = 0; place < touched.size(); ++place) {
+    if ((shapes & bit_of(place)) == 0) continue;
+    const Index shape = touched[place];
     const GroundMotion* const motion = shapes_.motion(shape, query.places);
     const Gap gap = shapes_.gap(shape, motion, at.centre.data());
     const double distance = gap.distance - feature.radius;

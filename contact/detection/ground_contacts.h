@@ -13,6 +13,9 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace carom {
@@ -73,9 +76,15 @@ private:
   void find_among(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
   template <int D>
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
-  // Appends the contacts of one feature.
+  // Places of shapes among those that a material touches, as bits; all from the last one on share its bit.
+  using ShapeBits = std::uint64_t;
+  static constexpr ShapeBits all_shapes = ~ShapeBits{0};
+  [[nodiscard]] static ShapeBits bit_of(std::size_t place) {
+    return ShapeBits{1} << std::min(place, std::size_t{63});
+  }
+  // Appends the contacts of one feature with some shapes.
   template <int D>
-  void add(const BodySlot& body, const BodyFeature& feature, const ContactQuery& query,
+  void add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes, const ContactQuery& query,
            std::vector<Constraint>& out) const;
   // Writes a contact. \param after motion of the shape at the end of the step; may be null
   template <int D>
@@ -85,8 +94,9 @@ private:
   template <class F>
   void for_runs(Range components, F&& f) const;
   [[nodiscard]] bool only_points(Range runs) const;
-  // Whether any of some neighbours in a run may have a contact.
-  [[nodiscard]] bool any_touches(Range bodies, const CentreRun& centres, const ContactQuery& query) const;
+  // Shapes with which any of some neighbours in a run may have a contact.
+  [[nodiscard]] ShapeBits shapes_near(Range bodies, const CentreRun& centres,
+                                      const ContactQuery& query) const;
 
   const Assembly* assembly_;
   GroundShapes shapes_;

@@ -11,6 +11,7 @@
 #include <carom/core/constraint_table.h>
 #include <carom/core/export.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -47,7 +48,7 @@ public:
   /// True if there are none.
   [[nodiscard]] bool empty() const { return contacts_.keys().empty(); }
   /// All, in the order of add().
-  [[nodiscard]] const std::vector<ConstraintKey>& keys() const { return contacts_.keys(); }
+  [[nodiscard]] std::span<const ConstraintKey> keys() const { return contacts_.keys(); }
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.

@@ -34,6 +34,8 @@ public:
   [[nodiscard]] bool may_touch(Index a, const ContactFilter& of_a, Index b, const ContactFilter& of_b) const {
     return a != b && carom::may_touch(of_a, of_b) && !is_excluded(a, b);
   }
+  /// True if joints or decisions part any.
+  [[nodiscard]] bool excludes_any() const { return !excluded_.empty(); }
   /// True if a joint or a decision parts two bodies.
   [[nodiscard]] bool is_excluded(Index a, Index b) const {
     const Index low = a < b ? a : b, high = a < b ? b : a;

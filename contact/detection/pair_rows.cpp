@@ -47,6 +47,17 @@ Vec<2> material_rate(const PairSide& side, const Vec<2>& point, const Vec<2>& po
          Space<2>::lever_velocity(&side.spin, Vec<2>(point_rate - side.velocity));
 }
 
+/// Writes a row between two bodies that turn, the usual case in a pile.
+void write_row_of_two(const RowSide& a, const RowSide& b, const Vec<2>& direction, const Vec<2>& point,
+                      double* row) {
+  row[0] = direction[0];
+  row[1] = direction[1];
+  row[2] = Space<2>::spin_row(direction, Vec<2>(point - a.centre))[0];
+  row[3] = -direction[0];
+  row[4] = -direction[1];
+  row[5] = -Space<2>::spin_row(direction, Vec<2>(point - b.centre))[0];
+}
+
 /// Writes a side's columns of a row; returns where the next ones begin.
 double* write_columns(const RowSide& side, double sign, const Vec<2>& direction, const Vec<2>& point,
                       double* row) {
@@ -97,6 +108,11 @@ void fill_rows(const RowSide& a, const RowSide& b, const GapPoint& at, Constrain
   out.rows = 2;
   out.gap = at.gap;
   double* row = out.jacobian.data();
+  if (a.columns == 3 && b.columns == 3) {
+    write_row_of_two(a, b, n, point, row);
+    write_row_of_two(a, b, t, point, row + 6);
+    return;
+  }
   for (const Vec<2>* const direction : {&n, &t}) {
     row = write_columns(b, -1.0, *direction, point, write_columns(a, 1.0, *direction, point, row));
   }

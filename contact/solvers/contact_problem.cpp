@@ -3,6 +3,7 @@
 #include <carom/contact/solvers/contact_problem.h>
 
 #include <carom/contact/solvers/factor_products.h>
+#include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/numerics/accurate_dot.h>
 
 #include <algorithm>
@@ -72,6 +73,8 @@ void ContactProblem::reset_factors(int rows, int slots) {
     throw std::invalid_argument("contact problem: the numbers of rows and slots are not negative");
   }
   resize_factors(rows);
+  std::fill(b_.begin(), b_.end(), 0.0);
+  std::fill(sets_.begin(), sets_.end(), RowSet{});
   factors_.reset(rows, slots);
 }
 
@@ -79,23 +82,34 @@ void ContactProblem::resize_factors(int rows) {
   rows_ = rows;
   const auto n = static_cast<std::size_t>(rows);
   w_.clear();
-  b_.assign(n, 0.0);
-  sets_.assign(n, RowSet{});
+  b_.resize(n);
+  sets_.resize(n);
   groups_.clear();
   diagonal_.resize(n);  // group() writes it
   factors_.resize_rows(rows);
   factored_ = true;
 }
 
-/// Diagonal blocks of W, which solvers read most. Checks on the way that rows of a group have the same slots.
+/// Diagonal of W, which solvers read most, and traces of its blocks. Checks on the way that rows of a group
+/// have the same slots.
 void ContactProblem::group_factors() {
   const int slots = static_cast<int>(factors_.slots());
+  factors_.largest_trace = 0.0;
   for (const RowGroup& group : groups_) {
     const auto first = static_cast<std::size_t>(group.first);
     if (group.size > 2) refuse(group.first, "a contact in factors has one friction row");
     const std::array<int, 3>& shared = factors_.rows[first].slot;
     if (std::max(std::max(shared[0], shared[1]), shared[2]) >= slots)
       refuse(group.first, "a slot that is none");
+    if (group.size == 2 && sets_[first + 1].kind == SetKind::bounded_interval &&
+        share_two_slots(factors_.rows[first], factors_.rows[first + 1])) {  // the usual case, without loops
+      const std::array<double, 2> both = diagonal_of_both(factors_, &factors_.rows[first]);
+      diagonal_[first] = both[0];
+      diagonal_[first + 1] = both[1];
+      factors_.largest_trace = larger_magnitude(factors_.largest_trace, both[0] + both[1]);
+      continue;
+    }
+    double trace = 0.0;
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
       const std::array<int, 3>& slot = factors_.rows[row].slot;
       if (slot[0] != shared[0] || slot[1] != shared[1] || slot[2] != shared[2])
@@ -103,7 +117,9 @@ void ContactProblem::group_factors() {
       if (sets_[row].kind == SetKind::bounded_disc)
         refuse(static_cast<int>(row), "no disc in a problem in factors");
       diagonal_[row] = diagonal_of(factors_, factors_.rows[row]);
+      trace += diagonal_[row];
     }
+    factors_.largest_trace = larger_magnitude(factors_.largest_trace, trace);
   }
 }
 

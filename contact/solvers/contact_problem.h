@@ -40,7 +40,7 @@ public:
   /// The same for a problem in factors, which are zero then. No disc may be among its sets.
   void reset_factors(int rows, int slots);
 
-  /// Likewise without slots, the rows of the factors still to be written.
+  /// Likewise without slots; vector, sets and rows of the factors are still to be written.
   void resize_factors(int rows);
 
   /// Whether W is given by factors().

@@ -5,10 +5,24 @@
 
 #include <carom/contact/solvers/response_factors.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 
 namespace carom {
+
+/// Whether two rows reach the same slots.
+[[nodiscard]] inline bool share_slots(const ResponseFactors::Row& one, const ResponseFactors::Row& other) {
+  return one.slot[0] == other.slot[0] && one.slot[1] == other.slot[1] && one.slot[2] == other.slot[2];
+}
+
+/// Whether two rows reach the same two slots, as those of a contact of two bodies do.
+[[nodiscard]] inline bool share_two_slots(const ResponseFactors::Row& one,
+                                          const ResponseFactors::Row& other) {
+  constexpr int no_slot = ResponseFactors::no_slot;
+  return one.slot[0] != no_slot && one.slot[1] != no_slot && one.slot[2] == no_slot &&
+         share_slots(one, other);
+}
 
 /// Entry of W on its diagonal, of a row.
 [[nodiscard]] inline double diagonal_of(const ResponseFactors& factors, const ResponseFactors::Row& row) {
@@ -22,17 +36,41 @@ namespace carom {
   return sum;
 }
 
+/// The same of two rows that share_two_slots().
+[[nodiscard]] inline std::array<double, 2> diagonal_of_both(const ResponseFactors& factors,
+                                                            const ResponseFactors::Row* rows) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  const double* const masses = factors.inverse_mass.data();
+  const double *const m = masses + columns * static_cast<std::size_t>(rows[0].slot[0]),
+                      *const w = masses + columns * static_cast<std::size_t>(rows[0].slot[1]);
+  const auto along = [&](const double* h) {
+    const double first = 0.0 + h[0] * m[0] * h[0] + h[1] * m[1] * h[1] + h[2] * m[2] * h[2];
+    return first + h[3] * w[0] * h[3] + h[4] * w[1] * h[4] + h[5] * w[2] * h[5];
+  };
+  return {along(rows[0].h.data()), along(rows[1].h.data())};
+}
+
 /// H u + c along all rows. \param velocity u, three numbers a slot \param added c, by row
 /// \param out by row
 inline void along_all_rows(const ResponseFactors& factors, std::span<const double> velocity,
                            std::span<const double> added, std::span<double> out) {
   constexpr std::size_t columns = ResponseFactors::columns;
-  for (std::size_t r = 0; r < factors.rows.size(); ++r) {
+  const auto of_slot = [&](int slot) { return velocity.data() + columns * static_cast<std::size_t>(slot); };
+  const std::size_t count = factors.rows.size();
+  for (std::size_t r = 0; r < count; ++r) {
     const ResponseFactors::Row& row = factors.rows[r];
+    if (r + 1 < count && share_two_slots(row, factors.rows[r + 1])) {  // velocities are read once
+      const double *const n = row.h.data(), *const t = factors.rows[r + 1].h.data();
+      const double *const u = of_slot(row.slot[0]), *const w = of_slot(row.slot[1]);
+      const double x = u[0], y = u[1], spin = u[2], a = w[0], b = w[1], c = w[2];
+      out[r] = (0.0 + n[0] * x + n[1] * y + n[2] * spin + n[3] * a + n[4] * b + n[5] * c) + added[r];
+      ++r;
+      out[r] = (0.0 + t[0] * x + t[1] * y + t[2] * spin + t[3] * a + t[4] * b + t[5] * c) + added[r];
+      continue;
+    }
     double sum = 0.0;
     for (std::size_t i = 0; i < ResponseFactors::most_slots && row.slot[i] != ResponseFactors::no_slot; ++i) {
-      const double *const h = &row.h[columns * i], *const u = velocity.data() +
-                                                              columns * static_cast<std::size_t>(row.slot[i]);
+      const double *const h = &row.h[columns * i], *const u = of_slot(row.slot[i]);
       sum = sum + h[0] * u[0] + h[1] * u[1] + h[2] * u[2];
     }
     out[r] = sum + added[r];

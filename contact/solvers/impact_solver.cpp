@@ -81,6 +81,7 @@ void ImpactSolver::solve(ImpactLaw law, const ContactProblem& problem, std::span
   before_.resize(n);
   for (std::size_t i = 0; i < n; ++i) before_[i] = problem.vector()[i] / (1.0 + restitution[i]);
   answer.changed_modes = false;
+  answer.response.clear();
   answer.impulse.assign(n, 0.0);
   if (law == ImpactLaw::energetic && is_one_contact(problem)) {
     static_cast<void>(follow(problem, before_, restitution[0], answer));

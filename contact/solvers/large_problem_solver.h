@@ -39,6 +39,8 @@ public:
   /// answer stay as they are.
   void solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
              std::span<ContactMode> modes, ContactReport& report);
+  /// M^-1 H^T P of the impulses that were written, three numbers a slot. Valid until the next solve().
+  [[nodiscard]] std::span<const double> response() const { return slot_velocity_; }
   /// Outcome of an answer of some residual.
   [[nodiscard]] Outcome judged(double residual) const;
   /// True if the exact solvers may be asked for a problem whose sweeps did not end.

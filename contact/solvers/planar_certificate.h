@@ -24,7 +24,15 @@ namespace carom {
 void contact_modes(const ContactProblem& problem, std::span<const double> impulse, std::span<const double> xi,
                    std::span<ContactMode> modes);
 
-/// Largest trace of W over the rows of a group [1/kg, ...]; infinity where one is no number.
+/// Larger of two magnitudes; a NaN counts as infinite, so that it cannot hide in a maximum.
+[[nodiscard]] inline double larger_magnitude(double most, double value) {
+  const double magnitude = std::abs(value);
+  if (magnitude <= most) return most;
+  return std::isnan(magnitude) ? std::numeric_limits<double>::infinity() : magnitude;
+}
+
+/// Largest trace of W over the rows of a group [1/kg, ...]; infinity where one is no number. Of a problem in
+/// factors it is known.
 [[nodiscard]] double largest_trace(const ContactProblem& problem);
 
 /// One planar contact with an answer: trace of W [1/kg], b [m/s], coefficient of friction, impulses [N s] and

@@ -20,13 +20,6 @@ double trace(const ContactProblem& problem, const RowGroup& group) {
   return sum;
 }
 
-// Larger of two magnitudes; a NaN counts as infinite, so that it cannot hide in a maximum.
-double larger(double most, double value) {
-  const double magnitude = std::abs(value);
-  if (magnitude <= most) return most;
-  return std::isnan(magnitude) ? infinity : magnitude;
-}
-
 // distance() of a planar contact; raises the scale P* by its own. All in one go: a settled pile costs as many
 // of these as it has contacts, in each step.
 double planar_distance(double friction, const double* p, const double* b, const double* xi, double rho,
@@ -52,14 +45,14 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
     const double moved = impulse[i] - rho * xi[i];
     switch (set.kind) {
       case SetKind::half_line:
-        worst = larger(worst, impulse[i] - std::max(moved, 0.0));
+        worst = larger_magnitude(worst, impulse[i] - std::max(moved, 0.0));
         break;
       case SetKind::interval:
-        worst = larger(worst, impulse[i] - std::min(std::max(moved, set.lower), set.upper));
+        worst = larger_magnitude(worst, impulse[i] - std::min(std::max(moved, set.lower), set.upper));
         break;
       case SetKind::bounded_interval: {
         const double radius = set.coefficient * std::max(impulse[static_cast<std::size_t>(set.bound)], 0.0);
-        worst = larger(worst, impulse[i] - std::min(std::max(moved, -radius), radius));
+        worst = larger_magnitude(worst, impulse[i] - std::min(std::max(moved, -radius), radius));
         break;
       }
       case SetKind::bounded_disc: {
@@ -67,13 +60,14 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
         const double second = impulse[i + 1] - rho * xi[i + 1];
         const double length = std::hypot(moved, second);
         const double shrink = length > radius ? radius / length : 1.0;
-        worst = larger(worst, impulse[i] - shrink * moved);
-        worst = larger(worst, impulse[i + 1] - shrink * second);
+        worst = larger_magnitude(worst, impulse[i] - shrink * moved);
+        worst = larger_magnitude(worst, impulse[i + 1] - shrink * second);
         ++i;
         break;
       }
       case SetKind::proportional:
-        worst = larger(worst, impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
+        worst = larger_magnitude(worst,
+                                 impulse[i] - set.coefficient * impulse[static_cast<std::size_t>(set.bound)]);
         break;
     }
   }
@@ -83,8 +77,9 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
 }  // namespace
 
 double largest_trace(const ContactProblem& problem) {
+  if (problem.is_factored()) return problem.factors().largest_trace;
   double largest = 0.0;
-  for (const RowGroup& group : problem.groups()) largest = larger(largest, trace(problem, group));
+  for (const RowGroup& group : problem.groups()) largest = larger_magnitude(largest, trace(problem, group));
   return largest;
 }
 
@@ -115,8 +110,8 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
                               &problem.vector()[first], &xi[first], rho, scale);
     } else {
       for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
-        scale = larger(scale, impulse[i]);
-        scale = larger(scale, problem.vector()[i] * rho);
+        scale = larger_magnitude(scale, impulse[i]);
+        scale = larger_magnitude(scale, problem.vector()[i] * rho);
       }
       error = distance(problem, group, impulse, xi, rho);
     }

@@ -16,11 +16,6 @@ inline void push(const double* h, const double* g, double p, double q, double* u
   u[2] = z;
 }
 
-/// Whether two rows reach the same bodies.
-inline bool share_slots(const ResponseFactors::Row& one, const ResponseFactors::Row& other) {
-  return one.slot[0] == other.slot[0] && one.slot[1] == other.slot[1] && one.slot[2] == other.slot[2];
-}
-
 /// Adds the products of a block of a row and the velocity of its slot.
 inline double add_times(const double* h, const double* u, double sum) {
   return sum + h[0] * u[0] + h[1] * u[1] + h[2] * u[2];

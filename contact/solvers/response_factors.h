@@ -27,6 +27,7 @@ struct CAROM_API ResponseFactors {
 
   std::vector<double> inverse_mass;  ///< three numbers a slot [1/kg, 1/kg, 1/(kg m^2)]; 0: immovable
   std::vector<Row> rows;
+  double largest_trace = 0.0;  ///< of W over the rows of a group (planar_certificate.h); of a grouped problem
 
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);

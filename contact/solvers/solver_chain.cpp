@@ -38,7 +38,7 @@ struct SolverChain::Workspace {
   bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   void take_at_cap(const ExactAttempt& attempt, ContactReport& report) const;
   void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
-  void sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  bool sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 };
 
 // Sizes the workspace; false for a problem without rows, which is solved.
@@ -92,16 +92,19 @@ void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<doub
   if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
 }
 
-// Likewise; a small one by the exact solvers where the modes of the sweeps are not those of the answer.
-void SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
+// Likewise; a small one by the exact solvers where the modes of the sweeps are not those of the answer. True
+// if the impulses are those that `large` has judged.
+bool SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
                                             ContactReport& report) {
   sweep(problem, impulse, report);
   ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
-  if (!(report.residual <= accepted_residual) && large.has_dense(problem)) {
+  const bool is_left = !(report.residual <= accepted_residual) && large.has_dense(problem);
+  if (is_left) {
     exact.solve(large.dense(), modes, attempt);
     take_at_cap(attempt, report);
   }
   count(report, attempt.best, attempt.applicable, statistics);
+  return !is_left;
 }
 
 // Where no solver finishes, the best answer is judged by the budget.
@@ -128,7 +131,8 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   report = {};
   if (problem.is_factored()) {
     std::fill(impulse.begin(), impulse.end(), 0.0);
-    return work.sweep_or_solve(problem, impulse, report);
+    work.sweep_or_solve(problem, impulse, report);
+    return;
   }
   if (!work.begin(problem, impulse, report)) return;
   ExactAttempt attempt{.impulse = impulse, .xi = work.xi, .report = report};
@@ -145,6 +149,7 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   const bool warm = std::exchange(solution.known, true) && report.usable();
   const bool several = problem.groups().size() > 1;
   solution.changed_modes = false;
+  solution.response.clear();
   if (!warm && solution.modes.size() == 1 && work.solve_regular(problem, solution.impulse, report)) {
     solution.modes[0] = work.modes[0];
     return;
@@ -152,7 +157,10 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   if (problem.is_factored()) {
     demand_grouped(problem, solution.impulse);
     report = {};
-    work.sweep_or_solve(problem, solution.impulse, report);
+    if (work.sweep_or_solve(problem, solution.impulse, report)) {
+      const std::span<const double> response = work.large.response();
+      solution.response.assign(response.begin(), response.end());
+    }
     solution.changed_modes = warm && solution.modes != work.modes;
     solution.modes.assign(work.modes.begin(), work.modes.end());
     return;

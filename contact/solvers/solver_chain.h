@@ -24,6 +24,8 @@ struct ContactSolution {
   std::vector<double> impulse;     ///< P, by row [N s]
   std::vector<ContactMode> modes;  ///< by group
   ContactReport report;
+  /// M^-1 H^T P, three numbers a slot, of a problem in factors whose answer is that of sweeps; else empty.
+  std::vector<double> response;
   bool known = false;          ///< a start: an answer, usable or not, to a problem of the same rows
   bool changed_modes = false;  ///< the answer has other modes than what it started from
 };

@@ -22,16 +22,20 @@ struct SweepPacks::Group {
   const RowSet* set = nullptr;
 };
 
-void SweepPacks::scale_masses(const ResponseFactors& factors) {
+/// True if there are as many slots as before, and the same of them move.
+bool SweepPacks::scale_masses(const ResponseFactors& factors) {
   constexpr std::size_t columns = ResponseFactors::columns;
   const std::size_t count = factors.slots();
+  bool same = scale_.size() == count + 1;
   scale_.resize(count + 1);
   for (std::size_t slot = 0; slot < count; ++slot) {
     const double* const mass = factors.inverse_mass.data() + columns * slot;
+    const bool moved = moves(slot);
     scale_[slot].v = Lanes{std::sqrt(mass[0]), std::sqrt(mass[1]), std::sqrt(mass[2]), 0.0};
+    same = same && moves(slot) == moved;
   }
   scale_[count] = {};
-  taken_.assign(count + 1, 0);
+  return same;
 }
 
 /// Where a group cannot move, rho is that of the most movable one (residual.h).
@@ -41,7 +45,9 @@ void SweepPacks::find_least_trace(const ContactProblem& problem) {
   immovable_rho_ = largest > 0.0 ? 1.0 / largest : 1.0;
 }
 
-SweepPacks::Group SweepPacks::read(const ContactProblem& problem, std::size_t g) const {
+/// Raises the scale of the loads by its own.
+SweepPacks::Group SweepPacks::read(const ContactProblem& problem, std::size_t g,
+                                   std::span<const double> impulse) {
   constexpr std::size_t columns = ResponseFactors::columns;
   const RowGroup& at = problem.groups()[g];
   const auto first = static_cast<std::size_t>(at.first);
@@ -70,8 +76,11 @@ SweepPacks::Group SweepPacks::read(const ContactProblem& problem, std::size_t g)
   }
   const double trace = group.w_nn + group.w_tt;
   group.rho = trace > least_trace_ ? 1.0 / trace : immovable_rho_;
-  for (std::size_t row = 0; row < static_cast<std::size_t>(at.size); ++row)
+  for (std::size_t row = 0; row < static_cast<std::size_t>(at.size); ++row) {
     group.b[row] = problem.vector()[first + row];
+    group.p[row] = impulse[first + row];
+    load_scale_ = std::max(load_scale_, std::abs(group.b[row]) * group.rho);
+  }
   return group;
 }
 
@@ -89,27 +98,23 @@ bool SweepPacks::is_regular(const Group& group) {
 }
 
 /// First open pack without the bodies of a group; a new one where there is none.
-ContactPack& SweepPacks::find_room(const Group& group, int& lane) {
+std::int32_t SweepPacks::find_room(const Group& group, int& lane) {
   const auto first = static_cast<std::size_t>(group.slot[0]),
              second = static_cast<std::size_t>(group.slot[1]);
   const auto at = static_cast<std::size_t>(std::countr_one(taken_[first] | taken_[second]));
-  const auto begin = [&]() -> ContactPack& {
+  const auto begin = [&] {
     if (pack_count_ == packs_.size()) packs_.emplace_back();
-    ContactPack& pack = packs_[pack_count_++];
-    pack.group.fill(-1);
-    return pack;
+    packs_[pack_count_].group.fill(-1);
+    return static_cast<std::int32_t>(pack_count_++);
   };
   lane = 0;
   if (at >= most_open) return begin();
   Open& open = open_[at];
-  if (open.pack < 0) {
-    open = {static_cast<std::int32_t>(pack_count_), 0};
-    begin();
-  }
+  if (open.pack < 0) open = {begin(), 0};
   lane = open.used++;
   if (moves(first)) taken_[first] |= 1u << at;
   if (moves(second)) taken_[second] |= 1u << at;
-  return packs_[static_cast<std::size_t>(open.pack)];
+  return open.pack;
 }
 
 /// Free places of a pack are filled with contacts of nobody. Its bodies may be in the next one.
@@ -123,11 +128,16 @@ void SweepPacks::close(std::size_t open) {
   open_[open] = {};
 }
 
-void SweepPacks::put(const Group& group, ContactPack& pack, int lane) {
+/// Writes who is at a place,
+void SweepPacks::name(const Group& group, ContactPack& pack, int lane) {
   const auto place = static_cast<std::size_t>(lane);
   pack.group[place] = group.number;
   pack.first[place] = group.slot[0];
   pack.second[place] = group.slot[1];
+}
+
+/// and the numbers.
+void SweepPacks::put(const Group& group, ContactPack& pack, int lane) {
   for (std::size_t k = 0; k < 6; ++k) {
     pack.h_n[k][lane] = group.h[0][k];
     pack.h_t[k][lane] = group.h[1][k];
@@ -171,30 +181,65 @@ void SweepPacks::add_odd(const Group& group) {
 }
 
 void SweepPacks::build(const ContactProblem& problem, std::span<const double> impulse) {
-  scale_masses(problem.factors());
+  const bool same_slots = scale_masses(problem.factors());
   find_least_trace(problem);
+  if (same_slots && has_places(problem) && fill_places(problem, impulse)) return;
+  find_places(problem, impulse);
+}
+
+/// True if the places are those of a problem whose groups have the same slots.
+bool SweepPacks::has_places(const ContactProblem& problem) const {
+  const std::span<const RowGroup> groups = problem.groups();
+  if (groups.size() != places_.size()) return false;
+  const auto nobody = static_cast<std::int32_t>(scale_.size() - 1);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::array<int, 3>& slot = problem.factors().rows[static_cast<std::size_t>(groups[g].first)].slot;
+    const std::int32_t second = slot[1] == ResponseFactors::no_slot ? nobody : slot[1];
+    if (slot[0] != places_[g].first || second != places_[g].second) return false;
+  }
+  return true;
+}
+
+/// Writes numbers where the same groups were. False if another one is regular now.
+bool SweepPacks::fill_places(const ContactProblem& problem, std::span<const double> impulse) {
+  odd_.clear();
+  load_scale_ = 0.0;
+  for (std::size_t g = 0; g < places_.size(); ++g) {
+    const Place& place = places_[g];
+    const Group group = read(problem, g, impulse);
+    if (is_regular(group) != (place.pack >= 0)) return false;
+    if (place.pack < 0) {
+      add_odd(group);
+    } else {
+      put(group, packs_[static_cast<std::size_t>(place.pack)], place.lane);
+    }
+  }
+  return true;
+}
+
+void SweepPacks::find_places(const ContactProblem& problem, std::span<const double> impulse) {
+  taken_.assign(scale_.size(), 0);
   pack_count_ = 0;
   open_.fill({});
+  places_.clear();
   odd_.clear();
   load_scale_ = 0.0;
   for (std::size_t g = 0; g < problem.groups().size(); ++g) {
-    Group group = read(problem, g);
-    const auto first = static_cast<std::size_t>(problem.groups()[g].first);
-    for (std::size_t row = 0; row < static_cast<std::size_t>(group.rows); ++row) {
-      group.p[row] = impulse[first + row];
-      load_scale_ = std::max(load_scale_, std::abs(group.b[row]) * group.rho);
-    }
+    const Group group = read(problem, g, impulse);
+    Place& place = places_.emplace_back();
+    place.first = group.slot[0];
+    place.second = group.slot[1];
     if (!is_regular(group)) {
       add_odd(group);
       continue;
     }
-    int lane = 0;
-    ContactPack& pack = find_room(group, lane);
-    put(group, pack, lane);
-    if (lane + 1 < lane_count) continue;
-    const auto full = std::find_if(open_.begin(), open_.end(), [&](const Open& open) {
-      return open.pack >= 0 && &packs_[static_cast<std::size_t>(open.pack)] == &pack;
-    });
+    place.pack = find_room(group, place.lane);
+    ContactPack& pack = packs_[static_cast<std::size_t>(place.pack)];
+    name(group, pack, place.lane);
+    put(group, pack, place.lane);
+    if (place.lane + 1 < lane_count) continue;
+    const auto full =
+        std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.pack == place.pack; });
     close(static_cast<std::size_t>(full - open_.begin()));
   }
   Group nobody;
@@ -203,7 +248,9 @@ void SweepPacks::build(const ContactProblem& problem, std::span<const double> im
   nobody.rows = 1;
   for (ContactPack& pack : packs()) {
     for (int lane = 0; lane < lane_count; ++lane) {
-      if (pack.group[static_cast<std::size_t>(lane)] < 0) put(nobody, pack, lane);
+      if (pack.group[static_cast<std::size_t>(lane)] >= 0) continue;
+      name(nobody, pack, lane);
+      put(nobody, pack, lane);
     }
   }
 }

@@ -51,7 +51,9 @@ struct OddGroup {
   std::array<RowSet, 2> set{};
 };
 
-/// Order and numbers of the contacts of one problem. In the order of the problem each goes to the first of up
+/// Order and numbers of the contacts of one problem. The order depends on which contacts are regular, which
+/// bodies they have and which of these move: as long as that is the same the places are, and only numbers are
+/// written. In the order of the problem each goes to the first of up
 /// to 24 packs that are being filled and have none of its bodies, which is a greedy colouring; what finds
 /// none of them goes alone. Packs are visited in the order in which they were begun.
 class SweepPacks {
@@ -76,16 +78,27 @@ private:
   static constexpr int most_open = 24;
   struct Group;
 
-  void scale_masses(const ResponseFactors& factors);
+  // Where a group of the last problem went, and what that was decided by.
+  struct Place {
+    std::int32_t first = 0, second = 0;  // slots
+    std::int32_t pack = -1;              // -1: none, it is odd
+    int lane = 0;
+  };
+
+  [[nodiscard]] bool scale_masses(const ResponseFactors& factors);
+  [[nodiscard]] bool has_places(const ContactProblem& problem) const;
+  [[nodiscard]] bool fill_places(const ContactProblem& problem, std::span<const double> impulse);
+  void find_places(const ContactProblem& problem, std::span<const double> impulse);
   void find_least_trace(const ContactProblem& problem);
-  [[nodiscard]] Group read(const ContactProblem& problem, std::size_t g) const;
+  [[nodiscard]] Group read(const ContactProblem& problem, std::size_t g, std::span<const double> impulse);
   [[nodiscard]] static bool is_regular(const Group& group);
   [[nodiscard]] bool moves(std::size_t slot) const {
     return scale_[slot].v[0] > 0.0 || scale_[slot].v[2] > 0.0;
   }
-  [[nodiscard]] ContactPack& find_room(const Group& group, int& lane);
+  [[nodiscard]] std::int32_t find_room(const Group& group, int& lane);
   void close(std::size_t open);
-  void put(const Group& group, ContactPack& pack, int lane);
+  static void name(const Group& group, ContactPack& pack, int lane);
+  static void put(const Group& group, ContactPack& pack, int lane);
   void add_odd(const Group& group);
 
   // A pack that is being filled.
@@ -96,6 +109,7 @@ private:
   std::vector<ContactPack> packs_;
   std::size_t pack_count_ = 0;
   std::array<Open, std::size_t{most_open}> open_{};
+  std::vector<Place> places_;  // by group
   std::vector<OddGroup> odd_;
   std::vector<SlotVelocity> scale_;   // roots of inverse masses
   std::vector<std::uint32_t> taken_;  // by slot: open packs that have it

@@ -118,13 +118,19 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
   begin(island);
   struck_.clear();
   if (island.constraints.empty()) return nullptr;
-  if (island.joined && one_body_each_) {
+  const bool all_are_struck = island.joined && one_body_each_;
+  if (all_are_struck) {
     struck_.assign(island.components.begin(), island.components.end());
   } else {
     list_struck(island.constraints);
   }
   trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
+  if (all_are_struck) {
+    free_bodies(in, {loads, loads}, island, trial);
+    return part_problems(in, island,
+                         [&](IslandProblem& problem) { return answer(problem, chains_.front(), trial); });
+  }
   return part_problems(in, island, [&](IslandProblem& problem) {
     return solve(in, {loads, loads}, problem, chains_.front(), trial);
   });
@@ -230,9 +236,28 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
   }
 }
 
-/// Bodies answer for themselves. False if there are no impulses.
-bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
-                         SolverChain& chain, StepTrial& trial) {
+/// Likewise of all bodies of an island whose components are bodies, many at a time.
+void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
+                               StepTrial& trial) const {
+  const double half = 0.5 * in.step;
+  double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
+  for (const Range components : island.batches) {
+    const Range bodies = assembly_->bodies_of(components);
+    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
+      const std::size_t end = first + static_cast<std::size_t>(slots.size()) * kind.v_size();
+      for (std::size_t k = first; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
+      kind.apply_inverse_mass(slots, dv + first, free + first);
+      for (std::size_t k = first; k < end; ++k) {
+        free[k] += static_cast<double>(in.companion.rounding[k]) + in.start.v[k];
+        dv[k] = 0.0;
+      }
+    });
+  }
+}
+
+/// Likewise of the bodies of a problem.
+void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const IslandProblem& problem,
+                               StepTrial& trial) const {
   constexpr int of_planar_body = 3;
   const auto free = [&](const Constraint::Block& block) {
     if (block.columns == of_planar_body) {
@@ -247,6 +272,17 @@ bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProbl
   } else {
     problem.map().for_bodies(free);
   }
+}
+
+/// Bodies answer for themselves. False if there are no impulses.
+bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
+                         SolverChain& chain, StepTrial& trial) {
+  free_bodies(in, loads, problem, trial);
+  return answer(problem, chain, trial);
+}
+
+/// The same against the velocities of free bodies that are known.
+bool ContactStage::answer(IslandProblem& problem, SolverChain& chain, StepTrial& trial) {
   problem.set_free_velocity(trial.free.data());
   if (!problem.solve(chain).usable()) return false;
   problem.add_velocities(trial.dv_impulses.data());

@@ -25,15 +25,30 @@
 
 namespace carom {
 
+/// Counts and extremes of the contacts of a step.
+struct ContactTally {
+  int impacts = 0;              ///< ContactRecord::impact
+  int several_solutions = 0;    ///< contacts of problems of that outcome
+  int forces_not_unique = 0;    ///< likewise
+  double deepest_gap = 0.0;     ///< the most negative [m]
+  double worst_residual = 0.0;  ///< the largest certificate
+
+  /// Adds those of others.
+  void add(const ContactTally& other);
+};
+
 /// Result of a step, beside the trial.
 struct StepResult {
   EnergyFlows flows;        ///< energy that left, by cause [J]
   StoredEnergies stored;    ///< at the end [J]
   StepReport report;        ///< of the step
   ContactHistory contacts;  ///< of large islands
+  ContactTally tally;       ///< of the contacts in the report
   int cut_sequences = 0;    ///< of impacts at the start of the step, that their limit ended
   int scaled_impacts = 0;   ///< likewise whose restitution was scaled
   int plastic_jams = 0;     ///< contact problems solved with e = 0, since they had no answer
+  std::vector<std::pair<ConstraintKey, ContactMode>>
+      contact_modes;  ///< of contacts up to the end of the step
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
 };
 
@@ -84,8 +99,8 @@ private:
   void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
-  ContactRecord& record(const IslandProblem& problem, std::size_t contact, Index serial);
-  void keep_impulses(const IslandProblem& problem);
+  void tally(const IslandProblem& problem, int contacts);
+  void keep_impulses(const IslandProblem& problem, std::size_t constraint);
 
   const Assembly* assembly_;
   double capture_speed_;

@@ -10,20 +10,19 @@ namespace carom {
 
 namespace {
 
-/// Counts the contacts of a step, and lists the modes of those that last: records are large, and are gone
-/// through once.
-void take_contacts(const StepReport& report, double end_time, Companion& companion) {
+/// Counts the contacts of a step, and takes over the modes of those that last, behind those of joints.
+void take_contacts(StepResult& result, Companion& companion) {
   Statistics& statistics = companion.statistics;
-  for (const ContactRecord& contact : report.contacts) {
-    ++statistics.contact_steps;
-    if (contact.impact) ++statistics.impacts;
-    if (contact.outcome == Outcome::several_solutions) ++statistics.several_solutions;
-    if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
-    statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
-    statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
-    if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
-    companion.modes.emplace_back(contact.key, contact.mode);
-  }
+  const ContactTally& tally = result.tally;
+  statistics.contact_steps += static_cast<std::int64_t>(result.report.contacts.size());
+  statistics.impacts += tally.impacts;
+  statistics.several_solutions += tally.several_solutions;
+  statistics.forces_not_unique += tally.forces_not_unique;
+  statistics.deepest_gap = std::min(statistics.deepest_gap, tally.deepest_gap);
+  statistics.worst_residual = std::max(statistics.worst_residual, tally.worst_residual);
+  if (result.joint_friction_modes.empty()) return companion.modes.swap(result.contact_modes);
+  companion.modes = result.joint_friction_modes;
+  companion.modes.insert(companion.modes.end(), result.contact_modes.begin(), result.contact_modes.end());
 }
 
 /// Takes the report over, and gives the room of the last one back. Findings stay: they are of the model.
@@ -37,7 +36,7 @@ void hand_over(StepReport& made, StepReport& report) {
 
 void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResult& result, State& state,
             Companion& companion, StepReport& report) {
-  const double step = in.step, end_time = in.end_time;
+  const double step = in.step;
   memory.joints->record(step, companion.joints);
   take_end(in, memory.mean, trial, state, companion);
   if (memory.guesses) {  // else no loads change
@@ -56,8 +55,7 @@ void commit(const StepInput& in, StepMemory& memory, StepTrial& trial, StepResul
   }
   companion.ledger.book(result.flows, result.stored);
   if (!companion.contacts.empty() || !result.contacts.empty()) std::swap(companion.contacts, result.contacts);
-  companion.modes = result.joint_friction_modes;
-  take_contacts(result.report, end_time, companion);
+  take_contacts(result, companion);
   count_step(result.report, companion.statistics);
   companion.statistics.cut_sequences += result.cut_sequences;
   companion.statistics.scaled_impacts += result.scaled_impacts;

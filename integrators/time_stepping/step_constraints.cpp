@@ -120,8 +120,8 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
   rules_.parting = parting;
   rules_.by_part = false;
   remember(in, in.last_step);
-  constraints_.clear();
   if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
+  constraints_.clear();
   // Where nothing touched in the step before there is hardly anything to be found.
   rules_.by_part = rules_.part_size != none && !in.companion.modes.empty();
   for (const Range batch : batches) {
@@ -139,7 +139,8 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
 }
 
 /// With contacts of bodies with each other. Constraints are large, and these are many: they are written once,
-/// where they stand among those of their island. False if there are none.
+/// where they stand among those of their island, and where that of the same contact stood in the step before.
+/// False if there are none.
 bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
                                    const StepTrial& trial) {
   const BodyContacts& bodies = detector_.bodies();
@@ -157,22 +158,26 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   for (const Range batch : batches) find_in(in, batch, trial, single_);
   merge(in, touching);
   Index last = none;
-  for (const Index i : islands_.find(batches, joined_)) {
-    const Index source = sources_[i];
+  const std::span<const Index> order = islands_.find(batches, joined_);
+  constraints_.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Index source = sources_[order[k]];
+    Constraint& out = constraints_[k];
     if (source >= touching.size()) {
-      constraints_.push_back(single_[source - touching.size()]);
+      out = single_[source - touching.size()];
       continue;
     }
     if (std::exchange(last, source) == source) {
-      constraints_.push_back(rolling_resistance(constraints_.back(), nullptr));
+      out = rolling_resistance(constraints_[k - 1], nullptr);
       continue;
     }
     if (rules_.drifts) {
-      bodies.write(touching[source], in.start.view(), constraints_.emplace_back());
+      out = {};
+      bodies.write(touching[source], in.start.view(), out);
     } else {
-      bodies.write_rows(touching[source], search_, in.start.view(), constraints_.emplace_back());
+      bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
-    take_sticking({&constraints_.back(), 1});
+    take_sticking({&out, 1});
   }
   islands_.take(constraints_);
   return true;
@@ -184,21 +189,23 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
 void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touching) {
   const std::vector<BodyOutline>& outlines = detector_.bodies().outlines().list();
   const auto count = static_cast<Index>(touching.size());
+  const bool one_body_each = in.assembly.components().size() == in.assembly.layout()->bodies().size();
+  const auto component_of = [&](Index body) { return one_body_each ? body : in.assembly.component_of(body); };
   joined_.clear();
   sources_.clear();
   Index next = 0;
   const auto add_single_before = [&](Index end) {
     for (; next < single_.size(); ++next) {
-      const Index component = in.assembly.component_of(single_[next].body());
+      const Index component = component_of(single_[next].body());
       if (component >= end) return;
       joined_.push_back({component, component});
       sources_.push_back(count + next);
     }
   };
   for (Index i = 0; i < count; ++i) {
-    const Index first = in.assembly.component_of(outlines[touching[i].a].body);
+    const Index first = component_of(outlines[touching[i].a].body);
     add_single_before(first);
-    joined_.push_back({first, in.assembly.component_of(outlines[touching[i].b].body)});
+    joined_.push_back({first, component_of(outlines[touching[i].b].body)});
     sources_.push_back(i);
     if (!detector_.bodies().resists_rolling(touching[i])) continue;
     joined_.push_back(joined_.back());

@@ -1,0 +1,217 @@
+// Problem: tell the ledger and the report what the impulses of contacts, limits and friction in joints did.
+
+#include <carom/contact/contact_point.h>
+#include <carom/contact/contact_velocity.h>
+#include <carom/integrators/time_stepping/step_balance.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+/// Constraint::speed() of the rows of a constraint.
+std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
+  if (at.rows == 2) {
+    const std::array<double, 2> both = speeds_of_both_rows(at, velocities);
+    return {both[0], both[1], 0.0};
+  }
+  std::array<double, 3> all{};
+  for (int row = 0; row < at.rows; ++row) all[static_cast<std::size_t>(row)] = at.speed(row, velocities);
+  return all;
+}
+
+/// Names a contact, and how its problem was solved. \param serial of its first body
+void name_contact(const Assembly& assembly, const IslandProblem& problem, std::size_t contact, Index serial,
+                  ContactRecord& entry) {
+  const Constraint& at = problem.constraints()[contact];
+  const ContactReport& report = problem.report();
+  const Layout& layout = *assembly.layout();
+  entry.key = at.key;
+  entry.body = {serial, layout.token()};
+  if (at.type == ConstraintType::contact && at.bodies == 2) entry.other = layout.id(at.blocks[1].body);
+  if (at.key.b.owner == FeatureKey::Owner::obstacle) {
+    entry.obstacle = {at.key.b.serial, assembly.system().token()};
+  }
+  entry.directions = at.rows;
+  entry.gap = at.gap;
+  entry.mode = problem.modes()[contact];
+  entry.outcome = report.outcome;
+  entry.residual = report.residual;
+  entry.solver = report.solver;
+  entry.restitution_factor = problem.restitution_factor();
+}
+
+}  // namespace
+
+void ContactTally::add(const ContactTally& other) {
+  impacts += other.impacts;
+  several_solutions += other.several_solutions;
+  forces_not_unique += other.forces_not_unique;
+  deepest_gap = std::min(deepest_gap, other.deepest_gap);
+  worst_residual = std::max(worst_residual, other.worst_residual);
+}
+
+double StepBalance::book_contacts(const IslandProblem& problem, const double* after, double time,
+                                  const StepInput& in, const StepTrial& trial) {
+  ImpulseWork work;
+  bool impact = false;
+  const std::size_t first = result_.report.contacts.size();
+  const bool is_swept = problem.problem().is_factored();
+  for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
+    if (is_swept) keep_impulses(problem, contact);
+    if (problem.constraints()[contact].type == ConstraintType::rolling) {
+      book_rolling(problem, contact, after, work);
+    } else if (problem.constraints()[contact].has_dry_friction()) {
+      book_joint_friction(problem, contact, after, trial, work);
+    } else {
+      book_contact(problem, contact, after, time, in, work, impact);
+    }
+  }
+  tally(problem, static_cast<int>(result_.report.contacts.size() - first));
+  if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
+  if (!(work.gain > 0.0)) return 0.0;
+  const double gain = book_gain(problem, work, impact, trial);
+  if (gain > 0.0) {
+    for (std::size_t i = first; i < result_.report.contacts.size(); ++i)
+      result_.report.contacts[i].energy_gain = gain;
+  }
+  return gain;
+}
+
+/// Counts what the contacts of a problem have in common. \param contacts how many
+void StepBalance::tally(const IslandProblem& problem, int contacts) {
+  if (contacts == 0) return;
+  const ContactReport& report = problem.report();
+  ContactTally& sum = result_.tally;
+  if (report.outcome == Outcome::several_solutions) sum.several_solutions += contacts;
+  if (report.outcome == Outcome::forces_not_unique) sum.forces_not_unique += contacts;
+  sum.worst_residual = std::max(sum.worst_residual, report.residual);
+}
+
+double StepBalance::book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
+                                const StepInput& in, const StepTrial& trial) {
+  const std::size_t first = result_.report.contacts.size();
+  const double gain = book_contacts(problem, after, in.start.time, in, trial);
+  if (note.cut_sequence) ++result_.cut_sequences;
+  if (note.restitution_factor < problem.restitution_factor()) ++result_.scaled_impacts;
+  for (std::size_t i = first; i < result_.report.contacts.size(); ++i) {
+    ContactRecord& entry = result_.report.contacts[i];
+    if (!entry.impact) ++result_.tally.impacts;
+    entry.impact = true;
+    entry.restitution_factor = note.restitution_factor;
+    entry.cut_sequence = note.cut_sequence;
+  }
+  return gain;
+}
+
+void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
+                               double time, const StepInput& in, ImpulseWork& sum, bool& impact) {
+  const Constraint& at = problem.constraints()[contact];
+  const auto first = static_cast<std::size_t>(problem.first_row(contact));
+  const double *const before = problem.before().data() + first, *const impulses =
+                                                                    problem.impulses().data() + first;
+  const BodySlot body = assembly_->layout()->bodies()[at.body()];
+  ContactRecord& entry = result_.report.contacts.emplace_back();
+  name_contact(*assembly_, problem, contact, body.serial, entry);
+  // Else an impact within the step, or contact up to it.
+  if (!(time < in.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
+  entry.time = time;
+  find_point_of_contact(at, in.start.q.data() + body.q, entry.point, entry.normal);
+  entry.impact = before[0] < -capture_speed_;
+  impact = impact || entry.impact;
+  result_.tally.impacts += entry.impact ? 1 : 0;
+  result_.tally.deepest_gap = std::min(result_.tally.deepest_gap, at.gap);
+  const std::array<double, 3> with = velocities_after(at, after);
+  ImpulseWork works = sum;
+  double all = 0.0, on_surface = 0.0;
+  const auto book_row = [&](std::size_t i) {  // row by row: a loop over two or three costs more than they do
+    const double impulse = impulses[i], gamma = before[i];
+    const double work = works.add(impulse, gamma, with[i]);
+    all += work;
+    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
+    entry.velocity_before[i] = gamma;
+    entry.velocity_after[i] = with[i];
+    entry.impulse[i] = impulse;
+    entry.work[i] = work;
+    return work;
+  };
+  result_.flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
+  double& tangential = result_.flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
+  if (at.rows > 1) tangential -= book_row(1);
+  if (at.rows > 2) tangential -= book_row(2);
+  sum = works;
+  entry.contact_work += all;
+  if (on_surface != 0.0) result_.flows[EnergyFlow::external] += on_surface;
+}
+
+/// Rolling resistance, in the record of the contact before it.
+void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
+                               ImpulseWork& sum) {
+  const Constraint& at = problem.constraints()[contact];
+  const auto row = static_cast<std::size_t>(problem.first_row(contact));
+  const double moment = problem.impulses()[row];
+  const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
+  ContactRecord& entry = result_.report.contacts.back();
+  entry.rolling_moment = moment;
+  entry.contact_work += work;
+  result_.flows[EnergyFlow::rolling] -= work;
+  result_.flows[EnergyFlow::external] +=
+      impulse_work(moment, at.surface_velocity[0], at.surface_velocity_after[0]);
+}
+
+/// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
+/// an error of the step: the law holds the velocity along the row at its start, which turns meanwhile.
+/// Returns what an impact gained.
+double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
+                              const StepTrial& trial) {
+  ImpulseWork sum = work;
+  if (!sum.is_gain()) return 0.0;
+  if (!impact) {
+    // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
+    // velocities of the bodies, of those of the surfaces.
+    const double *b = problem.problem().vector().data(), *impulse = problem.impulses().data();
+    for (const Constraint& contact : problem.constraints()) {
+      const std::array<double, 3> speeds = speeds_of_rows(contact, trial.end.v.data());
+      for (std::size_t i = 0; i < static_cast<std::size_t>(contact.rows); ++i) {
+        sum.scale += std::abs(*impulse++) * (std::abs(*b++) + speeds[i]);
+      }
+      if (!sum.is_gain()) return 0.0;  // the scale only grows
+    }
+  }
+  result_.report.energy_gain += sum.gain;
+  if (impact) return sum.gain;
+  result_.report.lasting_gain += sum.gain;
+  return 0.0;
+}
+
+/// Friction in a joint, along its row at the start or halfway, where the trial has the mean velocities.
+void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
+                                      const StepTrial& trial, ImpulseWork& sum) {
+  const Constraint& at = problem.constraints()[contact];
+  const double moment = problem.map().impulse(contact, 0), before = problem.map().before(contact, 0);
+  const double mean_rate = after == trial.end.v.data() ? at.times(0, trial.midpoint.v.data())
+                                                       : 0.5 * (before + at.velocity_after(0, after));
+  JointReaction reaction;
+  reaction.moment = moment;
+  result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;
+  sum.gain += moment * mean_rate;
+  sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(before), std::abs(mean_rate));
+  result_.report.joint_impulses.push_back(
+      {JointId{at.key.a.serial, assembly_->system().token()}, reaction, result_.report.time});
+  const ContactMode mode = problem.modes()[contact];
+  result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
+}
+
+/// Impulses of a constraint, from which the next step starts.
+void StepBalance::keep_impulses(const IslandProblem& problem, std::size_t constraint) {
+  const Constraint& at = problem.constraints()[constraint];
+  const auto row = static_cast<std::size_t>(problem.first_row(constraint));
+  std::array<double, 2> impulse{problem.impulses()[row], 0.0};
+  if (at.rows > 1) impulse[1] = problem.impulses()[row + 1];
+  result_.contacts.add(at.key, impulse);
+}
+
+}  // namespace carom
