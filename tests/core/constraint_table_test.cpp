@@ -70,6 +70,23 @@ TEST(ConstraintTable, KeysThatWereAddedAndForgottenLeaveNothingBehind) {
   expect_places(table, first, {1, 3, 5});
 }
 
+TEST(ConstraintTable, FewKeysBetweenManyThatBeginAlike) {
+  // Slots that were filled for as many keys, of which some are others now.
+  ConstraintTable table;
+  const std::vector<Index> first = numbers(0, 50, 2), few = numbers(0, 5, 2), some = numbers(0, 20, 2);
+  std::vector<Index> longer = few;
+  for (const Index serial : numbers(501, 45, 2)) longer.push_back(serial);
+  const std::vector<Index>& other = longer;
+  for (const std::vector<Index>* const keys : {&first, &few, &other, &some, &first, &few, &first, &other}) {
+    fill(table, *keys);
+    expect_places(table, *keys, {1, 3, 10001});
+  }
+  fill(table, {});
+  expect_places(table, {}, {0, 2});
+  fill(table, first);
+  expect_places(table, first, {501});
+}
+
 TEST(ConstraintTable, KeysMayBeAddedAfterOthersWereMadeReady) {
   ConstraintTable table;
   std::vector<Index> all = numbers(0, 50, 2);

@@ -77,6 +77,44 @@ TEST(GroundContacts, FindAllPairsThatTouch) {
   }
 }
 
+// Of many bodies those shapes are looked at that are near some of them; of one body each.
+TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
+  carom_test::Random random(4203);
+  std::size_t opened = 0;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
+    for (double& v : model.state.v) v = random.uniform(-5.0, 5.0);
+    const GroundContacts contacts(model.assembly);
+    const auto components = static_cast<Index>(model.assembly.components().size());
+    std::vector<ContactPair> pairs;
+    for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
+    LastingContacts lasting;
+    lasting.start(0.1);
+    for (const ContactPair& pair : pairs) {
+      Constraint at;
+      contacts.contact(pair, model.state.view(), model.evaluation, nullptr, at);
+      lasting.add(at.key);
+    }
+    lasting.finish();
+    const GroundPlaces places;
+    const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, 0.0, &lasting};
+    std::vector<Constraint> together, one_by_one;
+    contacts.find({0, components}, query, together);
+    for (Index component = 0; component < components; ++component) {
+      contacts.find({component, component + 1}, query, one_by_one);
+    }
+    ASSERT_EQ(together.size(), one_by_one.size());
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      EXPECT_EQ(together[i].key, one_by_one[i].key);
+      EXPECT_EQ(together[i].gap, one_by_one[i].gap);
+      EXPECT_EQ(together[i].jacobian, one_by_one[i].jacobian);
+      EXPECT_EQ(together[i].allowed_approach, one_by_one[i].allowed_approach);
+      if (together[i].gap > 0.0) ++opened;
+    }
+  }
+  EXPECT_GT(opened, 10U);
+}
+
 TEST(GroundContacts, WithoutGroundNothingTouches) {
   System system;
   system.add(Particle{.mass = 1.0});

@@ -5,6 +5,7 @@
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/solver_chain.h>
 
+#include "tests/contact/disc_pile.h"
 #include "tests/contact/random_factors.h"
 
 #include <gtest/gtest.h>
@@ -128,6 +129,60 @@ TEST(NonlinearCgSolver, StartsFromAnAnswer) {
   EXPECT_EQ(solution.report.iterations, 0);
   EXPECT_EQ(solution.impulse, impulse);
   EXPECT_FALSE(solution.changed_modes);
+}
+
+// Places of contacts are kept as long as the contacts are the same: a solver that has seen the steps before,
+// and other problems between them, against a new one for each.
+TEST(NonlinearCgSolver, WhatIsKeptOfTheProblemBeforeChangesNoBits) {
+  contact_test::DiscPile pile({.discs = 80, .width = 0.4});
+  const ContactProblem other = random_factors(7, {.contacts = 40, .bodies = 30});
+  std::vector<double> of_other(static_cast<std::size_t>(other.rows()));
+  SolverChain chain;
+  NonlinearCgSolver kept;
+  int same = 0, compared = 0;
+  std::size_t rows = 0;
+  for (int step = 0; step < 1200; ++step) {
+    const ContactProblem& problem = pile.state();
+    if (step % 3 == 0) {
+      std::vector<double> first = pile.solution().impulse, second = first;
+      if (step % 60 == 0) static_cast<void>(kept.solve(other, of_other));
+      NonlinearCgSolver fresh;
+      const SolverAnswer of_kept = kept.improve(problem, first), of_fresh = fresh.improve(problem, second);
+      ASSERT_EQ(of_kept.iterations, of_fresh.iterations) << "step " << step;
+      ASSERT_EQ(first, second) << "step " << step;
+      ++compared;
+      if (first.size() == rows) ++same;
+      rows = first.size();
+    }
+    static_cast<void>(pile.advance(chain));
+  }
+  // Of both: contacts that come and go in the fall, and that stay at rest.
+  EXPECT_GT(same, 100);
+  EXPECT_GT(compared - same, 50);
+}
+
+TEST(SolverChain, HandsBackTheVelocitiesOfSweptImpulses) {
+  contact_test::DiscPile pile({.discs = 80, .width = 0.4});
+  SolverChain chain;
+  std::vector<double> response;
+  int handed_back = 0;
+  for (int step = 0; step < 300; ++step) {
+    const ContactProblem& problem = pile.state();
+    chain.solve(problem, pile.solution());
+    const ContactSolution& solution = pile.solution();
+    problem.factors().respond(solution.impulse, response);
+    if (!solution.response.empty()) {  // else one contact, or few that were left to exact solvers
+      ASSERT_EQ(solution.response, response) << "step " << step;
+      ++handed_back;
+    }
+    pile.move();
+  }
+  EXPECT_GT(handed_back, 150);
+  // W in full has no slots.
+  const ContactProblem dense = random_factors(1, {}).dense();
+  pile.solution().impulse.assign(static_cast<std::size_t>(dense.rows()), 0.0);
+  chain.solve(dense, pile.solution());
+  EXPECT_TRUE(pile.solution().response.empty());
 }
 
 }  // namespace

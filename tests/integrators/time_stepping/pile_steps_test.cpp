@@ -131,6 +131,38 @@ TEST(PileSteps, WhatAStepKeepsForTheNextOneChangesNoBits) {
   }
 }
 
+TEST(PileSteps, StatisticsAreThoseOfTheReports) {
+  for (const ImpactTimes impacts : {ImpactTimes::at_step_start, ImpactTimes::located}) {
+    const bool located = impacts == ImpactTimes::located;
+    scenes::Discs discs = box_of(located ? 6 : 40);  // each meeting ends a step
+    discs.restitution = 0.4;
+    System system;
+    static_cast<void>(scenes::add_discs(system, discs));
+    Simulation simulation(system, TimeStepping{.step = step, .impacts = impacts});
+    std::int64_t contacts = 0, count = 0, several = 0, not_unique = 0;
+    double deepest = 0.0, residual = 0.0;
+    for (int i = 0; i < 500; ++i) {
+      simulation.step();
+      for (const ContactRecord& contact : simulation.report().contacts) {
+        ++contacts;
+        count += contact.impact ? 1 : 0;
+        several += contact.outcome == Outcome::several_solutions ? 1 : 0;
+        not_unique += contact.outcome == Outcome::forces_not_unique ? 1 : 0;
+        deepest = std::min(deepest, contact.gap);
+        residual = std::max(residual, contact.residual);
+      }
+    }
+    const Statistics& statistics = simulation.statistics();
+    EXPECT_GT(count, 10);
+    EXPECT_EQ(statistics.contact_steps, contacts);
+    EXPECT_EQ(statistics.impacts, count);
+    EXPECT_EQ(statistics.several_solutions, several);
+    EXPECT_EQ(statistics.forces_not_unique, not_unique);
+    EXPECT_EQ(statistics.deepest_gap, deepest);
+    EXPECT_EQ(statistics.worst_residual, residual);
+  }
+}
+
 TEST(PileSteps, OrderOfInsertionChangesOneStepByRoundingOnly) {
   const scenes::Discs discs = box_of(20);
   System system;
