@@ -24,10 +24,10 @@ using namespace random_piles;
 
 /// What is watched at the output states of a run.
 struct Watch {
-  double deepest = -1.0;   // overlap [m]
-  double residual = 0.0;   // of the energy account, of what flowed
-  double gain = 0.0;       // of energy beyond what there was before [J]
-  double least = 1e300;    // energy so far [J]
+  double deepest = -1.0;  // overlap [m]
+  double residual = 0.0;  // of the energy account, of what flowed
+  double gain = 0.0;      // of energy beyond what there was before [J]
+  double least = 1e300;   // energy so far [J]
 };
 
 void look(const Simulation& now, const RandomPile& pile, Watch& watch) {

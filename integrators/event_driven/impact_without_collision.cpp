@@ -87,9 +87,9 @@ bool ImpactWithoutCollision::solve(SolverChain& chain, EventInstant& at) {
   return solved;
 }
 
-/// Shorter and shorter steps, down to changes of velocity that are rounding: a jam of what slides slowly leaves
-/// impulses small against those of a longer step, and forces that are not unique stay linear in the step only
-/// where they are smaller than these.
+/// Shorter and shorter steps, down to changes of velocity that are rounding: a jam of what slides slowly
+/// leaves impulses small against those of a longer step, and forces that are not unique stay linear in the
+/// step only where they are smaller than these.
 bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, SolverChain& chain,
                                         EventInstant& at) {
   constexpr double longest = 1e-3, shorter = 1e-2;
