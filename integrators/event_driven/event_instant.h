@@ -28,6 +28,8 @@ struct CAROM_API InstantMemory {
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
   EventIslands islands;
+  std::vector<Index> corners;  // pairs of sharp corners that may touch
+  std::vector<Index> twins;    // pairs that are left out, since their twins count
 };
 
 /// One instant of one clock group.
@@ -52,7 +54,8 @@ struct CAROM_API EventInstant {
 
   /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch
   /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
-  /// an edge of either, or not at all.
+  /// an edge of either, or not at all. Corners that stand at each other's, each before an edge of the other,
+  /// count once: by the contact that is closed, else by the one that approaches faster at the first update.
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
@@ -71,6 +74,15 @@ struct CAROM_API EventInstant {
   [[nodiscard]] const double* velocities() const { return now.state.v.data(); }
   /// Takes the velocities of the sample over into the state.
   void take_velocities();
+
+private:
+  void leave_out_twins();
+  [[nodiscard]] bool are_twins(Index a, Index b) const;
+  [[nodiscard]] bool is_active(Index pair) const;
+
+  std::vector<Index>& corners_;
+  std::vector<Index>& twins_;
+  bool twins_known_ = false;
 };
 
 }  // namespace carom
