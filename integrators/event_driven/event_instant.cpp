@@ -20,7 +20,9 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       islands(memory.islands),
       balance(books),
       corners_(memory.corners),
-      twins_(memory.twins) {}
+      twins_(memory.twins) {
+  twins_.clear();
+}
 
 void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
@@ -44,22 +46,15 @@ void EventInstant::update() {
       corners_.push_back(static_cast<Index>(i));
     }
   }
-  leave_out_twins();
+  for (const Index twin : twins_) contacts[twin].gap = std::numeric_limits<double>::infinity();
 }
 
-/// Of two corners that meet either slides up an edge of the other. Both normals at once would hold them as
-/// if they were hooked, and no impulses answer to that.
 void EventInstant::leave_out_twins() {
-  if (!twins_known_) {
-    twins_known_ = true;
-    twins_.clear();
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      for (std::size_t j = i + 1; j < corners_.size(); ++j) {
-        const Index a = corners_[i], b = corners_[j];
-        if (!are_twins(a, b)) continue;
-        const bool keeps_first = is_active(a) != is_active(b) ? is_active(a) : approach(a) >= approach(b);
-        twins_.push_back(keeps_first ? b : a);
-      }
+  const auto is_new = [&](Index pair) { return before_at[pair] == none && contacts[pair].gap <= touch_gap; };
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    for (std::size_t j = i + 1; j < corners_.size(); ++j) {
+      const Index a = corners_[i], b = corners_[j];
+      if (is_new(a) && is_new(b) && are_twins(a, b)) twins_.push_back(approach(a) >= approach(b) ? b : a);
     }
   }
   for (const Index twin : twins_) contacts[twin].gap = std::numeric_limits<double>::infinity();
@@ -83,12 +78,6 @@ bool EventInstant::are_twins(Index a, Index b) const {
   if (std::max(std::abs(apart[0]), std::abs(apart[1])) > FeatureMargin::corner_touches) return false;
   const double *const n = contacts[a].row(0), *const m = contacts[b].row(0);
   return std::abs(n[0] * m[1] - n[1] * m[0]) > same_direction;
-}
-
-bool EventInstant::is_active(Index pair) const {
-  const std::vector<ActiveContact>& active = motion.active().list();
-  return std::any_of(active.begin(), active.end(),
-                     [&](const ActiveContact& contact) { return contact.place == pair; });
 }
 
 void EventInstant::take_contacts_before() {

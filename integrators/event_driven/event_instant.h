@@ -54,11 +54,14 @@ struct CAROM_API EventInstant {
 
   /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch
   /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
-  /// an edge of either, or not at all. Corners that stand at each other's, each before an edge of the other,
-  /// count once: by the contact that is closed, else by the one that approaches faster at the first update.
+  /// an edge of either, or not at all.
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
+  /// Leaves out one contact of two sharp corners that meet each other exactly, each before an edge of the
+  /// other, from here to the end of the instant: the one that approaches more slowly. Both normals at once
+  /// would hook the corners, and no impulses answer to that. After take_contacts_before().
+  void leave_out_twins();
   /// Finds the islands, by the contacts as they are; they stay during the event.
   void find_islands();
   /// True if a pair touches.
@@ -76,13 +79,10 @@ struct CAROM_API EventInstant {
   void take_velocities();
 
 private:
-  void leave_out_twins();
   [[nodiscard]] bool are_twins(Index a, Index b) const;
-  [[nodiscard]] bool is_active(Index pair) const;
 
   std::vector<Index>& corners_;
   std::vector<Index>& twins_;
-  bool twins_known_ = false;
 };
 
 }  // namespace carom
