@@ -132,26 +132,13 @@ void ForceMargins::follow(std::span<ActiveContact> contacts, const NullVector& o
   }
 }
 
-/// The linear program of follow_all() as a complementarity problem.
-void ForceMargins::state_program(std::span<const ActiveContact> contacts, std::size_t from, int vectors,
-                                 double least, double bound) {
-  const int top = 2 * vectors;
-  int lines = 0;
-  for (const ActiveContact& contact : contacts) lines += static_cast<int>(lines_of(contact));
-  lcp_.reset(top + 1 + lines + 1);
-  int row = top + 1;
+/// States lines a_i + s_i x over the margins of a group, x along its vectors [from, to).
+void ForceMargins::state_lines(std::span<const ActiveContact> contacts, std::size_t from, std::size_t to) {
+  program_.start(to - from);
   const auto line = [&](double at, const auto& slope) {
-    lcp_.q[static_cast<std::size_t>(row)] = at - least;
-    for (int k = 0; k < vectors; ++k) {
-      const double s = slope(numbers_.data() + vectors_[from + static_cast<std::size_t>(k)].begin);
-      lcp_.at(row, k) = s;
-      lcp_.at(row, vectors + k) = -s;
-      lcp_.at(k, row) = -s;
-      lcp_.at(vectors + k, row) = s;
-    }
-    lcp_.at(row, top) = -1.0;
-    lcp_.at(top, row) = 1.0;
-    ++row;
+    const std::span<double> slopes = program_.add(at);
+    for (std::size_t k = 0; k < slopes.size(); ++k)
+      slopes[k] = slope(numbers_.data() + vectors_[from + k].begin);
   };
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ActiveContact& c = contacts[i];
@@ -164,40 +151,27 @@ void ForceMargins::state_program(std::span<const ActiveContact> contacts, std::s
            [&](const double* vector) { return scale * (c.friction * vector[at] + side * vector[at + 1]); });
     }
   }
-  line(bound, [](const double*) { return 0.0; });
-  lcp_.q[static_cast<std::size_t>(top)] = -1.0;
 }
 
-/// Makes the margin of a group largest over all its vectors [from, to) at once. With x along the vectors,
-/// lines a_i + s_i x over the margins, and t = the least of them, the linear program
-///
-///     largest t' >= 0,   a_i + s_i (x+ - x-) >= t' + a_least,   t' + a_least <= bound,   x+, x- >= 0
-///
-/// as a complementarity problem. Wedged contacts have no largest margin: `bound` is one that is large enough.
+/// Makes the margin of a group largest over all its vectors [from, to) at once. Wedged contacts have no
+/// largest margin: one as large as the forces is large enough.
 bool ForceMargins::follow_all(std::span<ActiveContact> contacts, std::size_t from, std::size_t to,
                               bool mark) {
-  const int vectors = static_cast<int>(to - from), top = 2 * vectors;
-  double least = std::numeric_limits<double>::infinity(), size = 0.0;
-  for (const ActiveContact& c : contacts) {
-    size += std::abs(c.normal) + std::abs(c.tangential);
-    if (!c.at.has_dry_friction()) least = std::min(least, c.normal);
-    if (c.sticks())
-      least = std::min(least, c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)));
-  }
+  double size = 0.0;
+  for (const ActiveContact& c : contacts) size += std::abs(c.normal) + std::abs(c.tangential);
   if (!(size > 0.0) || !std::isfinite(size)) return false;
-  state_program(contacts, from, vectors, least, size);
-  work_.assign(static_cast<std::size_t>(lcp_.size), 0.0);
-  if (lemke_.solve(lcp_, work_).status != LcpStatus::solved) return false;
+  state_lines(contacts, from, to);
+  if (!program_.solve(size)) return false;
   // Lines with a positive number are at the least in every solution; others may be at it in this one only.
-  auto begin = work_.begin() + top + 1;
+  auto begin = program_.multipliers().begin();
   for (std::size_t i = 0; mark && i < contacts.size(); ++i) {
     const auto end = begin + static_cast<std::ptrdiff_t>(lines_of(contacts[i]));
     contacts[i].sets_margin = std::any_of(begin, end, [](double number) { return number > no_part; });
     begin = end;
   }
-  for (int k = 0; k < vectors; ++k) {
-    const double shift = work_[static_cast<std::size_t>(k)] - work_[static_cast<std::size_t>(vectors + k)];
-    const double* const vector = numbers_.data() + vectors_[from + static_cast<std::size_t>(k)].begin;
+  for (std::size_t k = 0; k < to - from; ++k) {
+    const double shift = program_.x()[k];
+    const double* const vector = numbers_.data() + vectors_[from + k].begin;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       contacts[i].normal += shift * vector[2 * i];
       contacts[i].tangential += shift * vector[2 * i + 1];

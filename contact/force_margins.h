@@ -7,8 +7,7 @@
 #include <carom/contact/active_contact.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/full_pivoting.h>
-#include <carom/core/numerics/lcp.h>
-#include <carom/core/numerics/lemke.h>
+#include <carom/core/numerics/largest_margin.h>
 
 #include <span>
 #include <vector>
@@ -60,14 +59,12 @@ private:
   void follow(std::span<ActiveContact> contacts, const NullVector& vector);
   [[nodiscard]] bool follow_all(std::span<ActiveContact> contacts, std::size_t from, std::size_t to,
                                 bool mark);
-  void state_program(std::span<const ActiveContact> contacts, std::size_t from, int vectors, double least,
-                     double bound);
+  void state_lines(std::span<const ActiveContact> contacts, std::size_t from, std::size_t to);
 
   std::vector<NullVector> vectors_;
   std::vector<double> numbers_, work_;
   std::vector<Line> lines_;
-  Lemke lemke_;  // forces of more than one freedom
-  Lcp lcp_;
+  LargestMargin program_;  // forces of more than one freedom
 };
 
 }  // namespace carom

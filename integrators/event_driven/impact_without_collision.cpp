@@ -87,24 +87,23 @@ bool ImpactWithoutCollision::solve(SolverChain& chain, EventInstant& at) {
   return solved;
 }
 
-/// Shorter and shorter steps, for a jam of what slides slowly leaves impulses small against those of a longer
-/// step.
+/// Shorter and shorter steps, down to changes of velocity that are rounding: a jam of what slides slowly
+/// leaves impulses small against those of a longer step, and forces that are not unique stay linear in the
+/// step only where they are smaller than these.
 bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, SolverChain& chain,
                                         EventInstant& at) {
-  constexpr double longest = 1e-3, shorter = 1e-2, shortest = 1e-3;
-  double fastest = 0.0, slowest = std::numeric_limits<double>::infinity(), pull = 0.0;
+  constexpr double longest = 1e-3, shorter = 1e-2;
+  double fastest = 0.0, pull = 0.0;
   for (std::size_t c = 0; c < touching_.size(); ++c) {
     Constraint& contact = touching_[c];
     contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     for (int row = 0; row < contact.rows; ++row)
       pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
     if (contact.type == ConstraintType::rolling) continue;
-    const double slip = std::abs(candidates[taking_part_[c]].slip);
-    fastest = std::max(fastest, slip);
-    if (slip > 0.0) slowest = std::min(slowest, slip);
+    fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
   if (!(pull > 0.0) || fastest == 0.0) return false;
-  for (double change = longest * fastest; change >= shortest * shorter * slowest; change *= shorter) {
+  for (double change = longest * fastest; change >= shorter * at.scales.speed_noise; change *= shorter) {
     if (take_limit(chain, change / pull, at) && changes(at.scales.speed_noise)) return true;
   }
   return false;
