@@ -13,16 +13,20 @@ namespace {
 /// through once.
 void take_contacts(const StepReport& report, double end_time, Companion& companion) {
   Statistics& statistics = companion.statistics;
+  double residual = 0.0;
   for (const ContactRecord& contact : report.contacts) {
     ++statistics.contact_steps;
     if (contact.impact) ++statistics.impacts;
     if (contact.outcome == Outcome::several_solutions) ++statistics.several_solutions;
     if (contact.outcome == Outcome::forces_not_unique) ++statistics.forces_not_unique;
     statistics.deepest_gap = std::min(statistics.deepest_gap, contact.gap);
-    statistics.worst_residual = std::max(statistics.worst_residual, contact.residual);
+    residual = std::max(residual, contact.residual);
     if (contact.time < end_time) continue;  // an impact within the step, or contact up to it
     companion.modes.emplace_back(contact.key, contact.mode);
   }
+  if (report.contacts.empty()) return;
+  statistics.worst_residual = std::max(statistics.worst_residual, residual);
+  statistics.count_step(residual);
 }
 
 void add_to(Statistics& statistics, const StepReport& report) {
