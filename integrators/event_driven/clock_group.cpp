@@ -162,6 +162,8 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
   parts_.memory->motion.limit.restart();
   MotionSample& at = parts_.memory->instant.now;
   parts_.motion.sample(parts_.clock.output, parts_.output.y().data(), Forces::all, at);
+  // Of forces that are not unique those that the law allows.
+  parts_.motion.active().margins(parts_.memory->detection.margins);
   const Layout& layout = *parts_.motion.model().assembly->layout();
   for (const ActiveContact& contact : parts_.motion.active().list()) {
     if (contact.at.type == ConstraintType::rolling) {

@@ -28,7 +28,7 @@ StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const MotionSample&
 struct FeatureLook {
   QuantityLook gap;
   Index feature = none;
-  double margin = 0.0;  // of the feature [m]
+  double margin = 0.0;  // within which the gap is smooth [m]
 };
 
 /// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
@@ -51,7 +51,7 @@ private:
     FeatureLook out;
     out.gap = {time, gap_in(*pair_, at), 0.0};
     out.feature = regions.nearest();
-    out.margin = regions.margin(out.feature).value;
+    out.margin = regions.clearance(out.feature);
     return out;
   }
   [[nodiscard]] double between(const FeatureLook& from, const FeatureLook& to, int depth) {
