@@ -11,6 +11,7 @@ void ParticleKind<D>::add(const Particle<D>& part, const PartCheck& check) {
   check.finite({part.position.data(), D}, "position", "m");
   check.finite({part.velocity.data(), D}, "velocity", "m/s");
   check.material(part.material);
+  if (part.contact) check.filter(part.filter);
   masses_.push_back(part.mass);
   position_.push_back(part.position);
   velocity_.push_back(part.velocity);

@@ -28,6 +28,7 @@ public:
   void add(const P& part, const PartCheck& check) {
     check.oriented_body(part.body, "body");
     check.material(part.material);
+    if constexpr (requires { part.filter; }) check.filter(part.filter);
     part.check(check);
     parts_.push_back(part);
   }

@@ -51,6 +51,35 @@ std::vector<Vec<2>> corners_of(std::vector<Vec<2>> vertices, double tolerance) {
   return vertices;
 }
 
+/// True if two segments cross in their interiors, and do so by more than rounding.
+bool cross_inside(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d, double tolerance) {
+  const auto parts = [tolerance](const Vec<2>& from, const Vec<2>& to, const Vec<2>& one,
+                                 const Vec<2>& other) {
+    const double first = cross(to - from, one - from), second = cross(to - from, other - from);
+    const double least = tolerance * length_of<2>(to - from);
+    return (first > least && second < -least) || (first < -least && second > least);
+  };
+  return parts(a, b, c, d) && parts(c, d, a, b);
+}
+
+/// Refuses sides that cross: what half-planes touch is no outline then either.
+void check_crossing(const std::vector<Vec<2>>& vertices, const PartCheck& check) {
+  double magnitude = 0.0;
+  for (const Vec<2>& vertex : vertices) magnitude = std::max(magnitude, vertex.cwiseAbs().maxCoeff());
+  const std::size_t n = vertices.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (!cross_inside(vertices[i], vertices[(i + 1) % n], vertices[j], vertices[(j + 1) % n],
+                        rounding * magnitude)) {
+        continue;
+      }
+      check.refuse("vertices",
+                   "crossing themselves: sides " + std::to_string(i) + " and " + std::to_string(j),
+                   "a polygon whose sides meet at their corners only");
+    }
+  }
+}
+
 }  // namespace
 
 void Polygon::check_area(const PartCheck& check) const {
@@ -108,6 +137,7 @@ void Polygon::check(const PartCheck& check) const {
   for (const Vec<2>& vertex : vertices) check.finite({vertex.data(), 2}, "vertex", "m");
   check.non_negative(radius, "radius", "m");
   check_area(check);
+  check_crossing(vertices, check);
 }
 
 void Polygon::features(std::vector<RoundedPoint>& out) const {

@@ -90,6 +90,7 @@ set(carom_public_headers
     integrators/run/impact_note.h
     integrators/run/impact_rules.h
     integrators/run/overlap_rules.h
+    integrators/run/lasting_contact.h
     integrators/run/step_report.h
     integrators/run/stop_request.h
     integrators/run/time_stepping.h

@@ -11,8 +11,8 @@ namespace carom {
 /// each belongs to a group that the other touches. By default everything is of the first group and touches
 /// all.
 struct ContactFilter {
-  std::uint32_t groups = 1;             ///< groups that it belongs to; 0: none, it touches nothing
-  std::uint32_t touches = 0xffffffffU;  ///< groups that it touches; 0: nothing
+  std::uint32_t groups = 1;             ///< groups that it belongs to; at least one of a part
+  std::uint32_t touches = 0xffffffffU;  ///< groups that it touches; at least one of a part
 
   /// True of the same groups on both sides.
   friend constexpr bool operator==(const ContactFilter&, const ContactFilter&) = default;

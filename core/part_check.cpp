@@ -165,4 +165,10 @@ void PartCheck::material(MaterialId id) const {
   }
 }
 
+void PartCheck::filter(const ContactFilter& filter) const {
+  constexpr const char* allowed = "at least one group (to hide a part for a time: one that nothing else has)";
+  if (filter.groups == 0) refuse("filter.groups", "0, which hides it from everything", allowed);
+  if (filter.touches == 0) refuse("filter.touches", "0, which hides everything from it", allowed);
+}
+
 }  // namespace carom

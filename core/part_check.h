@@ -15,6 +15,7 @@
 namespace carom {
 
 class System;
+struct ContactFilter;
 struct Surface;
 
 /// The shortest text of a number that reads back to the same double.
@@ -77,6 +78,8 @@ public:
   void different_ends(BodyId from, BodyId to) const;
   /// Demands a material of this system, or none.
   void material(MaterialId id) const;
+  /// Demands a filter that leaves something to touch: at least one group in each of its sets.
+  void filter(const ContactFilter& filter) const;
 
 private:
   std::string part_;

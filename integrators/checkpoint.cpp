@@ -6,6 +6,7 @@
 #include <carom/integrators/checkpoint_bytes.h>
 #include <carom/integrators/checkpoint_statistics.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,23 @@ namespace carom {
 
 namespace {
 
-/// Behind it the version, one digit, and a line break. Those before are read too.
+/// Behind it the version and a line break. Those before are read too.
 constexpr std::string_view mark = "carom checkpoint ";
+
+/// Takes the number in front of a line break off a text, and the break; 0 where there is none.
+int take_version(std::string_view& text) {
+  constexpr std::size_t most_digits = 4;
+  int version = 0;
+  for (std::size_t i = 0; i < std::min(most_digits + 1, text.size()); ++i) {
+    if (text[i] == '\n') {
+      text.remove_prefix(i + 1);
+      return version;
+    }
+    if (text[i] < '0' || text[i] > '9') return 0;
+    version = 10 * version + (text[i] - '0');
+  }
+  return 0;
+}
 
 void add(CheckpointWriter& out, const FeatureKey& key) {
   out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
@@ -254,13 +270,14 @@ struct CheckpointContent {
 
 /// Demands mark and checksum.
 CheckpointContent checked_content(const std::string& path, std::string_view text) {
-  const int version = text.size() > mark.size() ? text[mark.size()] - '0' : 0;
-  const std::size_t begin = mark.size() + 2;
-  if (!text.starts_with(mark) || version < oldest_checkpoint || version > checkpoint_version ||
-      text.size() < begin || text[begin - 1] != '\n') {
+  int version = 0;
+  if (text.starts_with(mark)) {
+    text.remove_prefix(mark.size());
+    version = take_version(text);
+  }
+  if (version < oldest_checkpoint || version > checkpoint_version) {
     throw FileError("checkpoint '" + path + "': is not a checkpoint of this version");
   }
-  text.remove_prefix(begin);
   constexpr std::size_t checksum_size = 8;
   if (text.size() < checksum_size) throw FileError("checkpoint '" + path + "': is damaged: ends too early");
   const std::string_view body = text.substr(0, text.size() - checksum_size);

@@ -11,7 +11,7 @@
 namespace carom {
 
 /// Version of the checkpoints that are written.
-inline constexpr int checkpoint_version = 9;
+inline constexpr int checkpoint_version = 10;
 /// Oldest version that is read. Those before version 7 know nothing of joints and of large contact problems:
 /// a run goes on from one without guesses.
 inline constexpr int oldest_checkpoint = 6;
@@ -42,6 +42,9 @@ void for_statistics(S& s, int version, F&& f) {
   }
   f(s.deepest_gap);
   f(s.worst_residual);
+  if (version >= 10) {
+    for (auto& count : s.certified_steps) f(count);
+  }
   constexpr std::size_t without_rolling = 11;  // kinds of events
   for (std::size_t kind = 0; kind < (version >= 9 ? s.events.size() : without_rolling); ++kind)
     f(s.events[kind]);

@@ -7,24 +7,45 @@ namespace carom {
 
 namespace {
 
+using Numbers = std::array<double, 3>;
+
+/// An impulse, or a force, in the plane, and its moment about the origin.
+struct Action {
+  Vec<2> sum = filled<2>(0.0);
+  double moment = 0.0;
+
+  /// \param along normal and tangent \param rolling moment \param sign of the part
+  Action(const ContactPlace& at, const Numbers& along, double rolling, double sign) {
+    if (at.directions > 2) {
+      throw ModelError("force_on: a contact has " + std::to_string(at.directions) +
+                       " directions; allowed: contacts in the plane");
+    }
+    const Vec<2> normal(at.normal[0], at.normal[1]), tangent(normal[1], -normal[0]);
+    sum = sign * (along[0] * normal + along[1] * tangent);
+    moment = at.point[0] * sum[1] - at.point[1] * sum[0] + sign * rolling;
+  }
+};
+
 /// Adds the impulse of a record, which acts on its body. \param sign of the part
-void add(const ContactRecord& contact, double sign, double step, PartForce& sum) {
-  if (contact.directions > 2) {
-    throw ModelError("force_on: a contact has " + std::to_string(contact.directions) +
-                     " directions; allowed: contacts in the plane");
-  }
+void add(const ContactRecord& contact, double sign, double step, PartForce& out) {
   if (contact.directions < 2) return;  // limit of a joint
-  const Vec<2> normal(contact.normal[0], contact.normal[1]), tangent(normal[1], -normal[0]);
-  const Vec<2> impulse = sign * (contact.impulse[0] * normal + contact.impulse[1] * tangent);
-  sum.impulse += impulse;
-  sum.angular_impulse += contact.point[0] * impulse[1] - contact.point[1] * impulse[0];
-  sum.angular_impulse += sign * contact.rolling_moment;
+  const Action impulse(contact, contact.impulse, contact.rolling_moment, sign);
+  out.impulse += impulse.sum;
+  out.angular_impulse += impulse.moment;
   if (contact.impact) {
-    sum.impact_impulse += impulse;
+    out.impact_impulse += impulse.sum;
   } else if (step > 0.0) {
-    sum.mean_force += impulse / step;
+    out.mean_force += impulse.sum / step;
+    out.mean_moment += impulse.moment / step;
   }
-  ++sum.contacts;
+  ++out.contacts;
+}
+
+void add(const LastingContact& contact, double sign, PartForce& out) {
+  const Action force(contact, contact.force, contact.rolling_moment, sign);
+  out.mean_force += force.sum;
+  out.mean_moment += force.moment;
+  ++out.contacts;
 }
 
 }  // namespace
@@ -46,6 +67,39 @@ PartForce force_on(const StepReport& report, ObstacleId obstacle) {
     if (contact.obstacle == obstacle) add(contact, -1.0, report.step, sum);
   }
   return sum;
+}
+
+PartForce force_on(std::span<const LastingContact> forces, BodyId body) {
+  PartForce sum;
+  if (!body.valid()) return sum;
+  for (const LastingContact& contact : forces) {
+    if (contact.body == body) add(contact, 1.0, sum);
+    if (contact.other == body) add(contact, -1.0, sum);
+  }
+  return sum;
+}
+
+PartForce force_on(std::span<const LastingContact> forces, ObstacleId obstacle) {
+  PartForce sum;
+  if (!obstacle.valid()) return sum;
+  for (const LastingContact& contact : forces) {
+    if (contact.obstacle == obstacle) add(contact, -1.0, sum);
+  }
+  return sum;
+}
+
+std::vector<LastingContact> lasting_forces(const StepReport& report) {
+  std::vector<LastingContact> out;
+  for (const ContactRecord& contact : report.contacts) {
+    if (contact.impact || contact.directions < 2 || !(report.step > 0.0)) continue;
+    LastingContact& force = out.emplace_back();
+    static_cast<ContactPlace&>(force) = contact;
+    force.velocity = contact.velocity_after;
+    for (std::size_t row = 0; row < 3; ++row) force.force[row] = contact.impulse[row] / report.step;
+    force.rolling_moment = contact.rolling_moment / report.step;
+    force.mode = contact.mode;
+  }
+  return out;
 }
 
 }  // namespace carom

@@ -26,6 +26,7 @@ namespace carom {
 
 class Assembly;
 struct Companion;
+struct LastingContact;
 
 /// The modes of integration, as values.
 using Mode = std::variant<TimeStepping, EventDriven>;
@@ -101,6 +102,10 @@ public:
   /// redundant joint one of many possible reactions. Throws ModelError for a joint that is not of this model,
   /// or a limit.
   [[nodiscard]] JointReaction reaction(JointId joint) const;
+  /// Forces of the contacts that last (contact_forces.h: force_on() sums those on one part): at the present
+  /// time, in time stepping the mean over the last step. None before the first step. Forces that are not
+  /// unique are one of many possible sets.
+  [[nodiscard]] std::vector<LastingContact> contact_forces() const;
 
   [[nodiscard]] const System& system() const;          ///< the model
   [[nodiscard]] const Assembly& assembly() const;      ///< the model, made ready to run

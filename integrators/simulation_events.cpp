@@ -1,8 +1,10 @@
-// Problem: name the parts of events.
+// Problem: name the parts of events; tell forces and freedoms at the present state.
 
+#include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/part_check.h>
 #include <carom/core/whole_file.h>
-#include <carom/integrators/simulation.h>
+#include <carom/integrators/contact_forces.h>
+#include <carom/integrators/simulation_impl.h>
 
 #include <sstream>
 
@@ -47,6 +49,27 @@ void Simulation::write_events(const std::string& path) const {
   std::ostringstream text;
   carom::write_events(text, events(), [this](const EventRecord& event) { return name(event); });
   write_file(path, text.str(), "events");
+}
+
+Mobility Simulation::mobility() const {
+  const CallGuard::Scope scope(impl_->guard, CallGuard::Caller::law);
+  return carom::mobility(impl_->model->assembly, impl_->state);
+}
+
+JointReaction Simulation::reaction(JointId joint) const {
+  Impl& self = *impl_;
+  self.guard.demand("reaction", CallGuard::Need::no_step);
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
+  return self.model->reaction(self.state, self.companion, self.report, joint);
+}
+
+std::vector<LastingContact> Simulation::contact_forces() const {
+  Impl& self = *impl_;
+  self.guard.demand("contact_forces", CallGuard::Need::no_step);
+  const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
+  const ModeMachines& machines = self.model->machines;
+  return machines.driver ? machines.driver->contact_forces(self.state, self.companion)
+                         : lasting_forces(self.report);
 }
 
 }  // namespace carom

@@ -102,6 +102,8 @@ private:
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
   [[nodiscard]] bool find_whether_all_touch() const;
+  void demand_laws(const System& system) const;
+  [[nodiscard]] std::pair<const BodyOutline*, const BodyOutline*> meeting(Index one, Index other) const;
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;

@@ -104,4 +104,13 @@ FeatureMargin FaceChain::margin(Index feature, const Vec<2>& point, const Vec<2>
   return least;
 }
 
+double FaceChain::clearance(Index feature, const Vec<2>& point) const {
+  const double to_next = margin(feature, point, Vec<2>::Zero()).value;
+  if (!outline.is_edge(feature)) return to_next;
+  const OutlineEdge edge(outline, feature - outline.size());
+  const double along = edge.coordinate(point);
+  const double to_end = std::min(along, edge.length - along);
+  return std::min({to_next, std::max(0.0, to_end), std::abs(edge.height(point) + depth)});
+}
+
 }  // namespace carom

@@ -44,6 +44,10 @@ struct CAROM_API FaceChain {
   [[nodiscard]] Nearest nearest(const Vec<2>& point) const;
   /// Margin of a feature. \param rate velocity of the point
   [[nodiscard]] FeatureMargin margin(Index feature, const Vec<2>& point, const Vec<2>& rate) const;
+  /// Distance of a point from where its gap has a kink or jumps, if the feature is the nearest one: margin(),
+  /// and for a face its concave ends and the depth of the solid too. A vertex passes these only deep in other
+  /// ground, as motion does behind an event that is still to be found [m].
+  [[nodiscard]] double clearance(Index feature, const Vec<2>& point) const;
   /// The faces that end and begin at a vertex; `none` where there is none.
   [[nodiscard]] Index face_before(Index vertex) const {
     return !is_closed && vertex == 0 ? none : outline.before(vertex);

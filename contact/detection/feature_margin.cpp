@@ -126,6 +126,10 @@ bool FeatureRegions::may_touch() const {
   return !chain_ || margin(feature).value >= -FeatureMargin::corner_touches;
 }
 
+double FeatureRegions::clearance(Index feature) const {
+  return chain_ ? chain_->clearance(feature, place_) : margin(feature).value;
+}
+
 FeatureMargin FeatureRegions::margin(Index feature) const {
   if (chain_) return chain_->margin(feature, place_, rate_);
   const Index n = outline_.size();

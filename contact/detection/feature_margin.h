@@ -46,6 +46,8 @@ public:
   [[nodiscard]] double border() const { return sharp_ ? FeatureMargin::corner_leaves : past_border; }
   /// Margin of a feature.
   [[nodiscard]] FeatureMargin margin(Index feature) const;
+  /// Distance within which the gap is smooth, if the feature is the nearest one [m].
+  [[nodiscard]] double clearance(Index feature) const;
 
 private:
   [[nodiscard]] Index touching_at(Index corner, Index found) const;

@@ -41,6 +41,7 @@ public:
   /// Checks and stores a shape. Throws ModelError.
   void add(const P& part, const PartCheck& check) {
     check.material(part.material);
+    check.filter(part.filter);
     check_motion(check, part.pivot, part.surface_speed, part.motion);
     parts_.push_back({part, moved_by(part.pieces(check), part.pivot)});
   }

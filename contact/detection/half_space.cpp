@@ -27,6 +27,7 @@ void HalfSpaceKind<D>::add(const HalfSpace<D>& part, const PartCheck& check) {
   check.finite({part.point.data(), D}, "point", "m");
   check.direction({part.normal.data(), D}, "normal");
   check.material(part.material);
+  check.filter(part.filter);
   const double length = length_of<D>(part.normal);
   if (!(length > 0.0)) check.refuse("normal", "zero", "a direction of any length > 0");
   if constexpr (D == 2) {

@@ -81,9 +81,11 @@ double FallSearch::within(const Five& looks, int depth) {
   for (std::size_t i = 0; i < f.size(); ++i) f[i] = looks[i].at.value;
   const StepPolynomial polynomial = StepPolynomial::through(f);
   const double error = of_fourth_difference * std::abs(f[0] - 4.0 * f[1] + 6.0 * f[2] - 4.0 * f[3] + f[4]);
-  if (!polynomial.lowered(error).raised(rule_.raise).falls()) return never;
-  const bool small = error <= rule_.fine || !std::isfinite(error);
-  if (small || falls_clearly(polynomial, error) || depth == rule_.deepest) {
+  // Where a value is not a number, at a pole, the parts beside it are looked at.
+  const bool known = std::isfinite(error);
+  if (known && !polynomial.lowered(error).raised(rule_.raise).falls()) return never;
+  const bool small = error <= rule_.fine;
+  if (small || (known && falls_clearly(polynomial, error)) || depth == rule_.deepest) {
     const double tau = polynomial.raised(rule_.raise).first_fall();
     return tau < never ? looks.front().time + tau * (looks.back().time - looks.front().time) : never;
   }

@@ -1,5 +1,6 @@
 // Problem: a clock group from event to event, with output in between.
 
+#include <carom/contact/contact_point.h>
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/group_stages.h>
 #include <carom/integrators/event_driven/overlap_check.h>
@@ -154,6 +155,39 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
   std::size_t row = 0;
   while (parts_.motion.joints().rows().joint(row) != joint) ++row;
   return kind.reaction(at.joint_view(), slot, multipliers.data() + row);
+}
+
+/// Rolling resistance follows its contact in the list.
+void ClockGroup::list_forces(std::vector<LastingContact>& out) {
+  if (parts_.motion.active().list().empty()) return;
+  parts_.memory->motion.limit.restart();
+  MotionSample& at = parts_.memory->instant.now;
+  parts_.motion.sample(parts_.clock.output, parts_.output.y().data(), Forces::all, at);
+  // Of forces that are not unique those that the law allows.
+  parts_.motion.active().margins(parts_.memory->detection.margins);
+  const Layout& layout = *parts_.motion.model().assembly->layout();
+  for (const ActiveContact& contact : parts_.motion.active().list()) {
+    if (contact.at.type == ConstraintType::rolling) {
+      out.back().rolling_moment = contact.tangential;
+    } else if (contact.at.type == ConstraintType::contact) {
+      LastingContact& force = out.emplace_back();
+      const Constraint& closed = contact.at;
+      force.key = closed.key;
+      force.body = layout.id(closed.body());
+      if (closed.key.b.owner == FeatureKey::Owner::obstacle) {
+        force.obstacle = {closed.key.b.serial, force.body.token};
+      } else {
+        force.other = layout.id(closed.blocks[1].body);
+      }
+      find_point_of_contact(closed, at.state.q.data() + layout.bodies()[closed.body()].q, force.point,
+                            force.normal);
+      force.gap = closed.gap;
+      force.velocity = {closed.normal_velocity(at.state.v.data()),
+                        closed.tangential_velocity(at.state.v.data())};
+      force.force = {contact.normal, contact.tangential};
+      force.mode = contact.mode;
+    }
+  }
 }
 
 }  // namespace carom

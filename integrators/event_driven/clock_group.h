@@ -11,6 +11,7 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/event_driven/group_parts.h>
+#include <carom/integrators/run/lasting_contact.h>
 #include <carom/integrators/run/step_report.h>
 
 #include <utility>
@@ -46,6 +47,8 @@ public:
   void write(State& state, ContactModes& modes) const;
   /// Reaction of a joint of the group at the time last advanced to.
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
+  /// Appends the forces of its closed contacts, likewise.
+  void list_forces(std::vector<LastingContact>& out);
 
   /// True if its event is not resolved yet.
   [[nodiscard]] bool is_at_event() const { return parts_.phase.kind == Phase::at_event; }

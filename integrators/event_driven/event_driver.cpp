@@ -204,6 +204,15 @@ JointReaction EventDriver::reaction(const State& state, const Companion& compani
   });
 }
 
+std::vector<LastingContact> EventDriver::contact_forces(const State& state, const Companion& companion) {
+  if (!started_) start(state, companion);
+  std::vector<LastingContact> forces;
+  within_limit(state.time, [&] { groups_.for_each([&](ClockGroup& group) { group.list_forces(forces); }); });
+  std::sort(forces.begin(), forces.end(),
+            [](const LastingContact& a, const LastingContact& b) { return a.key < b.key; });
+  return forces;
+}
+
 void EventDriver::count(Companion& companion) {
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
@@ -225,6 +234,7 @@ void EventDriver::count(Companion& companion) {
   statistics.flow_restarts += now.restarts - counted_.restarts;
   counted_ = now;
   if (memory_.chain.statistics().problems > 0) {
+    statistics.count_step(memory_.chain.statistics().worst_residual);
     companion.contact_statistics += memory_.chain.statistics();
     memory_.chain.reset_statistics();
   }

@@ -48,13 +48,18 @@ private:
   SearchedStep* step_;
 };
 
-/// A guard with one number, or a number and its rate, in a sample.
+/// A guard with one number, or a number and its rate, in a sample. Behind an event found before nothing is
+/// looked at: the motion goes on there as it does not, and forces may pass a pole (contacts that meet at the
+/// end of an edge), which a polynomial over the whole step would not show.
 template <class F>
 void search(SearchedStep& step, GuardSampler& sampler, const FallRule& rule, const F& read, Event candidate,
             Event& found) {
   QuantityOf quantity([&](double time) { return read(step.memory.samples.at(time, sampler)); });
-  candidate.time = FallSearch(quantity, rule, until(found))
-                       .first(read(step.ends.start().sample), read(step.ends.end().sample));
+  const bool cut = rule.derivatives == 0 && until(found) < step.end();
+  candidate.time =
+      FallSearch(quantity, rule, until(found))
+          .first(read(step.ends.start().sample),
+                 read(cut ? step.memory.samples.at(found.time, sampler) : step.ends.end().sample));
   if (candidate.time < until(found)) found = candidate;
 }
 

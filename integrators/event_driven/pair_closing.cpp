@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -23,18 +24,30 @@ StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const MotionSample&
   return {distance - bound.rounding, rate, (across * across + x * b + y * c) / distance};
 }
 
-/// The gap of a vertex and an outline of several features, smooth as long as the nearest feature stays the
-/// same.
+/// The gap of a vertex and an outline at one time, smooth as long as the nearest feature stays the same.
 struct FeatureLook {
   QuantityLook gap;
   Index feature = none;
-  double margin = 0.0;  // of the feature [m]
+  double margin = 0.0;  // within which the gap is smooth [m]
+  double turn = 0.0;    // how fast the two sides turn [rad/s]
 };
 
-/// The first closing of such a gap: intervals in which the nearest feature may change are halved, unless a
-/// bound of the rate, which holds for the margins too, shows that the gap does not close in them. Where
-/// bodies rest on each other at the border of two features for the whole step, no interval would end that:
-/// there a gap that hardly moves counts as smooth, and looks are counted.
+/// True if a side of a pair may turn about a point that is not its middle: the gap feels it.
+bool feels_turns(const BodyPairBound& bound) { return bound.on_ground ? bound.lever > 0.0 : !bound.central; }
+
+/// How fast both sides of a pair turn, together [rad/s].
+double turn_of(const PairGap& of, const MotionSample& at) {
+  const auto spin_of = [&](const BodySlot& body) {
+    return body.v_size > 2 ? std::abs(at.state.v[body.v + 2]) : 0.0;
+  };
+  return spin_of(of.bound.a) + (of.bound.on_ground ? 0.0 : spin_of(of.bound.b));
+}
+
+/// The first closing of a gap that is no polynomial: intervals in which the nearest feature may change, or in
+/// which bodies turn far, are halved, unless a bound of the rate, which holds for the margins too, shows that
+/// the gap does not close in them. Where bodies rest on each other at the border of two features for the
+/// whole step, no interval would end that: there a gap that hardly moves counts as smooth, and looks are
+/// counted.
 class KinkedSearch {
 public:
   KinkedSearch(PairPath& path, const PairGap& pair, const FallRule& rule, double until)
@@ -46,29 +59,44 @@ private:
   [[nodiscard]] FeatureLook look(double time) {
     ++looks_;
     const MotionSample& at = path_->sample(time);
-    const FeatureRegions regions(
-        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places));
     FeatureLook out;
     out.gap = {time, gap_in(*pair_, at), 0.0};
+    out.turn = turn_of(*pair_, at);
+    if (pair_->bound.round) {
+      out.margin = std::numeric_limits<double>::infinity();
+      return out;
+    }
+    const FeatureRegions regions(
+        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places));
     out.feature = regions.nearest();
-    out.margin = regions.margin(out.feature).value;
+    out.margin = regions.clearance(out.feature);
     return out;
   }
   [[nodiscard]] double between(const FeatureLook& from, const FeatureLook& to, int depth) {
     constexpr int deepest = 30;
+    constexpr double far = 1.0;  // a polynomial of degree 5 follows less to 1e-5 of an arm [rad]
     const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
     if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;
-    const bool smooth = from.feature == to.feature && from.margin + to.margin > way;
+    const bool smooth = from.feature == to.feature && from.margin + to.margin > way &&
+                        std::max(from.turn, to.turn) * (end - begin) <= far;
     if (smooth || depth == deepest || looks_ > most_looks || hardly_moves(from.gap, to.gap)) {
-      QuantityOf gap([&](double time) -> QuantityLook {
-        return {time, gap_in(*pair_, path_->sample(time)), 0.0};
-      });
-      return FallSearch(gap, rule_, until_).first(from.gap, to.gap);
+      QuantityOf gap([&](double time) { return smoothed({time, gap_in(*pair_, path_->sample(time)), 0.0}); });
+      FallRule rule = rule_;
+      if (is_smoothed()) rule.fastest = std::numeric_limits<double>::infinity();
+      return FallSearch(gap, rule, until_).first(smoothed(from.gap), smoothed(to.gap));
     }
     const FeatureLook middle = look(begin + 0.5 * (end - begin));
     const double first = between(from, middle, depth + 1);
     return first < never ? first : between(middle, to, depth + 1);
   }
+
+  /// Of two discs: without the kink that a distance has. It closes as the gap does, at another rate. Two
+  /// points without rounding have a kink where they meet, and do not touch.
+  [[nodiscard]] QuantityLook smoothed(QuantityLook look) const {
+    if (is_smoothed()) look.at = smooth_gap(look.at, pair_->bound.rounding);
+    return look;
+  }
+  [[nodiscard]] bool is_smoothed() const { return pair_->bound.round && pair_->bound.rounding > 0.0; }
 
   // True of a gap that moves by less than what counts as found, by its values and rates at two looks.
   [[nodiscard]] bool hardly_moves(const QuantityLook& from, const QuantityLook& to) const {
@@ -110,11 +138,10 @@ double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, 
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
   if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;
-  if (!bound.round) {
+  if (!bound.round || feels_turns(bound)) {
     rule.fastest = how.fastest;
     return KinkedSearch(path, of, rule, how.until).first(from.time, to.time);
   }
-  // Two points without rounding have a kink where they meet, and do not touch.
   const bool smooth = bound.rounding > 0.0;
   rule.measured = !(bound.central && smooth && how.flies_freely);
   const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {

@@ -131,6 +131,15 @@ struct ContactCounts {
   std::int64_t plastic_jams = 0;       ///< contact problems without an answer, solved with e = 0
   double deepest_gap = 0.0;            ///< the most negative gap found [m]
   double worst_residual = 0.0;         ///< the largest certificate of a contact problem
+  /// Steps in which contact problems were solved, by the largest certificate of these: up to each of
+  /// certified_residuals and above the one before it, then those above all.
+  std::array<std::int64_t, certified_residuals.size() + 1> certified_steps{};
+
+  /// Counts a step whose contact problems have certificates up to `residual`.
+  CAROM_API void count_step(double residual);
+  /// Share of these steps whose certificates are known to be at most `residual`, by the largest of
+  /// certified_residuals that is not larger; 1 if there are none.
+  [[nodiscard]] CAROM_API double certified_share(double residual) const;
 };
 
 /// Counts and extremes since the start.

@@ -20,6 +20,7 @@ void take_contacts(StepResult& result, Companion& companion) {
   statistics.forces_not_unique += tally.forces_not_unique;
   statistics.deepest_gap = std::min(statistics.deepest_gap, tally.deepest_gap);
   statistics.worst_residual = std::max(statistics.worst_residual, tally.worst_residual);
+  if (!result.report.contacts.empty()) statistics.count_step(tally.worst_residual);
   if (result.joint_friction_modes.empty()) return companion.modes.swap(result.contact_modes);
   companion.modes = result.joint_friction_modes;
   companion.modes.insert(companion.modes.end(), result.contact_modes.begin(), result.contact_modes.end());

@@ -5,9 +5,11 @@
 #include "runner.h"
 
 #include <carom/core/log.h>
+#include <carom/integrators/contact_forces.h>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <cmath>
 #include <limits>
@@ -244,6 +246,9 @@ void bind_results(Class& type) {
       .def(
           "reaction", [](Runner& self, JointId joint) { return self.get().reaction(joint); },
           nb::arg("joint"), doc("Simulation.reaction"))
+      .def(
+          "contact_forces", [](Runner& self) { return self.get().contact_forces(); },
+          doc("Simulation.contact_forces"))
       .def(
           "name", [](Runner& self, const ConstraintKey& key) { return self.get().name(key); }, nb::arg("key"),
           doc("Simulation.name"))

@@ -92,8 +92,8 @@ TEST_F(OutlineTest, OnlyConvexPolygonsHaveOne) {
   expect_refused({{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}}, "not convex at (0.5, 0.5)");
   expect_refused({{0, 0}, {0, 2}, {0.5, 0.5}, {2, 0}}, "not convex at (0.5, 0.5)");
   expect_refused({{0, 0}, {2, 0}, {1, 1e-9}, {1, 2}}, "not convex");
-  expect_refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}, {-1, 0.5}}, "not convex");  // crosses itself
-  expect_refused({{0, 0}, {3, 0}, {2, 0}, {2, 2}}, "not convex");             // goes back on itself
+  expect_refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}, {-1, 0.5}}, "crossing themselves: sides 0 and 2");
+  expect_refused({{0, 0}, {3, 0}, {2, 0}, {2, 2}}, "not convex");  // goes back on itself
   Vertices star;
   for (int i = 0; i < 5; ++i) {
     star.push_back({std::cos(0.8 * i * std::numbers::pi), std::sin(0.8 * i * std::numbers::pi)});

@@ -73,8 +73,8 @@ TEST(ContactFilter, PartsThatAreHiddenAreFound) {
   const BodyId body = system.add(RigidBody{.mass = disc(1.0, 1.0)});
   system.add(Disc{.body = body, .radius = 1.0}, "rim");
   EXPECT_TRUE(system.check().empty());
-  system.add(Point{.body = body, .filter = {.touches = 0}}, "ghost");
-  system.add(Point{.body = body, .filter = {.groups = 0}}, "nobody");
+  system.add(Point{.body = body, .filter = {.touches = 16}}, "ghost");
+  system.add(Point{.body = body, .filter = {.groups = 16, .touches = 16}}, "nobody");
   system.add(Point{.body = body, .filter = {.touches = 1}}, "other");
   system.add(Particle{.mass = 1.0, .filter = {.touches = 4}}, "dust");
   system.add(Particle{.mass = 1.0, .contact = false, .filter = {.touches = 4}}, "pivot");
@@ -91,6 +91,40 @@ TEST(ContactFilter, PartsThatAreHiddenAreFound) {
   ASSERT_EQ(more.size(), 2U);
   EXPECT_EQ(more[1].kind, FindingKind::hidden_by_filter);
   EXPECT_EQ(more[1].parts, std::vector<std::string>{"half-plane 'wall'"});
+}
+
+TEST(ContactFilter, OneThatHidesEverythingIsRefusedByName) {
+  for (const bool groups : {true, false}) {
+    const ContactFilter none = groups ? ContactFilter{.groups = 0} : ContactFilter{.touches = 0};
+    const std::string what = groups ? "filter.groups is 0" : "filter.touches is 0";
+    const auto expect_refused = [&](const char* name, const auto& add) {
+      System system;
+      const BodyId body = system.add(RigidBody{.mass = disc(1.0, 1.0)});
+      try {
+        add(system, body);
+        ADD_FAILURE() << name;
+      } catch (const ModelError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find(name), std::string::npos) << text;
+        EXPECT_NE(text.find(what), std::string::npos) << text;
+        EXPECT_NE(text.find("allowed: at least one group"), std::string::npos) << text;
+      }
+    };
+    expect_refused("disc 'rim'", [&](System& system, BodyId body) {
+      system.add(Disc{.body = body, .radius = 1.0, .filter = none}, "rim");
+    });
+    expect_refused("half-plane 'floor'", [&](System& system, BodyId) {
+      system.add(HalfPlane{.normal = {0, 1}, .filter = none}, rough, "floor");
+    });
+    expect_refused("peg 'pin'", [&](System& system, BodyId) {
+      system.add(Peg{.centre = {0, 0}, .radius = 1.0, .filter = none}, rough, "pin");
+    });
+    expect_refused("particle 'dust'", [&](System& system, BodyId) {
+      system.add(Particle{.mass = 1.0, .filter = none}, "dust");
+    });
+    System system;  // what touches nothing anyway may have any
+    EXPECT_NO_THROW(system.add(Particle{.mass = 1.0, .contact = false, .filter = none}));
+  }
 }
 
 TEST(ContactFilter, APairThatIsFilteredNeedsNoLaw) {

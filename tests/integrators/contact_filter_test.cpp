@@ -156,7 +156,7 @@ System landing(bool hidden) {
   if (!hidden) return system;
   // Without laws: none is needed.
   system.add(HalfPlane{.point = {0.0, 0.3}, .normal = {0.0, 1.0}, .filter = second});
-  system.add(HalfPlane{.point = {0.0, 2.0}, .normal = {0.0, 1.0}, .filter = {.touches = 0}});
+  system.add(HalfPlane{.point = {0.0, 2.0}, .normal = {0.0, 1.0}, .filter = {.groups = 2, .touches = 4}});
   return system;
 }
 

@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -73,6 +75,91 @@ TEST(ContactReport, ImpulsesOfImpactsChangeTheMomentum) {
     EXPECT_NEAR((on_b - gained_b).norm(), 0.0, 1e-12) << events;
     EXPECT_NEAR(spin_b, angular(simulation), 1e-12) << events;
   }
+}
+
+TEST(ContactReport, ForcesOfContactsThatLastInBothModes) {
+  // A disc with resistance to rolling that slides down an incline, a brick that sticks beside it, with a
+  // smaller one on it.
+  constexpr double slope = 0.2, mu = 0.5, rho = 0.01;
+  System system;
+  const Surface law{.friction = mu, .normal_restitution = 0.0, .rolling_resistance = rho};
+  system.set_default_law(law);
+  system.add(Gravity{{g * std::sin(slope), -g * std::cos(slope)}});  // seen from the floor
+  const ObstacleId floor = system.add(HalfPlane{.normal = {0.0, 1.0}}, law);
+  const BodyId ball = add_disc(system, 2.0, 0.1, {0.0, 0.1}, {1.0, 0.0}, 5.0);
+  const BodyId lower = add_box(system, 3.0, 1.0, 0.5, {-5.0, 0.25});
+  const BodyId upper = add_box(system, 1.0, 0.8, 0.5, {-5.0, 0.75});
+  for (const bool events : {false, true}) {
+    Simulation simulation = events ? Simulation(system, EventDriven{.interval = 1e-3})
+                                   : Simulation(system, TimeStepping{.step = 1e-3});
+    EXPECT_TRUE(simulation.contact_forces().empty());
+    simulation.run_until(0.01);
+    const std::vector<LastingContact> forces = simulation.contact_forces();
+    EXPECT_EQ(forces.size(), 5U) << events;
+    const double down = g * std::sin(slope), press = g * std::cos(slope);
+    // Certificates of 1e-12 of impulses of 0.06 N s over 1e-3 s.
+    constexpr double close = 1e-9;
+    const PartForce on_ball = force_on(forces, ball);
+    EXPECT_EQ(on_ball.contacts, 1);
+    EXPECT_NEAR(on_ball.mean_force[1], 2.0 * press, close) << events;
+    EXPECT_NEAR(on_ball.mean_force[0], -mu * 2.0 * press, close) << events;
+    // About the origin: of friction none, of the normal force by its place, against the spin by rho.
+    const auto of_ball =
+        std::find_if(forces.begin(), forces.end(), [&](const LastingContact& at) { return at.body == ball; });
+    ASSERT_NE(of_ball, forces.end());
+    EXPECT_EQ(of_ball->mode, ContactMode::slip_positive);
+    EXPECT_EQ(of_ball->obstacle, floor);
+    EXPECT_NEAR(of_ball->rolling_moment, -rho * 2.0 * press, close);
+    EXPECT_NEAR(on_ball.mean_moment, of_ball->point[0] * 2.0 * press - rho * 2.0 * press, close);
+    EXPECT_NEAR(of_ball->point[0], simulation.state().position(ball)[0], 2e-3);  // when it was found
+    EXPECT_NEAR(of_ball->normal[1], 1.0, 1e-15);
+    EXPECT_NEAR(of_ball->velocity[1],
+                simulation.state().velocity(ball)[0] + 0.1 * simulation.state().spin(ball), 1e-12);
+    EXPECT_NEAR(force_on(forces, upper).mean_force[1], press, close) << events;
+    EXPECT_NEAR(force_on(forces, upper).mean_force[0], -down, close) << events;
+    EXPECT_NEAR(force_on(forces, lower).mean_force[1], 3.0 * press, close) << events;
+    EXPECT_NEAR(force_on(forces, floor).mean_force[1], -6.0 * press, close) << events;
+    // The bricks do not turn: moments of all forces on the upper one about its centre vanish.
+    const Vec<2> at = simulation.state().position(upper);
+    const PartForce on_upper = force_on(forces, upper);
+    EXPECT_NEAR(on_upper.mean_moment - (at[0] * on_upper.mean_force[1] - at[1] * on_upper.mean_force[0]), 0.0,
+                close)
+        << events;
+    EXPECT_EQ(force_on(forces, BodyId{}).contacts, 0);
+    EXPECT_EQ(force_on(forces, ObstacleId{}).contacts, 0);
+    if (!events) EXPECT_NEAR(force_on(simulation.report(), ball).mean_moment, on_ball.mean_moment, 1e-12);
+  }
+}
+
+TEST(ContactReport, SharesOfStepsByCertificate) {
+  System system;
+  const Surface law{.friction = 0.3, .normal_restitution = 0.0};
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, law);
+  add_disc(system, 1.0, 0.1, {0.0, 0.1 + 0.5 * g * 0.0104 * 0.0104});  // in the air for ten steps
+  Simulation simulation(system, TimeStepping{.step = 1e-3});
+  EXPECT_EQ(simulation.statistics().certified_share(1e-8), 1.0);
+  simulation.run_until(0.03);
+  const Statistics& statistics = simulation.statistics();
+  std::int64_t with_contact = 0;
+  for (const std::int64_t count : statistics.certified_steps) with_contact += count;
+  EXPECT_EQ(with_contact, statistics.contact_steps);  // one contact
+  EXPECT_LT(with_contact, statistics.steps);
+  EXPECT_GT(with_contact, 10);
+  EXPECT_EQ(statistics.certified_share(1e-10), 1.0);
+  ContactCounts counts;
+  for (const double residual : {1e-13, 1e-11, 1e-9, 1e-3}) counts.count_step(residual);
+  EXPECT_EQ(counts.certified_share(1e-12), 0.25);
+  EXPECT_EQ(counts.certified_share(2e-10), 0.5);
+  EXPECT_EQ(counts.certified_share(1e-8), 0.75);
+  EXPECT_EQ(counts.certified_share(1.0), 0.75);  // of the last nothing is known
+  EXPECT_EQ(counts.certified_share(1e-13), 0.0);
+  // They go through a checkpoint.
+  const carom_test::TemporaryFolder folder;
+  simulation.save(folder / "checkpoint");
+  Simulation again(system, TimeStepping{.step = 1e-3});
+  again.load(folder / "checkpoint");
+  EXPECT_EQ(again.statistics().certified_steps, statistics.certified_steps);
 }
 
 TEST(ContactReport, RecorderWritesARowForEveryContact) {
