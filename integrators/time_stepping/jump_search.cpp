@@ -47,7 +47,14 @@ void JumpSearch::evaluate_at_end(const At& at, const StepTrial& trial, std::vect
 /// the place of a load and by how much that changed it
 template <class W, class F>
 void JumpSearch::take_back(const At& at, const W& weight, const F& add, StepTrial& trial) {
-  for (const LocatedMotion* motion : at.motions) motion->take_back(at.in, weight, trial);
+  for (const LocatedMotion* motion : at.motions) {
+    const Range v = motion->velocities(at.in);
+    for (const MotionPhase& phase : motion->phases()) {
+      const double part = phase.is_impact() ? weight(phase.begin) : 0.0;
+      if (part == 0.0) continue;
+      for (Index i = 0; i < v.size(); ++i) trial.end.v[v.begin + i] -= part * (phase.v1[i] - phase.v0[i]);
+    }
+  }
   evaluate_at_end(at, trial, before_);
   for_jumps(at, [&](Range, Range v) {
     for (Index i = v.begin; i < v.end; ++i) add(i, change_[i] - before_[i]);
@@ -63,7 +70,11 @@ void JumpSearch::show_end(const At& at, StepTrial& trial) {
 void JumpSearch::evaluate(const At& at, const std::vector<double>& loads, StepTrial& trial) {
   constexpr std::size_t most_instants = 4;  // beyond which they are added up
   instants_.clear();
-  for (const LocatedMotion* motion : at.motions) motion->list_impacts(instants_);
+  for (const LocatedMotion* motion : at.motions) {
+    for (const MotionPhase& phase : motion->phases()) {
+      if (phase.is_impact()) instants_.push_back(phase.begin);
+    }
+  }
   std::sort(instants_.begin(), instants_.end(), std::greater<>());
   instants_.erase(std::unique(instants_.begin(), instants_.end()), instants_.end());
   for_jumps(at, [&](Range, Range v) {

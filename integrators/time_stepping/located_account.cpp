@@ -28,21 +28,6 @@ void LocatedMotion::show_end(const StepInput& in, const MotionPhase& phase, Step
   std::copy_n(phase.v1.begin(), v.size(), trial.end.v.begin() + v.begin);
 }
 
-void LocatedMotion::list_impacts(std::vector<double>& shares) const {
-  for (const MotionPhase& phase : phases()) {
-    if (phase.is_impact()) shares.push_back(phase.begin);
-  }
-}
-
-void LocatedMotion::add_mean(const StepInput& in, StepTrial& trial) const {
-  const Range v = velocities(in);
-  for (const MotionPhase& phase : phases()) {
-    if (!phase.is_impact()) continue;
-    for (Index i = 0; i < v.size(); ++i)
-      trial.midpoint.v[v.begin + i] += (0.5 - phase.begin) * (phase.v1[i] - phase.v0[i]);
-  }
-}
-
 double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
   StepLoads loads = of;
   loads.at_impact = is_hit();

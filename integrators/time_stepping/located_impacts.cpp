@@ -170,7 +170,14 @@ std::span<const LocatedMotion* const> LocatedImpacts::motions_of(Index component
 }
 
 void LocatedImpacts::add_mean(const StepInput& in, Index component, StepTrial& trial) {
-  for (const LocatedMotion* motion : motions_of(component)) motion->add_mean(in, trial);
+  for (const LocatedMotion* motion : motions_of(component)) {
+    const Range v = motion->velocities(in);
+    for (const MotionPhase& phase : motion->phases()) {
+      if (!phase.is_impact()) continue;
+      for (Index i = 0; i < v.size(); ++i)
+        trial.midpoint.v[v.begin + i] += (0.5 - phase.begin) * (phase.v1[i] - phase.v0[i]);
+    }
+  }
 }
 
 bool LocatedImpacts::update_jumps(const StepInput& in, const StepRule& rule, Index component, bool only_local,

@@ -102,22 +102,6 @@ public:
   void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
   /// True if an impact is among the phases.
   [[nodiscard]] bool is_hit() const { return hit_ <= 1.0; }
-  /// Adds the shares of the step at which it is hit.
-  void list_impacts(std::vector<double>& shares) const;
-  /// Takes a part of the changes of velocity by impacts back from the velocities of the trial.
-  /// \param weight of an impact, by its share of the step
-  template <class F>
-  void take_back(const StepInput& in, const F& weight, StepTrial& trial) const {
-    const Range v = velocities(in);
-    for (const MotionPhase& phase : phases()) {
-      const double part = phase.is_impact() ? weight(phase.begin) : 0.0;
-      if (part == 0.0) continue;
-      for (Index i = 0; i < v.size(); ++i) trial.end.v[v.begin + i] -= part * (phase.v1[i] - phase.v0[i]);
-    }
-  }
-  /// Makes of the mean of its velocities at both ends of the step, in the midpoint of the trial, that along
-  /// its flights.
-  void add_mean(const StepInput& in, StepTrial& trial) const;
   /// Work of loads over the flights [J].
   [[nodiscard]] double work(const StepInput& in, const StepLoads& loads) const;
   /// Its solvers.

@@ -113,6 +113,6 @@ TEST_P(CoupledImpacts, AtTheStartOfStepsAreOfFirstOrder) {
 INSTANTIATE_TEST_SUITE_P(Families, CoupledImpacts,
                          testing::Values("moved_tables", "bar_in_a_corner", "boxes_that_meet",
                                          "string_on_a_floor", "net_on_an_incline", "chain_against_a_wall"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& family) { return std::string(family.param); });
 
 }  // namespace
