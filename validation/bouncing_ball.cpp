@@ -27,9 +27,8 @@ void add_states(Page& page, const Json& data, const Mode& mode) {
     heights(simulation.state().position(ball)[1], of(at, "y"));
     speeds(simulation.state().velocity(ball)[1], of(at, "v"));
   }
-  const bool stepping = std::holds_alternative<TimeStepping>(mode);
   double order = unknown;
-  if (stepping) {
+  if (has_order(mode)) {
     const double exact = of(data.at("states").at("2.0"), "y");
     order = analytic::mean_order(2e-3, 4, 40, [&](double h) {
               return std::abs(height_at(2.0, TimeStepping{.step = h}) - exact);
@@ -67,8 +66,8 @@ Page bouncing_ball() {
                    "Height over time, and its last tenth of a second before rest, where the steps of 1 ms no "
                    "longer resolve the flights."}};
   const Json data = reference("impacts_planar.json", "bouncing_ball");
-  add_states(page, data, TimeStepping{.step = 1e-3});
-  add_states(page, data, tight());
+  add_in_both_modes(page, TimeStepping{.step = 1e-3}, tight(),
+                    [&](Page& to, const Mode& mode) { add_states(to, data, mode); });
   const Clock clock;
   Simulation simulation = dropped(tight());
   const std::vector<Impact> impacts = impacts_until(simulation, 5.0);

@@ -125,7 +125,7 @@ Page foerster() {
     page.curves.push_back(law);
     add_curve(page, number++, surface);
   }
-  for (const Mode& each : {Mode(TimeStepping{.step = 1e-6}), Mode(tight())}) {
+  add_in_both_modes(page, TimeStepping{.step = 1e-6}, tight(), [&](Page& to, const Mode& each) {
     const Clock clock;
     Comparison all;
     for (const auto& curve : reference("impacts_planar.json", "walton_curves", "cases")) {
@@ -136,8 +136,8 @@ Page foerster() {
         all(struck(of(curve, "I_over_m_r2"), surface, point[0].get<double>(), each).tangential,
             point[1].get<double>());
     }
-    page.rows.push_back(row(each, "ψ2 of Walton's curves, spheres and discs", all, clock.seconds()));
-  }
+    to.rows.push_back(row(each, "ψ2 of Walton's curves, spheres and discs", all, clock.seconds()));
+  });
   page.remarks =
       "The library follows the law to rounding; how well the law describes the spheres is said by the "
       "scatter of the published coefficients (e ± 0.01, μ ± 0.006, β0 ± 0.07 for glass). [Alumina on "

@@ -58,7 +58,7 @@ void add_oscillator(Page& page, const Mode& mode) {
   for (std::size_t i = 0; i < found.size(); ++i) places(found[i], expected[i]);
   const double cost = clock.seconds();
   double order = unknown;
-  if (std::holds_alternative<TimeStepping>(mode)) {
+  if (has_order(mode)) {
     order = analytic::mean_order(4e-3, 4, 32, [&](double h) {
               return error_of(oscillator_places(data, TimeStepping{.step = h}));
             }).slope;
@@ -97,10 +97,10 @@ Page friction() {
   page.figures = {{"coulomb_oscillator",
                    "The block on the spring: line, event-driven; circles, time stepping with h = 0.01 s; "
                    "crosses, turning points in closed form; grey, where friction holds it."}};
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-3}), Mode(tight())}) {
-    add_ramp(page, mode);
-    add_oscillator(page, mode);
-  }
+  add_in_both_modes(page, TimeStepping{.step = 1e-3}, tight(), [](Page& to, const Mode& mode) {
+    add_ramp(to, mode);
+    add_oscillator(to, mode);
+  });
   page.curves = {course("coulomb_events", tight()), course("coulomb_stepping", TimeStepping{.step = 1e-2})};
   const Json data = reference("contacts_planar.json", "coulomb_oscillator");
   Curve turns{.name = "coulomb_reference", .columns = {"time [s]", "place [m]"}, .rows = {}};
@@ -137,7 +137,7 @@ Page ladder() {
     return theta + simulation.state().angle(scene.body);
   };
   const std::vector<Mode> modes{TimeStepping{.step = 1e-3}, tight()};
-  for (const Mode& mode : modes) {
+  add_in_both_modes(page, TimeStepping{.step = 1e-3}, tight(), [&](Page& to, const Mode& mode) {
     const Clock clock;
     double low = 0.0, high = 1.0;     // slips, stands
     constexpr double slipped = 1e-9;  // far more than rounding, far less than a slip in that time
@@ -146,32 +146,33 @@ Page ladder() {
       const double middle = 0.5 * (low + high);
       (std::abs(turned(middle, time, mode)) > slipped ? low : high) = middle;
     }
-    page.rows.push_back(
+    to.rows.push_back(
         row(mode, "least friction with which it stands", 0.5 * (low + high), least, clock.seconds()));
     const Clock standing;
-    page.rows.push_back(row(mode, "turn in 5 s with 1.001 of that friction [rad]",
-                            turned(1.001 * least, 5.0, mode), 0.0, standing.seconds()));
-  }
+    to.rows.push_back(row(mode, "turn in 5 s with 1.001 of that friction [rad]",
+                          turned(1.001 * least, 5.0, mode), 0.0, standing.seconds()));
+  });
   // Forces of a ladder at rest, as impulses of a step.
-  const Clock clock;
-  const TimeStepping stepping{.step = 1e-3};
-  scenes::BodyScene scene = scenes::ladder(0.5, theta, 1e-9);
-  Simulation simulation(std::move(scene.system), stepping);
-  simulation.run_until(0.1);
-  const ObstacleId wall = simulation.system().obstacle("wall");
-  for (const ContactRecord& contact : simulation.report().contacts) {
-    const double normal = contact.impulse[0] / stepping.step,
-                 tangential = std::abs(contact.impulse[1]) / stepping.step;
-    if (contact.obstacle == wall) {
-      page.rows.push_back(
-          row(stepping, "force of the wall, mean of a step [N]", normal, of(data, "wall"), clock.seconds()));
-    } else {
-      page.rows.push_back(row(stepping, "normal force of the floor, mean of a step [N]", normal,
+  add_with_options(page, TimeStepping{.step = 1e-3}, [&](Page& to, const Mode& mode) {
+    const Clock clock;
+    const double step = std::get<TimeStepping>(mode).step;
+    scenes::BodyScene scene = scenes::ladder(0.5, theta, 1e-9);
+    Simulation simulation(std::move(scene.system), mode);
+    simulation.run_until(0.1);
+    const ObstacleId wall = simulation.system().obstacle("wall");
+    for (const ContactRecord& contact : simulation.report().contacts) {
+      const double normal = contact.impulse[0] / step, tangential = std::abs(contact.impulse[1]) / step;
+      if (contact.obstacle == wall) {
+        to.rows.push_back(
+            row(mode, "force of the wall, mean of a step [N]", normal, of(data, "wall"), clock.seconds()));
+      } else {
+        to.rows.push_back(row(mode, "normal force of the floor, mean of a step [N]", normal,
                               of(data, "floor_normal"), clock.seconds()));
-      page.rows.push_back(row(stepping, "friction of the floor, mean of a step [N]", tangential,
+        to.rows.push_back(row(mode, "friction of the floor, mean of a step [N]", tangential,
                               of(data, "floor_friction"), clock.seconds()));
+      }
     }
-  }
+  });
   for (const Mode& mode : modes) {
     Curve curve{
         .name = std::string("ladder_") + (std::holds_alternative<EventDriven>(mode) ? "events" : "stepping"),

@@ -46,7 +46,7 @@ Page johansson_energy() {
                    "ΔT/T of the impact as the library computes it, over both coefficients. Black: the border "
                    "by the formula; dots: by bisection with the library's impacts; dashed: e_t = e_n."}};
   const Json data = reference("impacts_planar.json", "energy_inconsistency");
-  for (const Mode& mode : {Mode(TimeStepping{}), Mode(tight())}) {
+  add_in_both_modes(page, {}, tight(), [&](Page& to, const Mode& mode) {
     const Clock clock;
     Comparison change, normal, tangential;
     for (const auto& at : data.at("values")) {
@@ -56,16 +56,16 @@ Page johansson_energy() {
       tangential(found.tangential, of(at, "Pt"));
     }
     const double cost = clock.seconds();
-    page.rows.push_back(row(mode, "change of the kinetic energy [J]", change, cost));
-    page.rows.push_back(row(mode, "normal impulse [N s]", normal, cost));
-    page.rows.push_back(row(mode, "tangential impulse [N s]", tangential, cost));
+    to.rows.push_back(row(mode, "change of the kinetic energy [J]", change, cost));
+    to.rows.push_back(row(mode, "normal impulse [N s]", normal, cost));
+    to.rows.push_back(row(mode, "tangential impulse [N s]", tangential, cost));
     const Clock all;
     for (const auto& [e_n, e_t, share] :
          {std::array{1.0, 0.0, 2.0 / 15.0}, std::array{1.0, 0.5, 1.0 / 30.0}, std::array{1.0, 1.0, 0.0}}) {
-      page.rows.push_back(row(mode, "ΔT/T at e_n = " + short_text(e_n) + ", e_t = " + short_text(e_t),
-                              struck(e_n, e_t, mode).energy / 2.5, share, all.seconds()));
+      to.rows.push_back(row(mode, "ΔT/T at e_n = " + short_text(e_n) + ", e_t = " + short_text(e_t),
+                            struck(e_n, e_t, mode).energy / 2.5, share, all.seconds()));
     }
-  }
+  });
   const Clock clock;
   Comparison borders;
   Curve found{.name = "energy_gain_border", .columns = {"e_t", "e_n"}, .rows = {}};

@@ -120,19 +120,17 @@ Page johansson_horak() {
        "line has a part that "
        "sticks, through the origin, and a part that slips, parallel to the dotted line of equal spins."}};
   const Json results = reference("impacts_planar.json", "horak", "results");
-  const std::vector<Mode> modes{TimeStepping{.step = 1e-4}, tight()};
-  for (const Mode& mode : modes) {
+  add_in_both_modes(page, TimeStepping{.step = 1e-4}, tight(), [&](Page& to, const Mode& mode) {
     for (const auto& [name, result] : results.items()) {
       const Clock clock;
       Comparison spins;
       for (const auto& at : result.at("rows"))
         spins(dropped(surface_of(result), of(at, "spin_before"), mode).spin, of(at, "spin_after"));
       const double cost = clock.seconds();
-      const bool stepping = std::holds_alternative<TimeStepping>(mode);
-      page.rows.push_back(row(mode, "spin after, " + name_of(surface_of(result)) + " [rad/s]", spins, cost,
-                              stepping ? refined(result).order() : unknown));
+      to.rows.push_back(row(mode, "spin after, " + name_of(surface_of(result)) + " [rad/s]", spins, cost,
+                            has_order(mode) ? refined(result).order() : unknown));
     }
-  }
+  });
   for (const auto& [name, result] : results.items()) {
     Curve line{.name = "horak_" + name, .columns = {"before [rad/s]", "after [rad/s]"}, .rows = {}};
     for (int spin = 0; spin <= 200; spin += 2)

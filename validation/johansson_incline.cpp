@@ -140,8 +140,9 @@ Page johansson_incline() {
   const Json data = reference_data("incline_bodies.json");
   for (const bool is_bar : {true, false}) {
     const Json& at = data.at(word(is_bar)).at(paper_case);
-    add_case(page, at, is_bar, TimeStepping{.step = step}, order_of(at, is_bar));
-    add_case(page, at, is_bar, tight(), unknown);
+    add_in_both_modes(page, TimeStepping{.step = step}, tight(), [&](Page& to, const Mode& mode) {
+      add_case(to, at, is_bar, mode, has_order(mode) ? order_of(at, is_bar) : unknown);
+    });
     page.curves.push_back(recorded(is_bar));
   }
   page.remarks =
@@ -164,11 +165,11 @@ Page incline_variants() {
   page.figures = {{"incline_variants",
                    "Error of the coordinates at 3.5 s of the six bars over the step: dots are single runs of "
                    "time stepping, the line has slope 1."}};
-  for (const Mode& mode : {Mode(TimeStepping{.step = 2.3e-4}), Mode(tight())}) {
+  add_in_both_modes(page, TimeStepping{.step = 2.3e-4}, tight(), [](Page& to, const Mode& mode) {
     for (const char* file : {"incline_bodies.json", "open_variants.json"}) {
-      for (const bool is_bar : {true, false}) add_variants(page, file, is_bar, mode);
+      for (const bool is_bar : {true, false}) add_variants(to, file, is_bar, mode);
     }
-  }
+  });
   Curve errors{.name = "incline_variants", .columns = {"case", "step [s]", "error [m]"}, .rows = {}};
   int number = 0;
   const Json bars = reference("incline_bodies.json", "bar");

@@ -126,12 +126,13 @@ Page johansson_tables() {
                    "Figure 3 of the paper: e_t = e_n = 0.91. Circles numbered by flash, with a radius drawn "
                    "to show the turning; time stepping at the paper's step."},
                   {"figure4_tables", "Figure 4 of the paper: e_t = 0.68."}};
-  for (const Mode& mode : {Mode(TimeStepping{.step = scenes::tables_step}), Mode(tight())}) {
+  const auto add = [](Page& to, const Mode& mode) {
     for (const double restitution : {0.91, 0.68}) {
-      for (const Throw& at : throws) add_film(page, at, restitution, mode);
+      for (const Throw& at : throws) add_film(to, at, restitution, mode);
     }
-    add_reference_runs(page, mode);
-  }
+    add_reference_runs(to, mode);
+  };
+  add_in_both_modes(page, TimeStepping{.step = scenes::tables_step}, tight(), add);
   for (const double restitution : {0.91, 0.68}) {
     for (const Throw& at : throws) page.curves.push_back(path(at, restitution));
   }

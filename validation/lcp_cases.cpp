@@ -86,7 +86,7 @@ void add_lcp(Page& page, const std::string& name, const char* key, const char* r
   page.rows.push_back(solver_row(name, "largest residual of a solved problem", residual, cost));
   const auto count = [&](const std::string& quantity, const std::string& expected, int found) {
     page.rows.push_back(
-        {solver_name, name, quantity, expected, std::to_string(found), unknown, unknown, cost});
+        Row{solver_name, name, quantity, expected, std::to_string(found), unknown, unknown, cost, {}});
   };
   count("problems that end as recorded", std::to_string(compared), agree);
   for (const auto& [status, times] : counts) count("problems that end with: " + status, "–", times);

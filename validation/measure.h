@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <ctime>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,7 +114,8 @@ inline Row row(const Mode& mode, const std::string& quantity, const Comparison& 
           number_text(compared.obtained()),
           std::abs(compared.obtained() - compared.reference()),
           order,
-          cost};
+          cost,
+          {}};
 }
 inline Row row(const Mode& mode, const std::string& quantity, double obtained, double reference, double cost,
                double order = unknown) {
@@ -135,7 +137,7 @@ inline Row solver_row(const std::string& solver, const std::string& quantity, co
 inline Row statement(const Mode& mode, const std::string& quantity, const std::string& reference,
                      const std::string& obtained, double cost) {
   const auto [name, how] = described(mode);
-  return {name, how, quantity, reference, obtained, unknown, unknown, cost};
+  return {name, how, quantity, reference, obtained, unknown, unknown, cost, {}};
 }
 
 /// Errors of runs with steps h, h/2, h/4, ...
@@ -156,6 +158,53 @@ Halvings halve(double step, int runs, F&& error_at) {
   return result;
 }
 
+/// A mode with another step: keeps the other options of time stepping.
+inline TimeStepping with_step(const Mode& mode, double step) {
+  TimeStepping options = std::get<TimeStepping>(mode);
+  options.step = step;
+  return options;
+}
+
+/// True of time stepping with the options as they come: orders are measured with these alone.
+inline bool has_order(const Mode& mode) {
+  const auto* stepping = std::get_if<TimeStepping>(&mode);
+  return stepping != nullptr && stepping->impacts == ImpactTimes::at_step_start &&
+         stepping->force_rule == ForceRule::trapezoidal;
+}
+
+/// Adds rows of time stepping, with what comes out under each option (Row::with_option).
+/// \param add called with a page and a mode: adds the rows of that mode, the same under each option
+template <class F>
+void add_with_options(Page& page, const TimeStepping& stepping, F&& add) {
+  const std::size_t first = page.rows.size();
+  add(page, Mode(stepping));
+  constexpr std::array options{std::pair{ImpactTimes::located, ForceRule::trapezoidal},
+                               std::pair{ImpactTimes::at_step_start, ForceRule::energy_momentum},
+                               std::pair{ImpactTimes::located, ForceRule::energy_momentum}};
+  static_assert(options.size() == option_count);
+  for (std::size_t i = 0; i < option_count; ++i) {
+    TimeStepping with = stepping;
+    with.impacts = options[i].first;
+    with.force_rule = options[i].second;
+    Page other;
+    add(other, Mode(with));
+    if (other.rows.size() != page.rows.size() - first)
+      throw std::runtime_error(page.name + ": an option changes the number of rows");
+    for (std::size_t at = 0; at < other.rows.size(); ++at) {
+      const Row& row = other.rows[at];
+      page.rows[first + at].with_option.push_back(std::isnan(row.error) ? row.obtained
+                                                                        : scientific_text(row.error));
+    }
+  }
+}
+
+/// Rows of both modes.
+template <class F>
+void add_in_both_modes(Page& page, const TimeStepping& stepping, const EventDriven& events, F&& add) {
+  add_with_options(page, stepping, add);
+  add(page, Mode(events));
+}
+
 /// The events of one kind, in time.
 inline std::vector<EventRecord> events_of(const Simulation& simulation, EventKind kind) {
   std::vector<EventRecord> found;
@@ -165,7 +214,8 @@ inline std::vector<EventRecord> events_of(const Simulation& simulation, EventKin
   return found;
 }
 
-/// An impact, in either mode: of time stepping with the time at the end of its step. Normal, tangential.
+/// An impact, in either mode: of time stepping with the time at the end of its step, unless it is located.
+/// Normal, tangential.
 struct Impact {
   double time = 0.0;
   ConstraintKey contact{};
@@ -183,7 +233,7 @@ inline std::vector<Impact> impacts_until(Simulation& simulation, double end) {
     if (!std::holds_alternative<TimeStepping>(now.mode())) return;  // there are events
     for (const ContactRecord& at : now.report().contacts) {
       if (!at.impact) continue;
-      impacts->push_back({now.time(), at.key, at.body, at.obstacle, at.velocity_before, at.velocity_after,
+      impacts->push_back({at.time, at.key, at.body, at.obstacle, at.velocity_before, at.velocity_after,
                           at.impulse, at.mode});
     }
   });

@@ -118,18 +118,20 @@ void add_mechanism(Page& page, const Mechanism& at) {
       row(options, at.unit + " of " + at.name + " up to " + at.times.back() + " s", values, clock.seconds()));
 
   const std::vector<double> expected = at.reference(at.stepping_time);
-  Comparison last;
-  const Halvings errors = halve(at.step, 3, [&](double h) {
-    Simulation stepped(scene.system, TimeStepping{.step = h});
-    stepped.run_until(std::stod(at.stepping_time));
-    const std::vector<double> found = at.read(stepped.state(), scene.bodies);
-    last = {};
-    for (std::size_t i = 0; i < found.size(); ++i) last(found[i], expected[i]);
-    return std::abs(last.obtained() - last.reference());
-  });
-  page.rows.push_back(row(TimeStepping{.step = errors.steps.back()},
+  add_with_options(page, TimeStepping{}, [&](Page& to, const Mode& mode) {
+    Comparison last;
+    const Halvings errors = halve(at.step, 3, [&](double h) {
+      Simulation stepped(scene.system, with_step(mode, h));
+      stepped.run_until(std::stod(at.stepping_time));
+      const std::vector<double> found = at.read(stepped.state(), scene.bodies);
+      last = {};
+      for (std::size_t i = 0; i < found.size(); ++i) last(found[i], expected[i]);
+      return std::abs(last.obtained() - last.reference());
+    });
+    to.rows.push_back(row(with_step(mode, errors.steps.back()),
                           at.unit + " of " + at.name + " at " + at.stepping_time + " s", last, errors.cost,
                           errors.order()));
+  });
 }
 
 void add_windows(Page& page, int number, const char* problem, const std::vector<std::string>& times) {
@@ -149,17 +151,19 @@ void add_windows(Page& page, int number, const char* problem, const std::vector<
   page.rows.push_back(row(fine(), "angle" + name + " [rad]", angle, clock.seconds()));
   page.rows.push_back(row(fine(), "spin" + name + " [rad/s]", spin, clock.seconds()));
 
-  const Clock of_steps;
-  const TimeStepping stepping{.step = 1e-3};
-  Simulation stepped(scene.system, stepping);
-  stepped.run_until(std::stod(times.back()));
-  Comparison at_end;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(number); ++i) {
-    at_end(joint_scenes::quarter - stepped.state().angle(scene.bodies[i]), of(data.at(times.back()), "phi"));
-  }
-  page.rows.push_back(
-      row(stepping, "angle of " + std::to_string(number) + " four-bars A02 at " + times.back() + " s [rad]",
-          at_end, of_steps.seconds()));
+  add_with_options(page, TimeStepping{.step = 1e-3}, [&](Page& to, const Mode& mode) {
+    const Clock of_steps;
+    Simulation stepped(scene.system, mode);
+    stepped.run_until(std::stod(times.back()));
+    Comparison at_end;
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(number); ++i) {
+      at_end(joint_scenes::quarter - stepped.state().angle(scene.bodies[i]),
+             of(data.at(times.back()), "phi"));
+    }
+    to.rows.push_back(
+        row(mode, "angle of " + std::to_string(number) + " four-bars A02 at " + times.back() + " s [rad]",
+            at_end, of_steps.seconds()));
+  });
 }
 
 Curve slider_course() {

@@ -38,7 +38,7 @@ void add_oscillator(Page& page, const std::string& name, const Json& run, const 
   errors(mode, times, speeds);
   const double cost = clock.seconds();
   double order = unknown;
-  if (stepping) {
+  if (has_order(mode)) {
     order = analytic::mean_order(4e-3, 3, 32, [&](double h) {
               Comparison late, slow;
               errors(TimeStepping{.step = h}, late, slow);
@@ -113,7 +113,7 @@ void add_table(Page& page, const Json& at, const Mode& mode, int flights) {
   errors(mode, times, speeds);
   const double cost = clock.seconds();
   double order = unknown;
-  if (std::holds_alternative<TimeStepping>(mode)) {
+  if (has_order(mode)) {
     order = analytic::mean_order(1e-3, 4, 32, [&](double h) {
               Comparison late, fast;
               errors(TimeStepping{.step = h}, late, fast);
@@ -186,9 +186,9 @@ Page impact_oscillator() {
   page.figures = {
       {"impact_oscillator", "The run *impacting*: event-driven; dots: impacts of the reference."}};
   const Json runs = reference("contacts_planar.json", "impact_oscillator", "runs");
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-4}), Mode(tight())}) {
-    for (const auto& [name, run] : runs.items()) add_oscillator(page, name, run, mode);
-  }
+  add_in_both_modes(page, TimeStepping{.step = 1e-4}, tight(), [&](Page& to, const Mode& mode) {
+    for (const auto& [name, run] : runs.items()) add_oscillator(to, name, run, mode);
+  });
   add_grazing(page);
   const Json& shown = runs.at("impacting");
   Curve impacts{.name = "oscillator_impacts", .columns = {"time [s]", "place [m]"}, .rows = {}};
@@ -212,7 +212,8 @@ Page vibrating_table() {
   page.figures = {{"vibrating_table",
                    "The orbit with one bounce per period, e = 0.8, Γ = 0.6, ω = 50 rad/s; event-driven."}};
   const Json data = reference("contacts_planar.json", "vibrating_table");
-  add_table(page, data.at("example"), TimeStepping{.step = 1e-4}, 3);
+  add_with_options(page, TimeStepping{.step = 1e-4},
+                   [&](Page& to, const Mode& mode) { add_table(to, data.at("example"), mode, 3); });
   add_table(page, data.at("example"), tight(), 11);
   add_stability(page, data.at("rows"));
   page.curves = {table_course(data.at("example"))};

@@ -69,20 +69,22 @@ void add_stepping(Page& page, const Json& at) {
   const Json& law = at.at("impact_law_solutions_tip_speed_1_normal_0")[1];
   scenes::PainleveRod rod = rod_of(at);
   rod.depth = 1e-12;
-  Comparison smallest;
-  const Halvings errors = halve(1e-4, 5, [&](double h) {
-    scenes::BodyScene scene = scenes::painleve_rod(rod);
-    Simulation simulation(std::move(scene.system), TimeStepping{.step = h});
-    simulation.step();
-    const auto& impulse = simulation.report().contacts.at(0).impulse;
-    smallest = {};
-    smallest(impulse[0], law[2].get<double>());
-    smallest(impulse[1], law[1].get<double>());
-    return std::abs(smallest.obtained() - smallest.reference());
-  });
-  page.rows.push_back(row(TimeStepping{.step = errors.steps.back()},
+  add_with_options(page, TimeStepping{}, [&](Page& to, const Mode& mode) {
+    Comparison smallest;
+    const Halvings errors = halve(1e-4, 5, [&](double h) {
+      scenes::BodyScene scene = scenes::painleve_rod(rod);
+      Simulation simulation(std::move(scene.system), with_step(mode, h));
+      simulation.step();
+      const auto& impulse = simulation.report().contacts.at(0).impulse;
+      smallest = {};
+      smallest(impulse[0], law[2].get<double>());
+      smallest(impulse[1], law[1].get<double>());
+      return std::abs(smallest.obtained() - smallest.reference());
+    });
+    to.rows.push_back(row(with_step(mode, errors.steps.back()),
                           "impulses of the first step, " + at.at("name").get<std::string>() + " [N s]",
                           smallest, errors.cost, errors.order()));
+  });
 }
 
 double critical_friction(double theta) {

@@ -119,8 +119,15 @@ void add_random(Page& page, const std::string& what, const std::vector<RandomCon
     }
     if (answered == 0) continue;  // not made for such problems
     const std::string name(solver_names[k]);
-    page.rows.push_back({solver_name, name, what + ": problems solved", std::to_string(all.size()),
-                         std::to_string(answered), unknown, unknown, clock.seconds()});
+    page.rows.push_back({solver_name,
+                         name,
+                         what + ": problems solved",
+                         std::to_string(all.size()),
+                         std::to_string(answered),
+                         unknown,
+                         unknown,
+                         clock.seconds(),
+                         {}});
     page.rows.push_back(solver_row(name, what + ": impulses [N s]", impulses, clock.seconds()));
     Comparison certificate;
     certificate(worst, 0.0);

@@ -15,19 +15,23 @@ std::string in_style(std::ios_base& (*style)(std::ios_base&), int precision, dou
   out << style << std::setprecision(precision) << value;
   return out.str();
 }
-std::string scientific_text(double value) { return in_style(std::scientific, 1, value); }
-
 void write_row(std::ostream& out, const Row& row) {
   out << row.mode << " | " << row.quantity << " | " << row.reference << " | " << row.obtained << " | "
       << scientific_text(row.error) << " | " << row.setting << " | " << in_style(std::fixed, 2, row.order)
-      << " | " << scientific_text(row.cost) << " |\n";
+      << " | " << scientific_text(row.cost) << " |";
+  for (std::size_t i = 0; i < option_count; ++i)
+    out << " " << (i < row.with_option.size() ? row.with_option[i] : "–") << " |";
+  out << "\n";
 }
 
 constexpr const char* row_head =
-    "mode | quantity | reference | obtained | error | tolerance or step | order | CPU s |\n";
-constexpr const char* row_line = "---|---|---|---|---|---|---|---|\n";
+    "mode | quantity | reference | obtained | error | tolerance or step | order | CPU s | `located` | "
+    "`energy_momentum` | both |\n";
+constexpr const char* row_line = "---|---|---|---|---|---|---|---|---|---|---|\n";
 
 }  // namespace
+
+std::string scientific_text(double value) { return in_style(std::scientific, 1, value); }
 
 std::string number_text(double value) {
   constexpr int digits = 10;
@@ -64,7 +68,8 @@ std::string overview_text(const std::vector<Page>& pages) {
          "to one step late and single errors scatter. *CPU s* is the time of all the runs behind the row on "
          "the machine that made this report: it is not compared. Rows of the event-driven mode with errors "
          "of 1e-12 and less show rounding. Why errors are large, where they are, is said on the page of the "
-         "problem.\n\n"
+         "problem. The last columns have the errors (or the words) of the same run of time stepping with "
+         "`impacts = located`, with `force_rule = energy_momentum` and with both.\n\n"
          "## Problems\n\n";
   for (const Page& page : pages)
     out << "- [" << page.title << "](" << page.name << ".md): " << page.source << "\n";

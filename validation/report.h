@@ -3,6 +3,7 @@
 /// \file
 /// Parts of the validation report: pages with rows of its table, curves for its pictures.
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ namespace validation {
 
 /// A number that is not known or does not apply.
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Options of time stepping that have a column: impacts located, the rule energy_momentum, both.
+inline constexpr std::size_t option_count = 3;
 
 /// A line of the report's table: what a run gave, beside what is known.
 struct Row {
@@ -21,6 +25,9 @@ struct Row {
   double error = unknown;  ///< |obtained - reference|, in the quantity's unit
   double order = unknown;  ///< observed
   double cost = unknown;   ///< CPU time of all that the row tells [s]
+  /// The same at the same step under each option: the error, or the words obtained; empty if it does not
+  /// apply.
+  std::vector<std::string> with_option;
 };
 
 /// Numbers for a picture: a CSV file.
@@ -56,6 +63,9 @@ struct Page {
 
 /// A curve as CSV, every number exactly.
 [[nodiscard]] std::string csv_text(const Curve& curve);
+
+/// A number with two digits, as errors are printed; "–" for one that is not known.
+[[nodiscard]] std::string scientific_text(double value);
 
 /// A number with ten digits; "-" for one that is not known.
 [[nodiscard]] std::string number_text(double value);

@@ -24,7 +24,7 @@ Rocking rocked(double b, double h, double tilt, double quarter, const Mode& mode
     for (const ContactRecord& contact : now.report().contacts) {
       const bool other_corner = now.name(contact.key).find("'right'") != std::string::npos;
       if (!contact.impact || !other_corner || !std::isnan(found.quarter)) continue;
-      found.quarter = now.time();
+      found.quarter = contact.time;
       found.before = spin;
       found.after = at;
     }
@@ -78,7 +78,7 @@ Page rocking_block() {
   const Json data = reference("contacts_planar.json", "rocking_block", "cases");
   EventDriven fine = tight();
   fine.interval = 1e-3;  // the tilt is looked at this often
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-4}), Mode(fine)}) {
+  add_in_both_modes(page, TimeStepping{.step = 1e-4}, fine, [&](Page& to, const Mode& mode) {
     const Clock clock;
     Comparison quarter, before, after, ratio, amplitude;
     for (const Block& block : blocks) {
@@ -95,7 +95,7 @@ Page rocking_block() {
     }
     const double cost = clock.seconds();
     double order = unknown;
-    if (std::holds_alternative<TimeStepping>(mode)) {
+    if (has_order(mode)) {
       const Json& at = data.at("b0.2_h0.8").at("rows")[1];
       order = analytic::mean_order(2e-3, 4, 24, [&](double h) {
                 const Rocking found = rocked(0.2, 0.8, of(at, "theta0"), of(at, "quarter_period_exact"),
@@ -103,12 +103,12 @@ Page rocking_block() {
                 return std::abs(found.quarter - of(at, "quarter_period_exact"));
               }).slope;
     }
-    page.rows.push_back(row(mode, "quarter period [s]", quarter, cost, order));
-    page.rows.push_back(row(mode, "spin before the impact [rad/s]", before, cost));
-    page.rows.push_back(row(mode, "spin after the impact [rad/s]", after, cost));
-    page.rows.push_back(row(mode, "ratio of spins", ratio, cost));
-    page.rows.push_back(row(mode, "next tilt, largest seen [rad]", amplitude, cost));
-  }
+    to.rows.push_back(row(mode, "quarter period [s]", quarter, cost, order));
+    to.rows.push_back(row(mode, "spin before the impact [rad/s]", before, cost));
+    to.rows.push_back(row(mode, "spin after the impact [rad/s]", after, cost));
+    to.rows.push_back(row(mode, "ratio of spins", ratio, cost));
+    to.rows.push_back(row(mode, "next tilt, largest seen [rad]", amplitude, cost));
+  });
   page.curves = {tilt_of("rocking_events", tight()), tilt_of("rocking_stepping", TimeStepping{.step = 2e-3})};
   page.remarks =
       "The largest tilt is looked for every millisecond: event-driven, that is the error of its row. In time "

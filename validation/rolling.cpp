@@ -72,15 +72,14 @@ void add_slides(Page& page, const Mode& mode) {
   }
   const double cost = clock.seconds();
   double order = unknown;
-  if (stepping) {
+  if (has_order(mode)) {
     const Json at = reference("impacts_planar.json", "slide_to_roll", "cases")[0];
     order = analytic::mean_order(2e-2, 4, 32, [&](double h) {
               return std::abs(rolled(slider(at, mode), 2.0, TimeStepping{.step = h}).distance -
                               of(at, "x_at_2s"));
             }).slope;
-  } else {
-    page.rows.push_back(row(mode, "time at which sliding turns into rolling [s]", times, cost));
   }
+  if (!stepping) page.rows.push_back(row(mode, "time at which sliding turns into rolling [s]", times, cost));
   page.rows.push_back(row(mode, "way 1 s after sliding has turned into rolling [m]", distance, cost, order));
   page.rows.push_back(row(mode, "speed of rolling [m/s]", speed, cost));
 }
@@ -136,11 +135,11 @@ Page rolling() {
       {"rolling",
        "A disc thrown at 5 m/s along a floor, μ = 0.3: speed of the centre and of the rim; lines: "
        "event-driven, circles: time stepping with h = 0.02 s, dashed: the time in closed form."}};
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-3}), Mode(tight())}) {
-    add_inclines(page, mode);
-    add_slides(page, mode);
-    add_bounces(page, mode);
-  }
+  add_in_both_modes(page, TimeStepping{.step = 1e-3}, tight(), [](Page& to, const Mode& mode) {
+    add_inclines(to, mode);
+    add_slides(to, mode);
+    add_bounces(to, mode);
+  });
   page.curves = {speeds("rolling_events", tight()), speeds("rolling_stepping", TimeStepping{.step = 2e-2})};
   const Json at = reference("impacts_planar.json", "slide_to_roll", "cases")[0];
   page.curves.push_back({.name = "rolling_reference",

@@ -67,18 +67,19 @@ bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in
   return any;
 }
 
-/// Jumps of loads at impacts, of loads that depend on velocities: true if they change the motion. The mean
-/// loads of a rule of mean loads have them already. \param local looks only where the blocks concerned are
-/// few
+/// Jumps of loads at impacts, of loads that depend on velocities: true if they change the motion. \param
+/// local looks only where the blocks concerned are few
 bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, bool local) {
   constexpr int most_updates = 20;
   StepTrial& trial = parts_->trial;
-  if (!(trial.needs.dissipative || trial.needs.external) || parts_->rule.is_mean()) return false;
+  if (!(trial.needs.dissipative || trial.needs.external)) return false;
   if (jump_updates_ == most_updates || !(parts_->located.any_hit() || trial.jumps.on)) return false;
   ++jump_updates_;
   bool any = false;
   for (const Index component : island.components) {
-    any = parts_->located.update_jumps(in, component, local, parts_->options.tolerance, trial) || any;
+    any =
+        parts_->located.update_jumps(in, parts_->rule, component, local, parts_->options.tolerance, trial) ||
+        any;
   }
   return any;
 }
@@ -240,6 +241,7 @@ void IslandIteration::follow(const StepInput& in, Index component) {
   }
   if (!(parts_->rule.is_mean() || !z.empty()) || !uses_middle(assembly, component)) return;
   parts_->trial.place_midpoint(in, component);
+  parts_->located.add_mean(in, component, parts_->trial);
   for (Index i = z.begin; i < z.end; ++i)
     parts_->trial.midpoint.z[i] = 0.5 * (in.start.z[i] + parts_->trial.end.z[i]);
   if (rotations)

@@ -7,6 +7,17 @@
 
 namespace carom {
 
+StepLoads step_loads(const StepInput& in, const StepRule& rule, const StepTrial& trial) {
+  const double* const end = trial.loads_guess.data();
+  const double* const start = rule.is_mean() ? end : in.companion.loads.total.data();
+  if (!trial.jumps.on) return {.start = start, .end = end, .is_mean = rule.is_mean()};
+  return {.start = start,
+          .end = end,
+          .jump = trial.jumps.jump.data(),
+          .correction = trial.jumps.correction.data(),
+          .is_mean = rule.is_mean()};
+}
+
 Range LocatedMotion::velocities(const StepInput& in) const {
   const BodySlot slot = in.assembly.layout()->bodies()[body_];
   return {slot.v, slot.v + slot.v_size};
@@ -17,16 +28,9 @@ void LocatedMotion::show_end(const StepInput& in, const MotionPhase& phase, Step
   std::copy_n(phase.v1.begin(), v.size(), trial.end.v.begin() + v.begin);
 }
 
-void LocatedMotion::take_back(const StepInput& in, bool weighted, StepTrial& trial) const {
-  const Range v = velocities(in);
-  for (const MotionPhase& phase : phases()) {
-    if (!phase.is_impact()) continue;
-    const double weight = weighted ? 1.0 - 2.0 * phase.begin : 1.0;
-    for (Index i = 0; i < v.size(); ++i) trial.end.v[v.begin + i] -= weight * (phase.v1[i] - phase.v0[i]);
-  }
-}
-
-double LocatedMotion::work(const StepInput& in, const StepLoads& loads) const {
+double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
+  StepLoads loads = of;
+  loads.at_impact = is_hit();
   const Range v = velocities(in);
   double sum = 0.0;
   for (const MotionPhase& phase : phases()) {

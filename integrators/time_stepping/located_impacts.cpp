@@ -26,6 +26,7 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
                                const TimeStepping& options)
     : assembly_(&assembly),
       detector_(&detector),
+      jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       most_impacts_(options.most_impacts),
       capture_speed_(options.capture_speed),
@@ -154,110 +155,39 @@ const IslandProblem* LocatedImpacts::first_unsolved() const {
   return nullptr;
 }
 
-/// Finds the blocks on which loads may jump. Returns false if these are not a small part of the component.
-bool LocatedImpacts::surround_hit(Index component) {
-  constexpr Index small_part = 4;
-  const BlockTable& blocks = assembly_->blocks();
-  const Range all = assembly_->components()[component].blocks;
-  around_.inner.clear();
-  Index block = all.begin;
-  for (const auto& [body, motion] : order_) {
-    while (block < all.end && blocks[block].bodies.end <= body) ++block;
-    if (block == all.end || body < blocks[block].bodies.begin) continue;
-    if (around_.inner.empty() || around_.inner.back() != block) around_.inner.push_back(block);
-  }
-  return blocks.surround(around_) && small_part * around_.touched.size() <= all.size();
-}
-
-/// Changes of the loads at the end by impacts, as far as loads depend on velocities.
-void LocatedImpacts::evaluate_jumps(const StepInput& in, Index component, bool local, bool weighted,
-                                    StepTrial& trial, std::vector<double>& out) {
-  const auto evaluate = [&](std::vector<double>& loads) {
-    const Loads to{loads.data(), loads.data(), loads.data()};
-    if (local) {
-      evaluate_loads_within(*assembly_, component, around_, trial.end.view(), trial.at_end, to);
-    } else {
-      evaluate_loads(*assembly_, component, trial.end.view(), trial.at_end, to);
-    }
-  };
-  if (local) evaluate(change_);
-  const std::vector<double>& base = local ? change_ : trial.loads_end.total;
-  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].take_back(in, weighted, trial);
-  evaluate(out);
-  for (std::size_t i = 0; i < in_use_; ++i) motions_[i].show_end(in, motions_[i].phases().back(), trial);
-  for_jumps(component, local, [&](Range, Range v) {
-    for (Index i = v.begin; i < v.end; ++i) out[i] = base[i] - out[i];
-  });
-}
-
-/// Calls f(bodies, their velocities) for those whose loads may jump.
-template <class F>
-void LocatedImpacts::for_jumps(Index component, bool local, F&& f) const {
-  const Component& all = assembly_->components()[component];
-  if (!local) return f(all.bodies, all.v);
-  for (const Index block : around_.touched) {
-    f(assembly_->blocks()[block].bodies, assembly_->blocks()[block].v);
-  }
-}
-
 bool LocatedImpacts::any_hit() const {
   return std::any_of(motions_.begin(), motions_.begin() + static_cast<std::ptrdiff_t>(in_use_),
                      [](const LocatedMotion& motion) { return motion.is_hit(); });
 }
 
-bool LocatedImpacts::update_jumps(const StepInput& in, Index component, bool only_local, double tolerance,
-                                  StepTrial& trial) {
-  LoadJumps& jumps = trial.jumps;
-  const bool local = surround_hit(component);
-  if (only_local && !local) return false;
-  for (std::vector<double>* const numbers : {&jump_, &correction_, &change_}) {
-    numbers->resize(trial.end.v.size());
+std::span<const LocatedMotion* const> LocatedImpacts::motions_of(Index component) {
+  const Range bodies = assembly_->components()[component].bodies;
+  of_component_.clear();
+  for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
+    of_component_.push_back(&motions_[order_[at].second]);
   }
-  evaluate_jumps(in, component, local, false, trial, jump_);
-  evaluate_jumps(in, component, local, true, trial, correction_);
-  // The correction stays as it is once a change is too small to go on.
-  if (!(change_by_correction(in, component, local, jumps) > tolerance)) return false;
-  const std::vector<double>& start = in.companion.loads.total;
-  if (!jumps.on) {
-    jumps.jump.assign(start.size(), 0.0);
-    jumps.correction.assign(start.size(), 0.0);
-    jumps.start.assign(start.begin(), start.end());
-    jumps.on = true;
-  }
-  for_jumps(component, local, [&](Range, Range v) {
-    for (Index i = v.begin; i < v.end; ++i) {
-      jumps.jump[i] = jump_[i];
-      jumps.correction[i] = correction_[i];
-      jumps.start[i] = start[i] + correction_[i];
-    }
-  });
-  return true;
+  return of_component_;
 }
 
-/// By how much the correction at hand would move the bodies in place of the one that acted, as SweepChange
-/// [m].
-double LocatedImpacts::change_by_correction(const StepInput& in, Index component, bool local,
-                                            const LoadJumps& acted) {
-  double largest = 0.0;
-  for_jumps(component, local, [&](Range bodies, Range v) {
-    for (Index i = v.begin; i < v.end; ++i) {
-      change_[i] = correction_[i] - (acted.on ? acted.correction[i] : 0.0);
+void LocatedImpacts::add_mean(const StepInput& in, Index component, StepTrial& trial) {
+  for (const LocatedMotion* motion : motions_of(component)) {
+    const Range v = motion->velocities(in);
+    for (const MotionPhase& phase : motion->phases()) {
+      if (!phase.is_impact()) continue;
+      for (Index i = 0; i < v.size(); ++i)
+        trial.midpoint.v[v.begin + i] += (0.5 - phase.begin) * (phase.v1[i] - phase.v0[i]);
     }
-    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-      const double* change = change_.data() + first;
-      kind.apply_inverse_mass(slots, change, change_.data() + first);
-      for (Index slot = slots.begin; slot < slots.end; ++slot) {
-        for (Index i = 0; i < kind.v_size(); ++i) {
-          largest = std::max(largest, std::abs(*change++) * kind.length_scale(slot, i));
-        }
-      }
-    });
-  });
-  return 0.5 * in.step * in.step * largest;
+  }
+}
+
+bool LocatedImpacts::update_jumps(const StepInput& in, const StepRule& rule, Index component, bool only_local,
+                                  double tolerance, StepTrial& trial) {
+  return jumps_.update({in, rule, component, motions_of(component), tolerance}, only_local, trial);
 }
 
 /// Works of the loads of a cause along the flights, less those that its block has been given. Of loads that
-/// jump the correction is booked as dissipative: it is of loads that depend on velocities.
+/// jump the correction is booked as dissipative: it is of loads that depend on velocities. Mean loads have
+/// it.
 void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Range bodies,
                                    StepTrial& trial) const {
   BlockWorks& sum = trial.account.works.front();
@@ -270,8 +200,8 @@ void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Ra
   const auto of_jumps = [&](Range v) {
     return 0.5 * rule.work(in, jumps.correction.data(), jumps.correction.data(), v, trial);
   };
-  const bool jump = jumps.on && !dissipative.empty();
-  if (jump) {
+  const bool jump = jumps.on && !dissipative.empty(), corrected = jump && !rule.is_mean();
+  if (corrected) {
     const Index component = assembly_->component_of(bodies.begin);
     sum.dissipative += of_jumps(assembly_->components()[component].v);
   }
@@ -283,17 +213,19 @@ void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Ra
     sum.total += motion.work(in, step_loads(in, rule, trial)) -
                  over_step(rule.start_of_sum(in, trial), trial.loads_guess.data());
     if (!dissipative.empty()) {
-      StepLoads loads{first(start.dissipative, dissipative), dissipative.data()};
+      StepLoads loads{.start = first(start.dissipative, dissipative),
+                      .end = dissipative.data(),
+                      .is_mean = rule.is_mean()};
       sum.dissipative -= over_step(loads.start, loads.end);
       if (jump) {
         loads.jump = jumps.jump.data();
         loads.correction = jumps.correction.data();
-        sum.dissipative -= of_jumps(v);
+        if (corrected) sum.dissipative -= of_jumps(v);
       }
       sum.dissipative += motion.work(in, loads);
     }
     if (external.empty()) continue;
-    const StepLoads loads{first(start.external, external), external.data()};
+    const StepLoads loads{.start = first(start.external, external), .end = external.data()};
     sum.external += motion.work(in, loads) - over_step(loads.start, loads.end);
   }
 }

@@ -8,6 +8,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/jump_search.h>
 #include <carom/integrators/time_stepping/located_motion.h>
 
 #include <cstddef>
@@ -54,8 +55,10 @@ public:
   /// Finds the jumps of loads of a component that depend on velocities, at the iterate. False if they move
   /// the bodies as those do that acted, but for less than the tolerance [m]: then these stay. \param
   /// only_local does nothing unless few blocks are concerned; of the iterate loads are not asked then
-  [[nodiscard]] bool update_jumps(const StepInput& in, Index component, bool only_local, double tolerance,
-                                  StepTrial& trial);
+  [[nodiscard]] bool update_jumps(const StepInput& in, const StepRule& rule, Index component, bool only_local,
+                                  double tolerance, StepTrial& trial);
+  /// Brings mean velocities of a component, in the midpoint of the trial, to its flights.
+  void add_mean(const StepInput& in, Index component, StepTrial& trial);
   /// Replaces, in the account of the trial, works of loads on some bodies along their mean velocities by
   /// those along their flights.
   void correct_works(const StepInput& in, const StepRule& rule, Range bodies, StepTrial& trial) const;
@@ -70,18 +73,13 @@ private:
   [[nodiscard]] std::span<const OfBody> of(Index body) const;
   void take_up_new(const StepInput& in, const Constraint& contact, StepTrial& trial);
   void take_up_held(const StepInput& in, Range bodies, StepTrial& trial);
-  [[nodiscard]] bool surround_hit(Index component);
-  template <class F>
-  void for_jumps(Index component, bool local, F&& f) const;
-  void evaluate_jumps(const StepInput& in, Index component, bool local, bool weighted, StepTrial& trial,
-                      std::vector<double>& out);
-  [[nodiscard]] double change_by_correction(const StepInput& in, Index component, bool local,
-                                            const LoadJumps& acted);
   void take_up(const StepInput& in, Index body, StepTrial& trial);
   [[nodiscard]] std::size_t place(Index body) const;
+  [[nodiscard]] std::span<const LocatedMotion* const> motions_of(Index component);
 
   const Assembly* assembly_;
   const Detector* detector_;
+  JumpSearch jumps_;
   bool on_;
   int most_impacts_;
   double capture_speed_;
@@ -89,14 +87,13 @@ private:
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
+  std::vector<const LocatedMotion*> of_component_;    // at hand, likewise
   struct {
     std::span<const Constraint> contacts;
     std::vector<OfBody> of_bodies;  // of these, ascending
     std::vector<Constraint> own;    // of one body
   } island_;                        // at hand
   std::vector<Constraint> found_;
-  Surroundings around_;                             // blocks on which loads may jump
-  std::vector<double> jump_, correction_, change_;  // as LoadJumps, at the iterate
 };
 
 }  // namespace carom

@@ -24,23 +24,19 @@ void write(const std::array<double, N>& from, Index first, Index count, std::vec
 
 }  // namespace
 
-StepLoads step_loads(const StepInput& in, const StepRule& rule, const StepTrial& trial) {
-  const double* const end = trial.loads_guess.data();
-  if (!trial.jumps.on) return {rule.start_of_sum(in, trial), end};
-  return {in.companion.loads.total.data(), end, trial.jumps.jump.data(), trial.jumps.correction.data()};
-}
-
 void LocatedMotion::begin(Index body, std::span<const Constraint> contacts, bool struck) {
   body_ = body;
   struck_ = struck;
   start_.assign(contacts.begin(), contacts.end());
   used_ = 0;
+  hit_ = 2.0;
   failed_ = nullptr;
 }
 
 bool LocatedMotion::advance(const LocatedStep& step) {
   const BodySlot slot = step.in.assembly.layout()->bodies()[body_];
-  const At at{step, slot, *step.in.assembly.body_kinds()[slot.kind]};
+  At at{step, slot, *step.in.assembly.body_kinds()[slot.kind]};
+  at.loads.at_impact = is_hit();  // in the iterate that the jumps are of
   used_ = 0;
   failed_ = nullptr;
   hit_ = 2.0;

@@ -20,23 +20,32 @@
 
 namespace carom {
 
-/// Loads over a step, arrays over all velocities [N, N m]: linear between its ends. Where impacts make loads
-/// jump, since these depend on velocities, `jump` is by how much, and `correction` what is to be added to the
-/// sum of the loads at both ends, so that half of it is the mean over the step.
+/// Loads over a step, arrays over all velocities [N, N m]: linear between its ends, or mean loads, the same
+/// all along. Where impacts make loads jump, since these depend on velocities, `jump` is by how much, and
+/// `correction` the sum of (1 - 2 t) J over the jumps J at the shares t: half of it belongs to the mean of
+/// loads that are linear, a mean load has it already.
 struct StepLoads {
-  const double* start;                 ///< F0
-  const double* end;                   ///< F1
+  const double* start;                 ///< F0, or the mean loads
+  const double* end;                   ///< F1, or these
   const double* jump = nullptr;        ///< J; null: none
   const double* correction = nullptr;  ///< null: none
+  bool is_mean = false;                ///< loads are mean loads
+  /// The body at hand is hit: its loads jump when it is. Those of any other are spread over the step.
+  bool at_impact = false;
 
-  /// One of them at a share of the step. \param hit share at which it jumps, if that is behind: else above 1
+  /// One of them at a share of the step. Over the step the mean of a load is the same, however it jumps.
+  /// \param hit share at which it jumps, if that is behind: else above 1
   [[nodiscard]] double at(Index i, double share, double hit) const {
-    if (jump == nullptr) return start[i] + share * (end[i] - start[i]);
-    const double slope = end[i] - start[i] - jump[i];
-    const double before = start[i] + share * slope;
-    if (!(hit < 1.0)) return before;
-    const double left = 0.5 * correction[i] - (0.5 - hit) * jump[i];  // of the impulse, by other impacts
-    return before + jump[i] + left / (1.0 - hit);
+    const double even = start[i] + share * (end[i] - start[i]);
+    if (jump == nullptr) return even;
+    const double mean = is_mean ? end[i] : 0.5 * (start[i] + end[i] + correction[i]);
+    if (!at_impact) return is_mean ? mean : even + 0.5 * correction[i];
+    // Before the impacts J and half of that of which the mean is too much are still to come.
+    const double slope = is_mean ? 0.0 : end[i] - start[i] - jump[i];
+    const double before = is_mean ? mean - 0.5 * (jump[i] + correction[i]) : start[i];
+    if (!(hit < 1.0)) return before + share * slope;
+    const double left = mean - before - 0.5 * slope;  // of the impulse over the step
+    return before + share * slope + left / (1.0 - hit);
   }
 };
 
@@ -93,9 +102,6 @@ public:
   void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
   /// True if an impact is among the phases.
   [[nodiscard]] bool is_hit() const { return hit_ <= 1.0; }
-  /// Takes the changes of velocity by impacts back from the velocities of the trial. \param weighted times
-  /// 1 - 2 t of an impact at the share t of the step
-  void take_back(const StepInput& in, bool weighted, StepTrial& trial) const;
   /// Work of loads over the flights [J].
   [[nodiscard]] double work(const StepInput& in, const StepLoads& loads) const;
   /// Its solvers.

@@ -130,7 +130,7 @@ void StepBalance::book_velocity_projection(double lost) {
 StepResult& StepBalance::finish(const StepInput& in) {
   EnergyFlows& flows = result_.flows;
   flows[EnergyFlow::projection] = energy_position_projection_ + energy_velocity_projection_;
-  flows[EnergyFlow::coupling_discretisation] =
+  flows[EnergyFlow::coupling_discretisation] +=
       discretisation_loss(result_.stored.potential() + energy_position_projection_,
                           in.companion.ledger.potential(), coupling_work_.value());
   if (!result_.contacts.empty()) result_.contacts.contacts.finish();

@@ -161,21 +161,26 @@ double StepImpacts::kinetic_energy(const StepInput& in) const {
 }
 
 /// Books the impact. Joints whose rate is prescribed do work on it, which is the rest of the change.
+/// Velocities of the rule of mean loads obey joints but for an error of the step, on which their answers do
+/// work.
 void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
   const bool driven = std::any_of(joints_.begin(), joints_.end(),
                                   [](const JointConstraints& joints) { return joints.depends_on_time(); });
-  const double before = driven ? kinetic_energy(in) : 0.0;
+  const bool has_rest = driven || (parts_->rule.is_mean() && !joints_.empty());
+  const double before = has_rest ? kinetic_energy(in) : 0.0;
   problem_.map().add_velocities(start_.v.data());
   const EnergyFlows known = balance_.result().flows;
   const double gain = balance_.book_impact(problem_, start_.v.data(), note, in, parts_->trial);
   EnergyFlows& flows = balance_.result().flows;
-  if (driven) {
+  if (has_rest) {
     double booked = 0.0;
     for (std::size_t i = 0; i < energy_flow_count; ++i) {
       const double change = flows.values[i] - known.values[i];
       booked += is_gain(static_cast<EnergyFlow>(i)) ? change : -change;
     }
-    flows[EnergyFlow::external] += kinetic_energy(in) - before - booked;
+    const double rest = kinetic_energy(in) - before - booked;
+    if (driven) flows[EnergyFlow::external] += rest;
+    if (!driven) flows[EnergyFlow::coupling_discretisation] -= rest;
   }
   if (note.cut_sequence) {
     for (const EnergyFlow line : {EnergyFlow::impact_normal, EnergyFlow::impact_tangential,

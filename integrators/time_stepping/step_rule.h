@@ -53,11 +53,11 @@ public:
   [[nodiscard]] bool is_mean() const { return rule_ == ForceRule::energy_momentum; }
   /// v_{j+1} changes by this times M^-1 times the change of the loads that are iterated [s].
   [[nodiscard]] double impulse_weight(double step) const { return is_mean() ? step : 0.5 * step; }
-  /// Loads that stand for those at the start in the sum (F0 + F1)/2: mean loads count twice. With the
-  /// correction for jumps at impacts.
+  /// Loads that stand for those at the start in the sum (F0 + F1)/2: mean loads count twice. Others
+  /// with the correction for jumps at impacts.
   [[nodiscard]] const double* start_of_sum(const StepInput& in, const StepTrial& trial) const {
-    if (trial.jumps.on) return trial.jumps.start.data();
-    return is_mean() ? trial.loads_guess.data() : in.companion.loads.total.data();
+    if (is_mean()) return trial.loads_guess.data();
+    return trial.jumps.on ? trial.jumps.start.data() : in.companion.loads.total.data();
   }
   /// Velocities, then positions of some bodies by the loads of the guess.
   /// \param with_impulses whether impulses have changed velocities there (StepTrial::dv_impulses)

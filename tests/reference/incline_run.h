@@ -67,7 +67,7 @@ inline InclineRun run_incline(const scenes::Incline& incline, bool is_bar, doubl
     if (!std::holds_alternative<carom::TimeStepping>(mode)) return;  // there are events
     for (const carom::ContactRecord& contact : now.report().contacts) {
       // A contact that is found again while it separates is no impact: its law answers with P = 0.
-      if (contact.impact) add(now.time(), contact.key, contact);
+      if (contact.impact) add(contact.time, contact.key, contact);
     }
   });
   simulation.run_until(end);

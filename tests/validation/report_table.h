@@ -4,6 +4,7 @@
 // another.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -16,6 +17,7 @@ namespace carom_test {
 /// A line of the table, as text.
 struct ReportLine {
   std::string problem, source, mode, quantity, reference, obtained, error, setting, order, cost;
+  std::array<std::string, 3> with_option;
 
   /// File of its page, without ending: "name" of "[title](name.md)".
   [[nodiscard]] std::string page() const {
@@ -36,11 +38,20 @@ inline std::vector<ReportLine> report_lines(const std::string& text) {
       cells.push_back(line.substr(from, to - from));
       from = to + 3;
     }
-    if (cells.size() != 10) {
-      cells.assign(10, "a line of " + std::to_string(cells.size()) + " cells");
+    if (cells.size() != 13) {
+      cells.assign(13, "a line of " + std::to_string(cells.size()) + " cells");
     }
-    lines.push_back(
-        {cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8], cells[9]});
+    lines.push_back({cells[0],
+                     cells[1],
+                     cells[2],
+                     cells[3],
+                     cells[4],
+                     cells[5],
+                     cells[6],
+                     cells[7],
+                     cells[8],
+                     cells[9],
+                     {cells[10], cells[11], cells[12]}});
   }
   return lines;
 }
@@ -77,6 +88,12 @@ inline std::string difference(const ReportLine& a, const ReportLine& b) {
   // by it.
   constexpr double rounding = 1e-9;
   const double size = std::max({1.0, std::abs(cell_number(a.reference)), std::abs(cell_number(b.reference))});
+  // Two digits are printed.
+  constexpr double error_part = 0.15;
+  for (std::size_t i = 0; i < a.with_option.size(); ++i) {
+    if (!same_cell(a.with_option[i], b.with_option[i], error_part, rounding * size))
+      return differs("under an option", a.with_option[i], b.with_option[i]);
+  }
   const auto right = [&](const ReportLine& line) {
     const double seen =
         std::abs(cell_number(line.obtained) - cell_number(line.reference));  // of printed digits
@@ -88,8 +105,6 @@ inline std::string difference(const ReportLine& a, const ReportLine& b) {
   constexpr double value_part = 1e-7;
   if (!same_cell(a.reference, b.reference, value_part)) return differs("reference", a.reference, b.reference);
   if (!same_cell(a.obtained, b.obtained, value_part)) return differs("obtained", a.obtained, b.obtained);
-  // Two digits are printed.
-  constexpr double error_part = 0.15;
   if (!same_cell(a.error, b.error, error_part)) return differs("error", a.error, b.error);
   return "";
 }

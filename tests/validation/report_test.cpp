@@ -76,7 +76,8 @@ TEST(ValidationReport, PagesHoldTheRowsOfTheTableAndPicturesThatExist) {
     for (const ReportLine& line : committed(problem.name)) {
       const std::string row = "| " + line.mode + " | " + line.quantity + " | " + line.reference + " | " +
                               line.obtained + " | " + line.error + " | " + line.setting + " | " + line.order +
-                              " | " + line.cost + " |";
+                              " | " + line.cost + " | " + line.with_option[0] + " | " + line.with_option[1] +
+                              " | " + line.with_option[2] + " |";
       EXPECT_NE(page.find(row), std::string::npos) << problem.name << ": " << row;
     }
     std::size_t pictures = 0;
@@ -92,25 +93,42 @@ TEST(ValidationReport, PagesHoldTheRowsOfTheTableAndPicturesThatExist) {
 
 // Made-up lines: the comparison above can fail, and passes over what it should.
 ReportLine line() {
-  return {"[Ball](ball.md)", "closed form", "time stepping", "height [m]", "2",
-          "2.001",           "1.0e-03",     "h = 0.001 s",   "1.02",       "1.0e-03"};
+  return {"[Ball](ball.md)",
+          "closed form",
+          "time stepping",
+          "height [m]",
+          "2",
+          "2.001",
+          "1.0e-03",
+          "h = 0.001 s",
+          "1.02",
+          "1.0e-03",
+          {"2.0e-06", "1.0e-03", "–"}};
 }
 
 TEST(ReportTable, LinesAreReadAsTheyAreWritten) {
-  const validation::Page page{
-      .name = "ball",
-      .title = "Ball",
-      .source = "closed form",
-      .text = {},
-      .figures = {},
-      .rows = {{"time stepping", "h = 0.001 s", "height [m]", "2", "2.001", 1e-3, 1.02, 1e-3}},
-      .remarks = {},
-      .curves = {}};
+  const validation::Page page{.name = "ball",
+                              .title = "Ball",
+                              .source = "closed form",
+                              .text = {},
+                              .figures = {},
+                              .rows = {{"time stepping",
+                                        "h = 0.001 s",
+                                        "height [m]",
+                                        "2",
+                                        "2.001",
+                                        1e-3,
+                                        1.02,
+                                        1e-3,
+                                        {"2.0e-06", "1.0e-03"}}},
+                              .remarks = {},
+                              .curves = {}};
   const std::vector<ReportLine> lines = report_lines(validation::overview_text({page}));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].page(), "ball");
   EXPECT_EQ(difference(lines[0], line()), "");
   EXPECT_EQ(lines[0].cost, line().cost);
+  EXPECT_EQ(lines[0].with_option, line().with_option);
 }
 
 TEST(ReportTable, ChangedNumbersAndWordsAreFound) {
@@ -129,6 +147,9 @@ TEST(ReportTable, ChangedNumbersAndWordsAreFound) {
   EXPECT_NE(changed(&ReportLine::setting, "h = 0.01 s"), "");
   EXPECT_NE(changed(&ReportLine::quantity, "height [mm]"), "");
   EXPECT_NE(changed(&ReportLine::source, "a book"), "");
+  ReportLine other = line();
+  other.with_option[0] = "2.0e-04";
+  EXPECT_NE(difference(line(), other), "");
   EXPECT_EQ(changed(&ReportLine::cost, "5.0e+00"), "");
   EXPECT_EQ(changed(&ReportLine::obtained, "2.0010000001"), "");
 }
