@@ -5,12 +5,13 @@
 // 0, P_t = -mu P_n sign(xi_t). Rows of limits are normal; friction in joints and rolling resistance have a
 // bound of their own in place of mu P_n.
 
-#include <carom/contact/contact_velocity.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/island_rows.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/contact/solvers/factor_products.h>
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
+#include <carom/core/numerics/fetch_ahead.h>
 
 #include <algorithm>
 #include <array>
@@ -36,31 +37,11 @@ bool is_one_planar_contact(const ContactProblem& problem) {
   return std::abs(number) <= rounding * constraint.speed(row, velocity_free) + least ? 0.0 : number;
 }
 
-/// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint
-void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
-  set = {};  // a half line
-  if (row == 0) return;
-  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
-  set.bound = first;
-  set.coefficient = at.friction;
-}
-
-bool is_planar_contact(const Constraint& at) { return at.type == ConstraintType::contact && at.rows == 2; }
-
 /// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
 void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
   set.kind = SetKind::bounded_interval;
   set.bound = normal;
   set.coefficient = at.friction;
-}
-
-/// Whether W of constraints may stay in factors: in the plane, of several bodies.
-bool fit_factors(std::span<const Constraint> constraints) {
-  const Index first = constraints.front().body();
-  const auto planar = [](const Constraint& at) { return at.rows <= 2 && at.type != ConstraintType::rolling; };
-  const auto other = [&](const Constraint& at) { return at.bodies > 1 || at.body() != first; };
-  return std::all_of(constraints.begin(), constraints.end(), planar) &&
-         std::any_of(constraints.begin(), constraints.end(), other);
 }
 
 /// Modes by constraint: those of the groups, which rolling resistance shares with its contact.
@@ -135,31 +116,6 @@ bool remove_restitution(std::span<const double> before, std::span<double> restit
   return any;
 }
 
-/// Where the two rows of a planar contact of an island in factors stand.
-struct PlanarRows {
-  ImpulseDirection* directions;
-  RowSet* sets;
-  double *before, *restitution, *given;
-};
-
-/// Writes them as build_any() does any constraint, without its cases. \param first number of the first row
-void write_planar_contact(const Constraint& at, const double* velocity_before, int first,
-                          const PlanarRows& rows) {
-  const std::array<double, 2> along = times_both_rows(at, velocity_before);
-  const double e_n = at.law.normal_restitution, e_t = at.law.tangential_restitution;
-  const double gamma_n = along[0] - at.surface_velocity[0], gamma_t = along[1] - at.surface_velocity[1];
-  rows.directions[0] = {&at, 0};
-  rows.directions[1] = {&at, 1};
-  set_contact_row(at, first, 0, rows.sets[0]);
-  set_contact_row(at, first, 1, rows.sets[1]);
-  rows.before[0] = gamma_n;
-  rows.before[1] = gamma_t;
-  rows.restitution[0] = e_n;
-  rows.restitution[1] = e_t;
-  rows.given[0] = e_n * gamma_n + at.allowed_approach - at.surface_velocity_after[0];
-  rows.given[1] = e_t * gamma_t - at.surface_velocity_after[1];
-}
-
 }  // namespace
 
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
@@ -184,20 +140,14 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
 
 void IslandProblem::build_any(const double* velocity_before) {
   const std::span<const Constraint> constraints = constraints_;
-  first_row_.clear();
   modes_.clear();
-  first_row_.reserve(constraints.size());
-  int rows = 0;
-  for (const Constraint& constraint : constraints) {
-    first_row_.push_back(rows);
-    rows += constraint.rows;
-  }
+  const auto [rows, fits_factors] = count_rows(constraints, first_row_);
   const auto count = static_cast<std::size_t>(rows);
   directions_.resize(count);
   // A large W is not to be made before it is known whether anybody needs it.
   const bool many = !constraints.empty() && constraints.size() >= options_.factored_from &&
                     constraints.size() <= options_.factored_to;
-  const bool factored = many && fit_factors(constraints);
+  const bool factored = many && fits_factors;
   if (!factored) demand_room(constraints.size(), rows);
   factored ? problem_.resize_factors(rows) : problem_.reset(rows);
   before_.resize(count);
@@ -207,6 +157,7 @@ void IslandProblem::build_any(const double* velocity_before) {
   slides_.assign(constraints.size(), 0.0);
   std::size_t row = 0;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
+    fetch_ahead(constraints, c + 4);
     if (factored && is_planar_contact(constraints[c])) {
       write_planar_contact(constraints[c], velocity_before, static_cast<int>(row),
                            {&directions_[row], &problem_.sets()[row], &before_[row], &restitution_[row],

@@ -2,15 +2,20 @@
 
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
+#include <carom/core/numerics/fetch_ahead.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace carom {
 
 namespace {
+
+constexpr std::size_t ahead = 4;  // contacts
 
 /// Constraint::speed() of the rows of a constraint.
 std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
@@ -114,7 +119,10 @@ void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact
   const double *const before = problem.before().data() + first, *const impulses =
                                                                     problem.impulses().data() + first;
   const BodySlot body = assembly_->layout()->bodies()[at.body()];
-  ContactRecord& entry = result_.report.contacts.emplace_back();
+  fetch_ahead(problem.constraints(), contact + ahead);
+  std::vector<ContactRecord>& records = result_.report.contacts;
+  fetch_ahead(std::span(records.data(), records.capacity()), records.size() + ahead);
+  ContactRecord& entry = records.emplace_back();
   name_contact(*assembly_, problem, contact, body.serial, entry);
   // Else an impact within the step, or contact up to it.
   if (!(time < in.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);

@@ -2,6 +2,7 @@
 
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/impact_restitution.h>
+#include <carom/core/numerics/fetch_ahead.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -163,6 +164,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Index source = sources_[order[k]];
     Constraint& out = constraints_[k];
+    fetch_ahead(std::span(constraints_), k + 4);
     if (source >= touching.size()) {
       out = single_[source - touching.size()];
       continue;

@@ -1,0 +1,79 @@
+#pragma once
+
+/// \file
+/// Rows of the constraints of an island as its contact problem has them: the sets that impulses lie in,
+/// velocities before, and what of the vector b does not depend on velocities at the end.
+
+#include <carom/contact/contact_velocity.h>
+#include <carom/contact/delassus.h>
+#include <carom/core/constraint.h>
+#include <carom/core/row_set.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Rows of some constraints.
+struct RowCount {
+  int rows = 0;
+  bool fits_factors = false;  ///< W may stay in factors: in the plane, of several bodies
+};
+
+/// Counts rows. \param first_row out, by constraint: its first one
+[[nodiscard]] inline RowCount count_rows(std::span<const Constraint> constraints,
+                                         std::vector<int>& first_row) {
+  first_row.resize(constraints.size());
+  int rows = 0;
+  bool planar = true, several = false;
+  for (std::size_t c = 0; c < constraints.size(); ++c) {
+    const Constraint& at = constraints[c];
+    first_row[c] = rows;
+    rows += at.rows;
+    planar = planar && at.rows <= 2 && at.type != ConstraintType::rolling;
+    several = several || at.bodies > 1 || at.body() != constraints.front().body();
+  }
+  return {rows, planar && several};
+}
+
+/// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint
+inline void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
+  set = {};  // a half line
+  if (row == 0) return;
+  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
+  set.bound = first;
+  set.coefficient = at.friction;
+}
+
+/// True of a contact in the plane.
+[[nodiscard]] inline bool is_planar_contact(const Constraint& at) {
+  return at.type == ConstraintType::contact && at.rows == 2;
+}
+
+/// Where the two rows of a planar contact of an island in factors stand.
+struct PlanarRows {
+  ImpulseDirection* directions;
+  RowSet* sets;
+  double *before, *restitution, *given;
+};
+
+/// Writes them as those of any constraint, without its cases. \param first number of the first row
+inline void write_planar_contact(const Constraint& at, const double* velocity_before, int first,
+                                 const PlanarRows& rows) {
+  const std::array<double, 2> along = times_both_rows(at, velocity_before);
+  const double e_n = at.law.normal_restitution, e_t = at.law.tangential_restitution;
+  const double gamma_n = along[0] - at.surface_velocity[0], gamma_t = along[1] - at.surface_velocity[1];
+  rows.directions[0] = {&at, 0};
+  rows.directions[1] = {&at, 1};
+  set_contact_row(at, first, 0, rows.sets[0]);
+  set_contact_row(at, first, 1, rows.sets[1]);
+  rows.before[0] = gamma_n;
+  rows.before[1] = gamma_t;
+  rows.restitution[0] = e_n;
+  rows.restitution[1] = e_t;
+  rows.given[0] = e_n * gamma_n + at.allowed_approach - at.surface_velocity_after[0];
+  rows.given[1] = e_t * gamma_t - at.surface_velocity_after[1];
+}
+
+}  // namespace carom

@@ -1,0 +1,25 @@
+#pragma once
+
+/// \file
+/// Memory that is soon to be read or written. Thousands of large structures that are gone through once a
+/// stage are in no cache near by when their turn comes, and a loop over them waits for memory more than it
+/// computes.
+
+#include <cstddef>
+#include <span>
+
+namespace carom {
+
+/// Asks for the memory of an element of a list that no near cache holds as a whole. Changes nothing.
+template <class T>
+inline void fetch_ahead([[maybe_unused]] std::span<T> list, [[maybe_unused]] std::size_t place) {
+#if defined(__GNUC__)
+  constexpr std::size_t near = std::size_t{1} << 18, line = 64;  // bytes
+  if (list.size_bytes() < near || place >= list.size()) return;
+  const auto* const memory = reinterpret_cast<const std::byte*>(list.data() + place);
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < sizeof(T); i += line) __builtin_prefetch(memory + i);
+#endif
+}
+
+}  // namespace carom
