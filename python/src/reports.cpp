@@ -118,9 +118,8 @@ void bind_statistics(nb::module_& core) {
         "lasting_gained", &P::lasting_gained)("cut_sequences", &P::cut_sequences)(
         "scaled_impacts", &P::scaled_impacts)("plastic_jams", &P::plastic_jams)(
         "deepest_gap", &P::deepest_gap)("worst_residual", &P::worst_residual)(
-        "certified_steps", &P::certified_steps)("events", &P::events)(
-        "flow_steps", &P::flow_steps)("flow_evaluations", &P::flow_evaluations)("flow_restarts",
-                                                                                &P::flow_restarts);
+        "certified_steps", &P::certified_steps)("events", &P::events)("flow_steps", &P::flow_steps)(
+        "flow_evaluations", &P::flow_evaluations)("flow_restarts", &P::flow_restarts);
   });
   bind_record<ChainStatistics>(core, "ChainStatistics", {"ChainStatistics"}, false, [](auto& fields) {
     using P = ChainStatistics;
@@ -136,12 +135,14 @@ void bind_statistics(nb::module_& core) {
         "impact_impulse", &P::impact_impulse)("mean_force", &P::mean_force)("mean_moment", &P::mean_moment)(
         "contacts", &P::contacts);
   });
-  bind_record<LastingContact>(core, "LastingContact", {"LastingContact", "ContactPlace"}, false, [](auto& fields) {
-    using P = LastingContact;
-    fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
-        "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
-        "velocity", &P::velocity)("force", &P::force)("rolling_moment", &P::rolling_moment)("mode", &P::mode);
-  });
+  bind_record<LastingContact>(
+      core, "LastingContact", {"LastingContact", "ContactPlace"}, false, [](auto& fields) {
+        using P = LastingContact;
+        fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
+            "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
+            "velocity", &P::velocity)("force", &P::force)("rolling_moment", &P::rolling_moment)("mode",
+                                                                                                &P::mode);
+      });
   core.def(
       "force_on", [](const StepReport& report, BodyId body) { return force_on(report, body); },
       nb::arg("report"), nb::arg("body"), doc("force_on"));
@@ -154,7 +155,9 @@ void bind_statistics(nb::module_& core) {
       nb::arg("forces"), nb::arg("body"), doc("force_on"));
   core.def(
       "force_on",
-      [](const std::vector<LastingContact>& forces, ObstacleId obstacle) { return force_on(forces, obstacle); },
+      [](const std::vector<LastingContact>& forces, ObstacleId obstacle) {
+        return force_on(forces, obstacle);
+      },
       nb::arg("forces"), nb::arg("obstacle"), doc("force_on"));
 }
 
