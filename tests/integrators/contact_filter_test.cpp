@@ -1,5 +1,7 @@
 // Filters of contacts in motion, in both modes.
 
+#include "tests/integrators/throws.h"
+
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
@@ -171,6 +173,48 @@ TEST(ContactFilters, HiddenObstaclesChangeNoBit) {
     const State plain = end(false), with_hidden = end(true);
     EXPECT_EQ(plain.q, with_hidden.q);
     EXPECT_EQ(plain.v, with_hidden.v);
+  }
+}
+
+/// Discs of two materials beside each other; steel has a law with steel, wood with nothing but the floor.
+struct TwoMaterials {
+  System system;
+  BodyId one, other;
+
+  explicit TwoMaterials(const ContactFilter& of_wood = {}) {
+    const Surface law{.friction = 0.3, .normal_restitution = 0.5};
+    const MaterialId steel = system.material("steel"), wood = system.material("wood");
+    system.between(steel, steel, law);
+    system.add(HalfPlane{.normal = {0.0, 1.0}}, law, "floor");
+    one = add("ball", 0.0, steel, {});
+    add("second ball", 1.0, steel, {});
+    other = add("log", 2.0, wood, of_wood);
+  }
+  BodyId add(const char* name, double x, MaterialId material, const ContactFilter& filter) {
+    const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.2), .position = {x, 0.5}}, name);
+    system.add(Disc{.body = body, .radius = 0.2, .material = material, .filter = filter});
+    return body;
+  }
+};
+
+TEST(ContactFilters, TwoMaterialsOfBodiesThatMayMeetNeedALaw) {
+  const auto start = [](const System& system, bool events) {
+    return events ? Simulation(system, EventDriven{}) : Simulation(system, TimeStepping{});
+  };
+  for (const bool events : {false, true}) {
+    const System system = TwoMaterials().system;
+    EXPECT_THROWS(ModelError, start(system, events), "rigid body 'log'", "rigid body 'ball'",
+                  "law is not given", "a law between the two materials, a default law, or filters");
+    // Apart by a filter, or by decisions: no law is needed.
+    EXPECT_NO_THROW(start(TwoMaterials({.groups = 2, .touches = 2}).system, events)) << events;
+    TwoMaterials decided;
+    for (const char* const name : {"ball", "second ball"})
+      decided.system.allow_contact(decided.other, decided.system.body(name), false);
+    EXPECT_NO_THROW(start(decided.system, events)) << events;
+    // Where there is one, or where no bodies touch each other at all.
+    TwoMaterials given;
+    given.system.set_default_law({.friction = 0.1, .normal_restitution = 0.0});
+    EXPECT_NO_THROW(start(given.system, events)) << events;
   }
 }
 

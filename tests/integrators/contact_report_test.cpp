@@ -127,7 +127,9 @@ TEST(ContactReport, ForcesOfContactsThatLastInBothModes) {
         << events;
     EXPECT_EQ(force_on(forces, BodyId{}).contacts, 0);
     EXPECT_EQ(force_on(forces, ObstacleId{}).contacts, 0);
-    if (!events) EXPECT_NEAR(force_on(simulation.report(), ball).mean_moment, on_ball.mean_moment, 1e-12);
+    if (!events) {
+      EXPECT_NEAR(force_on(simulation.report(), ball).mean_moment, on_ball.mean_moment, 1e-12);
+    }
   }
 }
 

@@ -94,6 +94,61 @@ TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
   RecordProperty("pressed", std::to_string(findings.pressed));
 }
 
+struct EventFindings {
+  int jammed = 0;           // scenes that end where contacts have no answer, which names them
+  int missed = 0;           // and where a closing was missed, on ground that moves
+  std::int64_t looked = 0;  // outputs with contacts that last
+};
+
+/// From event to event: accounts close, contacts push, and what ends a scene is named.
+EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count) {
+  EventFindings findings;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    const MixedScene scene(number);
+    Simulation simulation(scene.system(), EventDriven{});
+    simulation.observe([&](const Simulation& now) {
+      const std::vector<LastingContact> lasting = now.contact_forces();
+      findings.looked += lasting.empty() ? 0 : 1;
+      for (const LastingContact& contact : lasting) {
+        // Forces are up to some hundred newtons, and zero to 1e-11 of that; where bodies wedge each other
+        // more.
+        EXPECT_GE(contact.force[0], -1e-6) << now.name(contact.key) << ", t = " << now.time();
+      }
+    });
+    try {
+      simulation.run_until(1.0);
+    } catch (const SolverError& error) {
+      const std::string text = error.what();
+      const bool missed = text.find("was missed") != std::string::npos;
+      EXPECT_FALSE(error.failure().parts.empty()) << text;
+      EXPECT_TRUE(!missed || scene.moves()) << text;
+      ++(missed ? findings.missed : findings.jammed);
+    }
+    // Tolerances of 1e-9 of some 1,000 steps.
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-7 * std::max(1.0, simulation.energy().scale()));
+  }
+  return findings;
+}
+
+void expect_sound(const EventFindings& findings, std::uint64_t count) {
+  EXPECT_GE(findings.looked, static_cast<std::int64_t>(count));  // else nothing was tried
+  EXPECT_LE(findings.jammed, 1 + static_cast<int>(count / 100));
+  EXPECT_LE(findings.missed, 1 + static_cast<int>(count / 1000));
+}
+
+TEST(MixedScenes, AccountsCloseAndContactsPushFromEventToEvent) {
+  expect_sound(run_scenes_by_events(0, 60), 60);
+}
+
+TEST(MixedScenesLong, AccountsCloseAndContactsPushFromEventToEvent) {
+  const std::uint64_t count = carom_test::all_seeds() ? 10000 : 300;
+  const EventFindings findings = run_scenes_by_events(0, count);
+  expect_sound(findings, count);
+  RecordProperty("jammed", std::to_string(findings.jammed));
+  RecordProperty("missed", std::to_string(findings.missed));
+}
+
 /// Whether impacts of one body follow each other within `apart` [s]: steps longer than that take them for
 /// one, whose answer differs by more than the length of a step.
 bool is_close(const std::vector<EventRecord>& events, double apart) {

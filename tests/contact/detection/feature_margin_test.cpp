@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace {
@@ -78,6 +79,23 @@ TEST(FeatureMargin, BeyondTheEndOfACapsuleIsTheEdgeOnTheSideOfTheVertex) {
     EXPECT_EQ(regions.margin(1).beyond, side < 0.0 ? 2U : 3U);
     EXPECT_NEAR(regions.margin(1).value, 1e-3, 1e-15);
   }
+}
+
+// A floor between two inner corners: contact that lasts goes on to its ends, but a gap is smooth only as far
+// as the point stands before the face, and above the depth of the solid.
+TEST(FeatureMargin, OfAFaceBetweenInnerCornersTheGapIsSmoothWithinIt) {
+  const std::vector<Vec<2>> ends{{2.0, 0.0}, {0.0, 0.0}};  // free space is on the right of the face
+  const std::vector<ChainCorner> corners{ChainCorner::concave, ChainCorner::concave};
+  const FaceChain floor{{ends, 0.0}, corners, false, 1.0};
+  constexpr Index face = 2;
+  const auto margin = [&](const Vec<2>& at) { return floor.margin(face, at, Vec<2>::Zero()).value; };
+  for (const Vec<2>& at : {Vec<2>(0.5, 0.3), Vec<2>(1.0, -0.9), Vec<2>(1.75, -0.2)}) {
+    EXPECT_EQ(floor.nearest(at).feature, face);
+    EXPECT_EQ(margin(at), std::numeric_limits<double>::infinity());
+  }
+  EXPECT_DOUBLE_EQ(floor.clearance(face, {0.5, 0.3}), 0.5);
+  EXPECT_NEAR(floor.clearance(face, {1.0, -0.9}), 0.1, 1e-15);
+  EXPECT_DOUBLE_EQ(floor.clearance(face, {1.75, -0.2}), 0.25);
 }
 
 }  // namespace
