@@ -115,6 +115,18 @@ void name_contact(const ConstraintKey& key, const Surface& law, Constraint& out)
   out.friction = law.friction;
 }
 
+/// Whether outlines of two bodies may touch whichever they are. \param laws of all pairs of materials
+bool all_may_touch(const std::vector<BodyOutline>& list, const std::vector<std::optional<Surface>>& laws,
+                   const PairFilter& filter) {
+  if (list.empty() || filter.excludes_any()) return false;
+  const ContactFilter& first = list.front().filter;
+  const auto touches = [&](const BodyOutline& outline) {
+    return !is_point(outline) && outline.filter == first;
+  };
+  return may_touch(first, first) && std::all_of(list.begin(), list.end(), touches) &&
+         std::all_of(laws.begin(), laws.end(), [](const auto& law) { return law.has_value(); });
+}
+
 }  // namespace
 
 BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
@@ -125,19 +137,8 @@ BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   const std::vector<BodyOutline>& list = outlines_.list();
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });
-  all_may_touch_ = find_whether_all_touch();
+  all_may_touch_ = all_may_touch(list, laws_, filter_);
   demand_laws(assembly.system());
-}
-
-/// Whether may_touch() of outlines of two bodies is true whichever they are.
-bool BodyContacts::find_whether_all_touch() const {
-  const std::vector<BodyOutline>& list = outlines_.list();
-  const auto touches = [&](const BodyOutline& outline) {
-    return !is_point(outline) && outline.filter == list.front().filter;
-  };
-  return !list.empty() && std::all_of(list.begin(), list.end(), touches) &&
-         carom::may_touch(list.front().filter, list.front().filter) && !filter_.excludes_any() &&
-         std::all_of(laws_.begin(), laws_.end(), [](const auto& law) { return law.has_value(); });
 }
 
 void BodyContacts::find_laws(const System& system) {

@@ -101,7 +101,6 @@ private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
-  [[nodiscard]] bool find_whether_all_touch() const;
   void demand_laws(const System& system) const;
   [[nodiscard]] std::pair<const BodyOutline*, const BodyOutline*> meeting(Index one, Index other) const;
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;

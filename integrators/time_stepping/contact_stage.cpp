@@ -7,6 +7,18 @@
 
 namespace carom {
 
+namespace {
+
+/// Impulses against the velocities of free bodies, which are known. False if there are none.
+bool solve_against_free(IslandProblem& problem, SolverChain& chain, StepTrial& trial) {
+  problem.set_free_velocity(trial.free.data());
+  if (!problem.solve(chain).usable()) return false;
+  problem.add_velocities(trial.dv_impulses.data());
+  return true;
+}
+
+}  // namespace
+
 SweepBudget budget_of(const TimeStepping& options) {
   SweepBudget budget = options.contact_budget;
   if (options.impact_rules.refuse_jams) budget.accepted = 0.0;
@@ -128,8 +140,9 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
   const double* const loads = in.companion.loads.total.data();
   if (all_are_struck) {
     free_bodies(in, {loads, loads}, island, trial);
-    return part_problems(in, island,
-                         [&](IslandProblem& problem) { return answer(problem, chains_.front(), trial); });
+    return part_problems(in, island, [&](IslandProblem& problem) {
+      return solve_against_free(problem, chains_.front(), trial);
+    });
   }
   return part_problems(in, island, [&](IslandProblem& problem) {
     return solve(in, {loads, loads}, problem, chains_.front(), trial);
@@ -255,9 +268,9 @@ void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const
   }
 }
 
-/// Likewise of the bodies of a problem.
-void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const IslandProblem& problem,
-                               StepTrial& trial) const {
+/// Bodies answer for themselves. False if there are no impulses.
+bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
+                         SolverChain& chain, StepTrial& trial) {
   constexpr int of_planar_body = 3;
   const auto free = [&](const Constraint::Block& block) {
     if (block.columns == of_planar_body) {
@@ -272,21 +285,7 @@ void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const
   } else {
     problem.map().for_bodies(free);
   }
-}
-
-/// Bodies answer for themselves. False if there are no impulses.
-bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
-                         SolverChain& chain, StepTrial& trial) {
-  free_bodies(in, loads, problem, trial);
-  return answer(problem, chain, trial);
-}
-
-/// The same against the velocities of free bodies that are known.
-bool ContactStage::answer(IslandProblem& problem, SolverChain& chain, StepTrial& trial) {
-  problem.set_free_velocity(trial.free.data());
-  if (!problem.solve(chain).usable()) return false;
-  problem.add_velocities(trial.dv_impulses.data());
-  return true;
+  return solve_against_free(problem, chain, trial);
 }
 
 const IslandProblem* ContactStage::first_unsolved() const {

@@ -85,9 +85,6 @@ private:
                  StepTrial& trial) const;
   void free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
                    StepTrial& trial) const;
-  void free_bodies(const StepInput& in, const EndLoads& loads, const IslandProblem& problem,
-                   StepTrial& trial) const;
-  [[nodiscard]] static bool answer(IslandProblem& problem, SolverChain& chain, StepTrial& trial);
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 
