@@ -2,6 +2,7 @@
 
 #include <carom/contact/delassus.h>
 #include <carom/contact/one_body_products.h>
+#include <carom/core/numerics/pair.h>
 
 #include <algorithm>
 #include <numeric>
@@ -9,11 +10,42 @@
 
 namespace carom {
 
+namespace {
+
+/// True of the rows of one planar contact of one body that turns, as they are: most problems are that.
+bool are_of_one_contact(std::span<const ImpulseDirection> rows) {
+  if (rows.size() != 2 || rows[0].constraint != rows[1].constraint) return false;
+  const Constraint& at = *rows[0].constraint;
+  const auto is_row = [&](std::size_t row) {
+    return rows[row].row == static_cast<int>(row) && rows[row].ratio == 0.0 && rows[row].lever == 0.0;
+  };
+  return at.bodies == 1 && at.blocks[0].columns == static_cast<int>(one_body::of_planar_body) && is_row(0) &&
+         is_row(1);
+}
+
+/// Their responses, as one_body::answer_alone() does without its loops: in the pairs in which they are read.
+void answer_contact(const Constraint& at, const BodyMasses& masses, double* x) {
+  const double *const h = at.jacobian.data(), mass = *masses.mass, inertia = *masses.inertia;
+  store_pair(x, Pair{h[0], h[1]} / both(mass));
+  store_pair(x + 2, Pair{h[2], h[3]} / Pair{inertia, mass});
+  store_pair(x + 4, Pair{h[4], h[5]} / Pair{mass, inertia});
+}
+
+}  // namespace
+
 /// Responses of one body that answers for itself, the usual case, in a tight loop. Returns the number of its
 /// velocities, 0 if there is no such body.
 int Delassus::build_of_one_body(const BodyResponse& response) {
   if (directions_.empty()) return 0;
   const Constraint::Block& block = directions_.front().constraint->blocks[0];
+  if (are_of_one_contact(directions_)) {
+    const BodyMasses masses = response.alone(block.body);
+    if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return 0;
+    common_ = {block.v, block.v + static_cast<Index>(block.columns)};
+    responses_.resize(2 * one_body::of_planar_body);
+    answer_contact(*directions_.front().constraint, masses, responses_.data());
+    return block.columns;
+  }
   const Constraint* last = nullptr;
   for (const ImpulseDirection& direction : directions_) {
     if (std::exchange(last, direction.constraint) == direction.constraint) continue;

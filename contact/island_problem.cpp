@@ -5,6 +5,8 @@
 // 0, P_t = -mu P_n sign(xi_t). Rows of limits are normal; friction in joints and rolling resistance have a
 // bound of their own in place of mu P_n.
 
+#include <carom/contact/contact_velocity.h>
+#include <carom/contact/free_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
 #include <carom/contact/solvers/contact_mode.h>
@@ -27,14 +29,6 @@ namespace {
 bool is_one_planar_contact(const ContactProblem& problem) {
   return problem.rows() == 2 && problem.groups().size() == 1 &&
          problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
-}
-
-/// Velocity along a row that joints hold fast, without rounding: of what moves around it, or has moved
-/// before [m/s]. Seldom asked.
-[[gnu::noinline]] double along_held_row(const Constraint& constraint, int row, const double* velocity_free,
-                                        double number) {
-  constexpr double rounding = 1e-9, least = 1e-10;
-  return std::abs(number) <= rounding * constraint.speed(row, velocity_free) + least ? 0.0 : number;
 }
 
 /// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
@@ -75,30 +69,6 @@ void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
   problem.reset(problem.rows());
   std::copy(sets.begin(), sets.end(), problem.sets().begin());
   problem.group();
-}
-
-/// b of a problem in factors. \param given part of it without velocities of bodies at the end
-/// \param scratch velocities of slots
-void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
-                                std::span<const Delassus::Slot> slots, const double* velocity_free,
-                                std::span<const double> given, std::vector<double>& scratch,
-                                ContactProblem& problem) {
-  constexpr std::size_t columns = ResponseFactors::columns;
-  scratch.resize(columns * slots.size());
-  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-    const Constraint::Block& block = slots[slot].block;
-    const double* const from = velocity_free + block.v;
-    double* const to = scratch.data() + columns * slot;
-    to[0] = from[0];
-    to[1] = from[1];
-    to[2] = block.columns == columns ? from[2] : 0.0;
-  }
-  const auto b = problem.vector();
-  along_all_rows(problem.factors(), scratch, given, b);
-  for (std::size_t row = 0; row < b.size(); ++row) {
-    if (problem.diagonal(static_cast<int>(row)) > 0.0) continue;
-    b[row] = along_held_row(*directions[row].constraint, directions[row].row, velocity_free, b[row]);
-  }
 }
 
 /// Takes the restitution from a problem. False if it had none.
@@ -237,17 +207,7 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
     return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, scratch_.given,
                                       scratch_.slot_velocity, problem_);
   }
-  const auto b = problem_.vector();
-  std::size_t row = 0;
-  for (const Constraint& constraint : constraints_) {
-    const std::array<double, 3> after = velocities_after(constraint, velocity_free);
-    for (int i = 0; i < constraint.rows; ++i, ++row) {
-      double number = after[static_cast<std::size_t>(i)] + restitution_[row] * before_[row];
-      if (i == 0 && constraint.allowed_approach > 0.0) number += constraint.allowed_approach;
-      const bool held = problem_.diagonal(static_cast<int>(row)) == 0.0;
-      b[row] = held ? along_held_row(constraint, i, velocity_free, number) : number;
-    }
-  }
+  set_free_velocity_of_rows(constraints_, velocity_free, {before_, restitution_}, problem_);
 }
 
 void IslandProblem::set_velocity(const double* velocity) {

@@ -5,6 +5,7 @@
 /// usual case of an impact.
 
 #include <carom/contact/delassus.h>
+#include <carom/core/numerics/pair.h>
 
 #include <array>
 #include <cstddef>
@@ -75,15 +76,35 @@ void multiply_symmetric(std::span<const ImpulseDirection> directions, const doub
   if (directions.size() != 2) return multiply<S>(directions, responses, true, matrix);
   const double* const first = row_of_one<S>(*directions[0].constraint, directions[0].row);
   const double* const second = row_of_one<S>(*directions[1].constraint, directions[1].row);
-  const double mixed = product<S>(second, responses);
-  matrix[0] = product<S>(first, responses);
-  matrix[1] = matrix[2] = mixed;
-  matrix[3] = product<S>(second, responses + S);
+  if constexpr (S == of_planar_body) {
+    // In the pairs in which they were just written: a processor waits for any others.
+    const Pair r01 = load_pair(responses), r23 = load_pair(responses + 2), r45 = load_pair(responses + 4);
+    const double mixed = 0.0 + second[0] * r01[0] + second[1] * r01[1] + second[2] * r23[0];
+    const double normal = 0.0 + first[0] * r01[0] + first[1] * r01[1] + first[2] * r23[0];
+    const double tangential = 0.0 + second[0] * r23[1] + second[1] * r45[0] + second[2] * r45[1];
+    store_pair(matrix, Pair{normal, mixed});
+    store_pair(matrix + 2, Pair{mixed, tangential});
+  } else {
+    const double mixed = product<S>(second, responses);
+    matrix[0] = product<S>(first, responses);
+    matrix[1] = matrix[2] = mixed;
+    matrix[3] = product<S>(second, responses + S);
+  }
 }
 
 /// Adds responses of one body of S velocities.
 template <int S>
 void add_alone(const double* responses, std::span<const double> impulses, double scale, double* x) {
+  if (impulses.size() == 2) {  // of a planar contact: without loops
+    const double first = scale * impulses[0], second = scale * impulses[1];
+    for (int c = 0; c < S; ++c) {
+      double sum = x[c];
+      sum += responses[c] * first;
+      sum += responses[S + c] * second;
+      x[c] = sum;
+    }
+    return;
+  }
   for (const double number : impulses) {
     const double impulse = scale * number;
     for (int c = 0; c < S; ++c) x[c] += *responses++ * impulse;

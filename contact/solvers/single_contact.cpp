@@ -56,7 +56,8 @@ PlanarImpulse slip(const PlanarContact& c, double p, ContactMode mode) {
   return {normal, mode == ContactMode::slip_positive ? -c.friction * normal : c.friction * normal, mode};
 }
 
-PlanarImpulse stick(const PlanarContact& c, double determinant) {
+// Inlined by force, too: the impulse would be read in another way than it is written.
+[[gnu::always_inline]] inline PlanarImpulse stick(const PlanarContact& c, double determinant) {
   const double normal = difference_of_products(c.w_nt, c.b_t, c.w_tt, c.b_n) / determinant;
   const double tangential = difference_of_products(c.w_nt, c.b_n, c.w_nn, c.b_t) / determinant;
   // The mode is decided by S+-; what rounding puts outside the cone is put back.

@@ -29,10 +29,9 @@ double fly(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> ba
   CompensatedSum work;
   for (FlyingBodies& batch : batches) {
     rule.fly(in, batch.place, batch.masses, trial);
-    BlockWorks works;
-    rule.works_constant(in, batch.place, batch.v, trial, works);
-    stored[StoredEnergy::kinetic] += works.kinetic;
-    work.add(works.total);
+    const double* const v = trial.end.v.data() + batch.place.v;
+    stored[StoredEnergy::kinetic] += batch.place.kind->kinetic_energy(batch.place.slots, v);
+    work.add(rule.work_constant(in, batch.v, trial));
     batch.end.state = trial.end.view();
     StoredEnergies potentials;
     for (const FlyingBodies::Potential& of : batch.potentials) {

@@ -101,16 +101,13 @@ BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTr
 
 void StepRule::works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                               BlockWorks& out) const {
-  out.total = carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
+  out.total = work_constant(in, v, trial);
   out.kinetic = kinetic_energy(in, bodies, trial);
   out.dissipative = out.external = 0.0;
 }
 
-void StepRule::works_constant(const StepInput& in, const BodyPlace& bodies, Range v, const StepTrial& trial,
-                              BlockWorks& out) const {
-  out.total = carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
-  out.kinetic = bodies.kind->kinetic_energy(bodies.slots, trial.end.v.data() + bodies.v);
-  out.dissipative = out.external = 0.0;
+double StepRule::work_constant(const StepInput& in, Range v, const StepTrial& trial) const {
+  return carom::work(in.companion.loads.total.data(), in.start, trial.end, v, in.step);
 }
 
 }  // namespace carom

@@ -86,9 +86,8 @@ public:
   /// Works of loads that do not change over some bodies, whose velocities are `v`.
   void works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                       BlockWorks& out) const;
-  /// Likewise where their place is known.
-  void works_constant(const StepInput& in, const BodyPlace& bodies, Range v, const StepTrial& trial,
-                      BlockWorks& out) const;
+  /// Work of such loads alone [J].
+  [[nodiscard]] double work_constant(const StepInput& in, Range v, const StepTrial& trial) const;
 
 private:
   // Loads at both ends of a step, over all velocities.

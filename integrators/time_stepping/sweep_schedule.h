@@ -60,7 +60,7 @@ public:
   /// A task for some bodies, called for one range after the other.
   using BodyTask = FunctionRef<void(Range bodies)>;
   /// Bodies whose contacts are found, solved and booked together, while their problems are at hand.
-  static constexpr Index piece_size = 16;
+  static constexpr Index piece_size = 64;
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
   /// before and after some bodies move, whose numbers are at hand meanwhile: a piece, or a few parts of each
   /// thread; or nothing
