@@ -64,6 +64,35 @@ std::vector<const BodyOutline*> some_of(const std::vector<BodyOutline>& all, Ind
   return out;
 }
 
+/// Outlines of two materials that may touch, laws aside; null where none are found among some of each filter.
+std::pair<const BodyOutline*, const BodyOutline*> meeting(const BodyOutlines& outlines,
+                                                          const PairFilter& filter, Index one, Index other) {
+  for (const BodyOutline* a : some_of(outlines.list(), one)) {
+    for (const BodyOutline* b : some_of(outlines.list(), other)) {
+      if (is_point(*a) && is_point(*b)) continue;
+      if (filter.may_touch(a->body, a->filter, b->body, b->filter)) return {a, b};
+    }
+  }
+  return {};
+}
+
+/// Refuses two materials that may meet without a law: where bodies touch each other, such a pair would pass
+/// through each other unseen. Shapes without a material may. \param laws row-major, by material
+void demand_laws(const System& system, const BodyOutlines& outlines, const PairFilter& filter,
+                 const std::vector<std::optional<Surface>>& laws) {
+  const std::vector<MaterialId>& materials = outlines.materials();
+  for (Index i = 0; i < materials.size(); ++i) {
+    for (Index j = 0; j <= i; ++j) {
+      if (!materials[i].valid() || !materials[j].valid() || laws[i * materials.size() + j]) continue;
+      const auto [a, b] = meeting(outlines, filter, i, j);
+      if (a == nullptr) continue;
+      throw ModelError("contact of " + contact_name(system, {a->key, b->key}) +
+                       ": law is not given; allowed: a law between the two materials, a default law, or "
+                       "filters that keep them apart");
+    }
+  }
+}
+
 Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
   Box<2> box{vertices[0], vertices[0]};
   for (Index i = 1; i < outline.vertices.size(); ++i) {
@@ -122,7 +151,7 @@ BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   outlines_ = BodyOutlines(assembly);
   find_laws(assembly.system());
   filter_ = PairFilter(assembly);
-  demand_laws(assembly.system());
+  demand_laws(assembly.system(), outlines_, filter_, laws_);
 }
 
 void BodyContacts::find_laws(const System& system) {
@@ -135,33 +164,6 @@ void BodyContacts::find_laws(const System& system) {
       has_other_impact_law_ = has_other_impact_law_ || (laws_.back() && laws_.back()->has_other_impact_law());
     }
   }
-}
-
-/// Refuses two materials that may meet without a law: where bodies touch each other, such a pair would pass
-/// through each other unseen. Shapes without a material may.
-void BodyContacts::demand_laws(const System& system) const {
-  const std::vector<MaterialId>& materials = outlines_.materials();
-  for (Index i = 0; i < materials.size(); ++i) {
-    for (Index j = 0; j <= i; ++j) {
-      if (!materials[i].valid() || !materials[j].valid() || laws_[i * materials.size() + j]) continue;
-      const auto [a, b] = meeting(i, j);
-      if (a == nullptr) continue;
-      throw ModelError("contact of " + contact_name(system, {a->key, b->key}) +
-                       ": law is not given; allowed: a law between the two materials, a default law, or "
-                       "filters that keep them apart");
-    }
-  }
-}
-
-/// Outlines of two materials that may touch, laws aside; null where none are found among some of each filter.
-std::pair<const BodyOutline*, const BodyOutline*> BodyContacts::meeting(Index one, Index other) const {
-  for (const BodyOutline* a : some_of(outlines_.list(), one)) {
-    for (const BodyOutline* b : some_of(outlines_.list(), other)) {
-      if (is_point(*a) && is_point(*b)) continue;
-      if (filter_.may_touch(a->body, a->filter, b->body, b->filter)) return {a, b};
-    }
-  }
-  return {};
 }
 
 const Surface* BodyContacts::law(const BodyOutline& a, const BodyOutline& b) const {
