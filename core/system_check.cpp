@@ -255,6 +255,25 @@ void find_contacts_without_law(const System& system, const Touching& touching,
   }
 }
 
+/// Finds materials whose bodies may meet and have no law, where bodies touch each other by another one.
+void find_pairs_without_law(const System& system, const Touching& touching, std::vector<ModelFinding>& out) {
+  if (!any_touch(system, touching)) return;
+  const std::vector<Toucher>& kinds = touching.kinds;
+  PartNames parts;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Toucher &a = kinds[i], &b = kinds[j];
+      if (!a.material.valid() || !b.material.valid() || !can_touch(a, b)) continue;
+      if (!system.law(a.material, b.material)) parts.push_back(b.name + " and " + a.name);
+    }
+  }
+  if (parts.empty()) return;
+  std::string text = listed(parts) +
+                     ": there is no law between their materials, so that such bodies pass through each "
+                     "other; allowed: a law between the two materials, a default law, or filters";
+  out.push_back({FindingKind::contact_without_law, std::move(parts), std::move(text)});
+}
+
 }  // namespace
 
 std::vector<ModelFinding> System::check() const {
@@ -281,6 +300,7 @@ std::vector<ModelFinding> System::check() const {
     }
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
+  find_pairs_without_law(*this, touching, found);
   if (solid.empty()) {
     if (!touching.intended.empty() && !any_touch(*this, touching)) {
       std::string text = listed(touching.intended) +

@@ -162,8 +162,8 @@ void simulate_cradles(Page& page, Mode mode, ImpactOrder order) {
 
 /// Forces on the floor and between bodies of a stack, by level from below.
 void simulate_stack(Page& page, const Mode& mode, bool blocks) {
-  const Json& expected = reference("contacts_planar.json", "static_stack")
-                             .at(blocks ? "block_corner_forces_bottom_up" : "disc_contact_forces_bottom_up");
+  const Json data = reference("contacts_planar.json", "static_stack");
+  const Json& expected = data.at(blocks ? "block_corner_forces_bottom_up" : "disc_contact_forces_bottom_up");
   constexpr double half = 0.1;
   constexpr std::size_t n = 10;
   System system;

@@ -1,7 +1,6 @@
 // Problem: which bodies touch each other, where, and by which law.
 
 #include <carom/contact/detection/body_contacts.h>
-#include <carom/contact/detection/contact_name.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/tracked_contact.h>
 
@@ -46,23 +45,6 @@ bool has_law_between_bodies(const System& system) {
 }
 
 bool is_point(const BodyOutline& outline) { return outline.vertices.size() == 1 && outline.radius == 0.0; }
-
-/// Outlines of a material, of each filter some of different bodies: of many all but a few are alike, joints
-/// aside, which bind a few bodies each.
-std::vector<const BodyOutline*> some_of(const std::vector<BodyOutline>& all, Index material) {
-  constexpr int enough = 8;
-  std::vector<const BodyOutline*> out;
-  for (const BodyOutline& outline : all) {
-    if (outline.material != material) continue;
-    int alike = 0;
-    for (const BodyOutline* known : out) {
-      if (known->filter != outline.filter || is_point(*known) != is_point(outline)) continue;
-      alike += known->body == outline.body ? enough : 1;
-    }
-    if (alike < enough) out.push_back(&outline);
-  }
-  return out;
-}
 
 Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
   Box<2> box{vertices[0], vertices[0]};
@@ -138,7 +120,6 @@ BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });
   all_may_touch_ = all_may_touch(list, laws_, filter_);
-  demand_laws(assembly.system());
 }
 
 void BodyContacts::find_laws(const System& system) {
@@ -151,33 +132,6 @@ void BodyContacts::find_laws(const System& system) {
       has_other_impact_law_ = has_other_impact_law_ || (laws_.back() && laws_.back()->has_other_impact_law());
     }
   }
-}
-
-/// Refuses two materials that may meet without a law: where bodies touch each other, such a pair would pass
-/// through each other unseen. Shapes without a material may.
-void BodyContacts::demand_laws(const System& system) const {
-  const std::vector<MaterialId>& materials = outlines_.materials();
-  for (Index i = 0; i < materials.size(); ++i) {
-    for (Index j = 0; j <= i; ++j) {
-      if (!materials[i].valid() || !materials[j].valid() || laws_[i * materials.size() + j]) continue;
-      const auto [a, b] = meeting(i, j);
-      if (a == nullptr) continue;
-      throw ModelError("contact of " + contact_name(system, {a->key, b->key}) +
-                       ": law is not given; allowed: a law between the two materials, a default law, or "
-                       "filters that keep them apart");
-    }
-  }
-}
-
-/// Outlines of two materials that may touch, laws aside; null where none are found among some of each filter.
-std::pair<const BodyOutline*, const BodyOutline*> BodyContacts::meeting(Index one, Index other) const {
-  for (const BodyOutline* a : some_of(outlines_.list(), one)) {
-    for (const BodyOutline* b : some_of(outlines_.list(), other)) {
-      if (is_point(*a) && is_point(*b)) continue;
-      if (filter_.may_touch(a->body, a->filter, b->body, b->filter)) return {a, b};
-    }
-  }
-  return {};
 }
 
 const Surface* BodyContacts::law(const BodyOutline& a, const BodyOutline& b) const {

@@ -101,8 +101,6 @@ private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void find_laws(const System& system);
-  void demand_laws(const System& system) const;
-  [[nodiscard]] std::pair<const BodyOutline*, const BodyOutline*> meeting(Index one, Index other) const;
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
