@@ -1,8 +1,9 @@
 """Impacts of moved tables, bars, chains and nets with 30 digits: makes tests/reference/coupled_impacts.json.
 
-Independent of the library: flights in closed form (tables, bars), by eigenmodes (nets and strings on springs), or
-by a collocation method of order 16 in joint angles (chains); instants by polished roots of the gap; impacts by
-enumeration of the modes open, stick, slip+ and slip- of the law of docs/contact_law.md. Needs mpmath.
+Independent of the library: flights in closed form (tables, bars), by eigenmodes (nets and strings on
+springs), or by a collocation method of order 16 in joint angles (chains); instants by polished roots of the
+gap; impacts by enumeration of the modes open, stick, slip+ and slip- of the law of docs/contact_law.md.
+Needs mpmath.
 
     python3 tests/reference/coupled_impacts.py > tests/reference/coupled_impacts.json
 """
@@ -515,8 +516,8 @@ def string_on_a_floor(p: dict[str, Any]) -> dict[str, Any]:
                 a[n + i, n + i] -= c / masses[i]
                 a[n + i, n + j] += c / masses[i]
                 b[n + i] += sign * k * free / masses[i]
-    # The mean moves as a parabola: two eigenvalues 0 that share a vector. A weak spring to the ground, exact in
-    # both runs, parts them.
+    # The mean moves as a parabola: two eigenvalues 0 that share a vector. A weak spring to the ground, which
+    # the library has too, parts them.
     weak = mpf(p["ground_stiffness"])
     for i in range(n):
         a[n + i, i] -= weak / masses[i]
