@@ -186,6 +186,23 @@ TEST(LocatedImpacts, InLoadsThatDependOnVelocitiesAreOfSecondOrder) {
   }
 }
 
+// Every iteration that is named alone: Newton's method does not see impacts within a step, which ends there
+// then.
+TEST(LocatedImpacts, AreOfSecondOrderByEveryIteration) {
+  const System system = pair(5.0, 0.3);
+  const State there = run(system, tight(), 0.6);
+  for (const Iteration iteration :
+       {Iteration::fixed_point, Iteration::anderson, Iteration::linearly_implicit}) {
+    const analytic::MeanOrder order = analytic::mean_order(4e-3, 4, 8, [&](double step) {
+      TimeStepping options = located(step);
+      options.iteration = iteration;
+      return distance(run(system, options, 0.6), there);
+    });
+    EXPECT_GT(order.slope, 1.8) << to_string(iteration) << ", deviation " << order.deviation;
+    EXPECT_LT(order.errors.back(), 1e-5) << to_string(iteration);  // 1e-3 where impacts are a step late
+  }
+}
+
 /// A box that tips on a corner, without friction, and a particle that is hit, on a dashpot.
 System box_and_particle() {
   System system;
