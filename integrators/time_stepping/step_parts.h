@@ -43,10 +43,11 @@ struct StepParts {
     return {in, component, constraints.detector(), options, trial};
   }
   /// True if impacts are located and LocatedImpacts does not find all of them: bodies touch each other,
-  /// joints bind them, or impacts have rules of their own.
+  /// joints bind them, impacts have rules of their own, or Newton's method alone is to solve the step.
   [[nodiscard]] bool ends_at_closings() const {
     return options.impacts == ImpactTimes::located &&
-           (!located.on() || constraints.detector().bodies_touch() || joints.any());
+           (!located.on() || constraints.detector().bodies_touch() || joints.any() ||
+            options.iteration == Iteration::linearly_implicit);
   }
   /// The problem where bodies of an island answer together; null where nothing touches.
   [[nodiscard]] IslandProblem* problem() {

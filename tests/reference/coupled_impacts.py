@@ -1,8 +1,9 @@
 """Impacts of moved tables, bars, chains and nets with 30 digits: makes tests/reference/coupled_impacts.json.
 
-Independent of the library: flights in closed form (tables, bars), by eigenmodes (nets and strings on springs) or by a
-collocation method of order 20 in joint angles (chains); instants by polished roots of the gap; impacts by enumeration of the
-modes open, stick, slip+ and slip- of the law of docs/contact_law.md. Needs mpmath.
+Independent of the library: flights in closed form (tables, bars), by eigenmodes (nets and strings on
+springs), or by a collocation method of order 16 in joint angles (chains); instants by polished roots of the
+gap; impacts by enumeration of the modes open, stick, slip+ and slip- of the law of docs/contact_law.md.
+Needs mpmath.
 
     python3 tests/reference/coupled_impacts.py > tests/reference/coupled_impacts.json
 """
@@ -28,7 +29,7 @@ class Accumulation(Exception):
 
 
 def law(w: Any, before: list[Any], mu: Any, e_n: Any, e_t: Any) -> tuple[str, list[Any]]:
-    """Mode and impulse (t, n) of one contact; w is H M^-1 H^T in the order (t, n), before the contact velocity."""
+    """Mode and impulse (t, n) of one contact. w: H M^-1 H^T in the order (t, n), before: contact velocity."""
     t, n = before
     if n >= 0:
         return "open", [mpf(0), mpf(0)]
@@ -50,7 +51,8 @@ def law(w: Any, before: list[Any], mu: Any, e_n: Any, e_t: Any) -> tuple[str, li
 
 
 def first_root(gap: Callable[[Any], Any], rate: Callable[[Any], Any], start: Any, end: Any, step: Any) -> Any:
-    """First time after start at which gap falls through zero; None if there is none. Dips are looked for by the rate."""
+    """First time after start at which gap falls through zero, dips included; None if there is none."""
+
     def bisect(low: Any, high: Any, f: Callable[[Any], Any]) -> Any:
         f_low = f(low)
         for _ in range(12):
@@ -116,6 +118,7 @@ def moved_tables(p: dict[str, Any]) -> dict[str, Any]:
     v = [mpf(s) for s in p["velocity"]] + [mpf(p["spin"])]
     now, impacts = mpf(0), []
     while True:
+
         def height(t: Any) -> Any:
             return q[1] + v[1] * (t - now) - G * (t - now) ** 2 / 2
 
@@ -147,7 +150,9 @@ def moved_tables(p: dict[str, Any]) -> dict[str, Any]:
         w = matrix([[1 / m + r * r / inertia, 0], [0, 1 / m]])
         mode, (p_t, p_n) = law(w, before, mpf(table["friction"]), mpf(p["e_n"]), mpf(p["e_t"]))
         v = [v[0] + sign * p_t / m, v[1] + sign * p_n / m, v[2] + r * p_t / inertia]
-        impacts.append({"t": number(t), "table": event[1], "mode": mode, "velocity_after": [number(x) for x in v]})
+        impacts.append(
+            {"t": number(t), "table": event[1], "mode": mode, "velocity_after": [number(x) for x in v]}
+        )
     return {**p, "impacts": impacts, "q": [number(x) for x in q], "v": [number(x) for x in v]}
 
 
@@ -163,6 +168,7 @@ def bar_in_a_corner(p: dict[str, Any]) -> dict[str, Any]:
     v = [mpf(x) for x in p["velocity"]] + [mpf(p["spin"])]
     now, impacts = mpf(0), []
     while True:
+
         def at(t: Any) -> tuple[Any, Any, Any]:
             s = t - now
             return q[0] + v[0] * s, q[1] + v[1] * s - G * s * s / 2, q[2] + v[2] * s
@@ -172,6 +178,7 @@ def bar_in_a_corner(p: dict[str, Any]) -> dict[str, Any]:
         found = []
         for tip in (-1, 1):
             for name in ("floor", "wall"):
+
                 def gap(t: Any, tip: int = tip, name: str = name) -> Any:
                     x, y, angle = at(t)
                     return y + tip * half * sin(angle) if name == "floor" else x + tip * half * cos(angle)
@@ -200,7 +207,15 @@ def bar_in_a_corner(p: dict[str, Any]) -> dict[str, Any]:
         before = [sum(row[k] * v[k] for k in range(3)) for row in rows]
         mode, impulse = law(w, before, mu, e_n, e_t)
         v = [v[k] + inv[k] * (rows[0][k] * impulse[0] + rows[1][k] * impulse[1]) for k in range(3)]
-        impacts.append({"t": number(t), "tip": tip, "obstacle": name, "mode": mode, "velocity_after": [number(x) for x in v]})
+        impacts.append(
+            {
+                "t": number(t),
+                "tip": tip,
+                "obstacle": name,
+                "mode": mode,
+                "velocity_after": [number(x) for x in v],
+            }
+        )
     return {**p, "impacts": impacts, "q": [number(x) for x in q], "v": [number(x) for x in v]}
 
 
@@ -235,6 +250,7 @@ def boxes_that_meet(p: dict[str, Any]) -> dict[str, Any]:
         return max(abs(x) - s[0], abs(y) - s[1])
 
     while True:
+
         def at(t: Any) -> list[list[Any]]:
             return [[q[i][k] + v[i][k] * (t - now) for k in range(3)] for i in range(2)]
 
@@ -292,9 +308,21 @@ def boxes_that_meet(p: dict[str, Any]) -> dict[str, Any]:
         mode, impulse = law(w, before, mu, e_n, e_t)
         flat = [flat[k] + inv[k] * (rows[0][k] * impulse[0] + rows[1][k] * impulse[1]) for k in range(6)]
         v = [flat[:3], flat[3:]]
-        impacts.append({"t": number(now), "body_with_corner": of, "mode": mode, "impulse_tn": [number(x) for x in impulse],
-                        "velocity_after": [number(x) for x in flat]})
-    return {**p, "impacts": impacts, "q": [number(x) for x in q[0] + q[1]], "v": [number(x) for x in v[0] + v[1]]}
+        impacts.append(
+            {
+                "t": number(now),
+                "body_with_corner": of,
+                "mode": mode,
+                "impulse_tn": [number(x) for x in impulse],
+                "velocity_after": [number(x) for x in flat],
+            }
+        )
+    return {
+        **p,
+        "impacts": impacts,
+        "q": [number(x) for x in q[0] + q[1]],
+        "v": [number(x) for x in v[0] + v[1]],
+    }
 
 
 # A chain of rods against a wall.
@@ -311,10 +339,13 @@ class Collocation:
 
     def __post_init__(self) -> None:
         from mpmath import legendre, polyroots, taylor
+
         coefficients = taylor(lambda x: legendre(self.stages, 2 * x - 1), 0, self.stages)[::-1]
         s = self.stages
-        self.c = sorted(findroot(lambda x: legendre(s, 2 * x - 1), mpf(r.real))
-                        for r in polyroots(coefficients, maxsteps=400, extraprec=200))
+        self.c = sorted(
+            findroot(lambda x: legendre(s, 2 * x - 1), mpf(r.real))
+            for r in polyroots(coefficients, maxsteps=400, extraprec=200)
+        )
         powers = matrix(s, s)
         for i in range(s):
             for j in range(s):
@@ -346,18 +377,27 @@ def chain_against_a_wall(p: dict[str, Any], method: Collocation, step: Any) -> d
     """A chain of two rods on a pin; its tip hits a wall x = d, free space on the left."""
     m, length, end, wall = mpf(p["mass"]), mpf(p["length"]), mpf(p["end"]), mpf(p["wall"])
     mu, e_n, e_t = mpf(p["friction"]), mpf(p["e_n"]), mpf(p["e_t"])
-    inertia = m * length ** 2 / 12
+    inertia = m * length**2 / 12
 
     def mass_matrix(a: Any, b: Any) -> Any:
         # angles from the x axis; centres at l/2 (cos a, sin a), l (cos a, sin a) + l/2 (cos b, sin b)
-        l2 = length ** 2
-        return matrix([[inertia + m * l2 / 4 + m * l2, m * l2 / 2 * cos(a - b)], [m * l2 / 2 * cos(a - b), inertia + m * l2 / 4]])
+        l2 = length**2
+        return matrix(
+            [
+                [inertia + m * l2 / 4 + m * l2, m * l2 / 2 * cos(a - b)],
+                [m * l2 / 2 * cos(a - b), inertia + m * l2 / 4],
+            ]
+        )
 
     def f(y: list[Any]) -> list[Any]:
         a, b, u, w = y
-        l2 = length ** 2
-        load = matrix([-m * G * length * mpf(3) / 2 * cos(a) - m * l2 / 2 * sin(a - b) * w * w,
-                       -m * G * length / 2 * cos(b) + m * l2 / 2 * sin(a - b) * u * u])
+        l2 = length**2
+        load = matrix(
+            [
+                -m * G * length * mpf(3) / 2 * cos(a) - m * l2 / 2 * sin(a - b) * w * w,
+                -m * G * length / 2 * cos(b) + m * l2 / 2 * sin(a - b) * u * u,
+            ]
+        )
         acc = lu_solve(mass_matrix(a, b), load)
         return [u, w, acc[0], acc[1]]
 
@@ -394,16 +434,34 @@ def chain_against_a_wall(p: dict[str, Any], method: Collocation, step: Any) -> d
             # n = (-1, 0), t = n turned clockwise = (0, 1)
             rows = [[length * cos(a), length * cos(b)], [length * sin(a), length * sin(b)]]
             inv = inverse(mass_matrix(a, b))
-            w = matrix([[sum(r[i] * inv[i, j] * s[j] for i in range(2) for j in range(2)) for s in rows] for r in rows])
+            w = matrix(
+                [
+                    [sum(r[i] * inv[i, j] * s[j] for i in range(2) for j in range(2)) for s in rows]
+                    for r in rows
+                ]
+            )
             before = [sum(r[i] * y[2 + i] for i in range(2)) for r in rows]
             mode, impulse = law(w, before, mu, e_n, e_t)
             for i in range(2):
-                y[2 + i] += sum(inv[i, j] * (rows[0][j] * impulse[0] + rows[1][j] * impulse[1]) for j in range(2))
-            impacts.append({"t": number(now), "mode": mode, "impulse_tn": [number(x) for x in impulse],
-                            "rates_after": [number(x) for x in y[2:]]})
+                y[2 + i] += sum(
+                    inv[i, j] * (rows[0][j] * impulse[0] + rows[1][j] * impulse[1]) for j in range(2)
+                )
+            impacts.append(
+                {
+                    "t": number(now),
+                    "mode": mode,
+                    "impulse_tn": [number(x) for x in impulse],
+                    "rates_after": [number(x) for x in y[2:]],
+                }
+            )
         else:
             y, now = nxt, now + h
-    return {**p, "impacts": impacts, "angles_at_end": [number(x) for x in y[:2]], "rates_at_end": [number(x) for x in y[2:]]}
+    return {
+        **p,
+        "impacts": impacts,
+        "angles_at_end": [number(x) for x in y[:2]],
+        "rates_at_end": [number(x) for x in y[2:]],
+    }
 
 
 # Nets and strings of particles on springs: linear between impacts.
@@ -433,12 +491,19 @@ class LinearFlight:
             else:
                 phi = (exp(z) - 1) / d
             weights.append(phi * self.c[k])
-        return [self.y[i] + sum((self.vectors[i, k] * weights[k]).real for k in range(self.n)) for i in wanted]
+        return [
+            self.y[i] + sum((self.vectors[i, k] * weights[k]).real for k in range(self.n)) for i in wanted
+        ]
 
 
 def string_on_a_floor(p: dict[str, Any]) -> dict[str, Any]:
     """Masses one above the other on springs with dashpots fall on a smooth floor; the lowest one hits it."""
-    masses, k, c, free = [mpf(x) for x in p["masses"]], mpf(p["stiffness"]), mpf(p["damping"]), mpf(p["free_length"])
+    masses, k, c, free = (
+        [mpf(x) for x in p["masses"]],
+        mpf(p["stiffness"]),
+        mpf(p["damping"]),
+        mpf(p["free_length"]),
+    )
     n, end, e_n = len(masses), mpf(p["end"]), mpf(p["e_n"])
     a, b = matrix(2 * n, 2 * n), [mpf(0)] * (2 * n)
     for i in range(n):
@@ -451,8 +516,8 @@ def string_on_a_floor(p: dict[str, Any]) -> dict[str, Any]:
                 a[n + i, n + i] -= c / masses[i]
                 a[n + i, n + j] += c / masses[i]
                 b[n + i] += sign * k * free / masses[i]
-    # The mean moves as a parabola: two eigenvalues 0 that share a vector. A weak spring to the ground, exact in both
-    # runs, parts them.
+    # The mean moves as a parabola: two eigenvalues 0 that share a vector. A weak spring to the ground, which
+    # the library has too, parts them.
     weak = mpf(p["ground_stiffness"])
     for i in range(n):
         a[n + i, i] -= weak / masses[i]
@@ -463,7 +528,9 @@ def string_on_a_floor(p: dict[str, Any]) -> dict[str, Any]:
         if len(impacts) > MOST:
             raise Accumulation
         flight.starts(y, b)
-        t = first_root(lambda s: flight.at(s, [0])[0], lambda s: flight.at(s, [n])[0], mpf(0), end - now, mpf("1e-3"))
+        t = first_root(
+            lambda s: flight.at(s, [0])[0], lambda s: flight.at(s, [n])[0], mpf(0), end - now, mpf("1e-3")
+        )
         y = flight.at(end - now if t is None else t, list(range(2 * n)))
         if t is None:
             break
@@ -498,8 +565,17 @@ def net_on_an_incline(p: dict[str, Any]) -> dict[str, Any]:
     while True:
         if len(impacts) > MOST:
             raise Accumulation
-        modes = [[(sum(vectors[i, k] * q[i][d] for i in range(n)), sum(vectors[i, k] * v[i][d] for i in range(n)),
-                   -G * sum(vectors[i, k] for i in range(n)) if d == 1 else mpf(0)) for k in range(n)] for d in range(2)]
+        modes = [
+            [
+                (
+                    sum(vectors[i, k] * q[i][d] for i in range(n)),
+                    sum(vectors[i, k] * v[i][d] for i in range(n)),
+                    -G * sum(vectors[i, k] for i in range(n)) if d == 1 else mpf(0),
+                )
+                for k in range(n)
+            ]
+            for d in range(2)
+        ]
 
         def coordinate(k: int, d: int, s: Any) -> tuple[Any, Any]:
             x, u, load = modes[d][k]
@@ -511,8 +587,10 @@ def net_on_an_incline(p: dict[str, Any]) -> dict[str, Any]:
 
         def all_at(s: Any) -> tuple[list[list[Any]], list[list[Any]]]:
             parts = [[coordinate(k, d, s) for k in range(n)] for d in range(2)]
-            return ([[sum(vectors[i, k] * parts[d][k][0] for k in range(n)) for d in range(2)] for i in range(n)],
-                    [[sum(vectors[i, k] * parts[d][k][1] for k in range(n)) for d in range(2)] for i in range(n)])
+            return (
+                [[sum(vectors[i, k] * parts[d][k][0] for k in range(n)) for d in range(2)] for i in range(n)],
+                [[sum(vectors[i, k] * parts[d][k][1] for k in range(n)) for d in range(2)] for i in range(n)],
+            )
 
         def gap(s: Any, i: int) -> Any:
             at = all_at(s)[0][i]
@@ -551,8 +629,15 @@ def net_on_an_incline(p: dict[str, Any]) -> dict[str, Any]:
         before = [sum(v[i][d] * tangent[d] for d in range(2)), sum(v[i][d] * normal[d] for d in range(2))]
         mode, impulse = law(matrix([[1 / m, 0], [0, 1 / m]]), before, mu, e_n, e_t)
         v[i] = [v[i][d] + (tangent[d] * impulse[0] + normal[d] * impulse[1]) / m for d in range(2)]
-        impacts.append({"t": number(now), "particle": i, "mode": mode, "impulse_tn": [number(x) for x in impulse]})
-    return {**p, "impacts": impacts, "q": [[number(x) for x in at] for at in q], "v": [[number(x) for x in at] for at in v]}
+        impacts.append(
+            {"t": number(now), "particle": i, "mode": mode, "impulse_tn": [number(x) for x in impulse]}
+        )
+    return {
+        **p,
+        "impacts": impacts,
+        "q": [[number(x) for x in at] for at in q],
+        "v": [[number(x) for x in at] for at in v],
+    }
 
 
 def main() -> None:
@@ -561,7 +646,9 @@ def main() -> None:
     def pick(low: float, high: float) -> float:
         return round(random.uniform(low, high), 3)
 
-    def keep(cases: list[Any], run: Callable[[dict[str, Any]], dict[str, Any]], start: dict[str, Any]) -> None:
+    def keep(
+        cases: list[Any], run: Callable[[dict[str, Any]], dict[str, Any]], start: dict[str, Any]
+    ) -> None:
         try:
             case = run(start)
         except Accumulation:
@@ -572,50 +659,149 @@ def main() -> None:
     out: dict[str, Any] = {}
     tables = []
     while len(tables) < 4:
-        lower = {"height": 0.0, "x": [pick(0, 0.05), pick(5, 40), pick(0, 6)], "y": [pick(0.002, 0.01), pick(20, 50), pick(0, 6)],
-                 "friction": pick(0.05, 0.8)}
-        upper = {"height": 0.3, "x": [pick(0, 0.05), pick(5, 40), pick(0, 6)], "y": [pick(0.002, 0.01), pick(20, 50), pick(0, 6)],
-                 "friction": pick(0.05, 0.8)}
-        keep(tables, moved_tables, {"mass": 0.5, "radius": 0.02, "end": 0.6, "e_n": pick(0.7, 0.95), "e_t": pick(0, 0.9),
-                                    "position": [0.0, 0.15], "velocity": [pick(-2, 2), pick(-4, -2)], "spin": pick(-50, 50),
-                                    "lower": lower, "upper": upper})
+        lower = {
+            "height": 0.0,
+            "x": [pick(0, 0.05), pick(5, 40), pick(0, 6)],
+            "y": [pick(0.002, 0.01), pick(20, 50), pick(0, 6)],
+            "friction": pick(0.05, 0.8),
+        }
+        upper = {
+            "height": 0.3,
+            "x": [pick(0, 0.05), pick(5, 40), pick(0, 6)],
+            "y": [pick(0.002, 0.01), pick(20, 50), pick(0, 6)],
+            "friction": pick(0.05, 0.8),
+        }
+        keep(
+            tables,
+            moved_tables,
+            {
+                "mass": 0.5,
+                "radius": 0.02,
+                "end": 0.6,
+                "e_n": pick(0.7, 0.95),
+                "e_t": pick(0, 0.9),
+                "position": [0.0, 0.15],
+                "velocity": [pick(-2, 2), pick(-4, -2)],
+                "spin": pick(-50, 50),
+                "lower": lower,
+                "upper": upper,
+            },
+        )
     out["moved_tables"] = tables
     bars = []
     while len(bars) < 4:
-        keep(bars, bar_in_a_corner, {"mass": 2.0, "length": 1.0, "friction": pick(0.05, 0.8), "e_n": pick(0.5, 0.9), "e_t": pick(0, 0.9),
-                                     "position": [pick(0.8, 1.2), pick(0.6, 1.0)], "angle": pick(-1.5, 1.5),
-                                     "velocity": [pick(-3, -1), pick(-2, 1)], "spin": pick(-4, 4), "end": 0.8})
+        keep(
+            bars,
+            bar_in_a_corner,
+            {
+                "mass": 2.0,
+                "length": 1.0,
+                "friction": pick(0.05, 0.8),
+                "e_n": pick(0.5, 0.9),
+                "e_t": pick(0, 0.9),
+                "position": [pick(0.8, 1.2), pick(0.6, 1.0)],
+                "angle": pick(-1.5, 1.5),
+                "velocity": [pick(-3, -1), pick(-2, 1)],
+                "spin": pick(-4, 4),
+                "end": 0.8,
+            },
+        )
     out["bar_in_a_corner"] = bars
     boxes = []
     while len(boxes) < 5:
-        keep(boxes, boxes_that_meet, {"friction": pick(0, 0.8), "e_n": pick(0.3, 1), "e_t": pick(0, 0.9), "end": 1.0, "bodies": [
-            {"mass": pick(0.5, 3), "size": [pick(0.3, 1.2), pick(0.1, 0.3)], "position": [-0.8, pick(-0.2, 0.2)], "angle": pick(-1.5, 1.5),
-             "velocity": [pick(0.5, 2), pick(-0.5, 0.5)], "spin": pick(-4, 4)},
-            {"mass": pick(0.5, 3), "size": [pick(0.3, 1.2), pick(0.1, 0.3)], "position": [0.8, pick(-0.2, 0.2)], "angle": pick(-1.5, 1.5),
-             "velocity": [pick(-2, -0.5), pick(-0.5, 0.5)], "spin": pick(-4, 4)}]})
+        keep(
+            boxes,
+            boxes_that_meet,
+            {
+                "friction": pick(0, 0.8),
+                "e_n": pick(0.3, 1),
+                "e_t": pick(0, 0.9),
+                "end": 1.0,
+                "bodies": [
+                    {
+                        "mass": pick(0.5, 3),
+                        "size": [pick(0.3, 1.2), pick(0.1, 0.3)],
+                        "position": [-0.8, pick(-0.2, 0.2)],
+                        "angle": pick(-1.5, 1.5),
+                        "velocity": [pick(0.5, 2), pick(-0.5, 0.5)],
+                        "spin": pick(-4, 4),
+                    },
+                    {
+                        "mass": pick(0.5, 3),
+                        "size": [pick(0.3, 1.2), pick(0.1, 0.3)],
+                        "position": [0.8, pick(-0.2, 0.2)],
+                        "angle": pick(-1.5, 1.5),
+                        "velocity": [pick(-2, -0.5), pick(-0.5, 0.5)],
+                        "spin": pick(-4, 4),
+                    },
+                ],
+            },
+        )
     out["boxes_that_meet"] = boxes
     strings = []
     for damping, end in ((0.0, 0.44), (3.0, 0.4)):
-        strings.append(string_on_a_floor({"masses": [1.0, 0.5, 2.0, 0.7], "stiffness": 500.0, "damping": damping, "free_length": 0.4,
-                                          "ground_stiffness": 1.0, "e_n": 0.8, "heights": [0.3, 0.72, 1.1, 1.45],
-                                          "speeds": [0.0, -0.3, 0.2, -1.0], "end": end}))
+        strings.append(
+            string_on_a_floor(
+                {
+                    "masses": [1.0, 0.5, 2.0, 0.7],
+                    "stiffness": 500.0,
+                    "damping": damping,
+                    "free_length": 0.4,
+                    "ground_stiffness": 1.0,
+                    "e_n": 0.8,
+                    "heights": [0.3, 0.72, 1.1, 1.45],
+                    "speeds": [0.0, -0.3, 0.2, -1.0],
+                    "end": end,
+                }
+            )
+        )
     out["string_on_a_floor"] = strings
     random.seed(3)
     size = 3
-    out["net_on_an_incline"] = [net_on_an_incline({
-        "size": size, "mass": 0.2, "stiffness": stiffness, "friction": friction, "e_n": 0.7, "e_t": 0.4, "slope": 0.2, "end": 0.55,
-        "positions": [[round(0.3 * i + 0.01 * j, 3), round(0.5 + 0.3 * j + 0.02 * i, 3)] for i in range(size) for j in range(size)],
-        "velocities": [[pick(-1, 1), pick(-1, 1)] for _ in range(n_all)]})
-        for stiffness, friction, n_all in ((8.0, 0.1, 9), (30.0, 0.6, 9))]
+    out["net_on_an_incline"] = [
+        net_on_an_incline(
+            {
+                "size": size,
+                "mass": 0.2,
+                "stiffness": stiffness,
+                "friction": friction,
+                "e_n": 0.7,
+                "e_t": 0.4,
+                "slope": 0.2,
+                "end": 0.55,
+                "positions": [
+                    [round(0.3 * i + 0.01 * j, 3), round(0.5 + 0.3 * j + 0.02 * i, 3)]
+                    for i in range(size)
+                    for j in range(size)
+                ],
+                "velocities": [[pick(-1, 1), pick(-1, 1)] for _ in range(n_all)],
+            }
+        )
+        for stiffness, friction, n_all in ((8.0, 0.1, 9), (30.0, 0.6, 9))
+    ]
     chains = []
     fine, coarse = Collocation(8), Collocation(6)
-    for angles, wall, friction, e_n, e_t, end in (([3.4, 3.2], 0.4, 0.0, 0.7, 0.0, 1.1), ([3.3, 3.6], 0.9, 0.4, 0.5, 0.3, 1.2),
-                                                  ([-1.9, -3.0], 0.3, 0.2, 0.9, 0.9, 0.8)):
-        case = {"mass": 1.0, "length": 1.0, "angles": angles, "rates": [0.0, 0.0], "wall": wall, "friction": friction, "e_n": e_n,
-                "e_t": e_t, "end": end}
+    for angles, wall, friction, e_n, e_t, end in (
+        ([3.4, 3.2], 0.4, 0.0, 0.7, 0.0, 1.1),
+        ([3.3, 3.6], 0.9, 0.4, 0.5, 0.3, 1.2),
+        ([-1.9, -3.0], 0.3, 0.2, 0.9, 0.9, 0.8),
+    ):
+        case = {
+            "mass": 1.0,
+            "length": 1.0,
+            "angles": angles,
+            "rates": [0.0, 0.0],
+            "wall": wall,
+            "friction": friction,
+            "e_n": e_n,
+            "e_t": e_t,
+            "end": end,
+        }
         one = chain_against_a_wall(case, fine, mpf("0.02"))
         two = chain_against_a_wall(case, coarse, mpf("0.015"))
-        one["difference_of_two_methods"] = max(abs(x - y) for key in ("angles_at_end", "rates_at_end") for x, y in zip(one[key], two[key]))
+        one["difference_of_two_methods"] = max(
+            abs(x - y) for key in ("angles_at_end", "rates_at_end") for x, y in zip(one[key], two[key])
+        )
         chains.append(one)
     out["chain_against_a_wall"] = chains
     json.dump(out, sys.stdout, indent=1)
