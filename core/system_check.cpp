@@ -264,7 +264,8 @@ void find_pairs_without_law(const System& system, const Touching& touching, std:
     for (std::size_t j = 0; j <= i; ++j) {
       const Toucher &a = kinds[i], &b = kinds[j];
       if (!a.material.valid() || !b.material.valid() || !can_touch(a, b)) continue;
-      if (!system.law(a.material, b.material)) parts.push_back(b.name + " and " + a.name);
+      if (system.law(a.material, b.material)) continue;
+      parts.push_back(b.name + " and " + (i == j ? "another one of its material" : a.name));
     }
   }
   if (parts.empty()) return;

@@ -115,101 +115,6 @@ void add_pyramid(Page& page, SolverChain& chain) {
   }
 }
 
-/// A disc or a block of 1 kg. \param half its radius, or half its sides [m]
-BodyId add_body(System& system, bool block, double half, const Vec<2>& place, double speed = 0.0) {
-  const BodyId body = system.add(RigidBody{.mass = block ? box(1.0, 2.0 * half, 2.0 * half) : disc(1.0, half),
-                                           .position = place,
-                                           .velocity = {speed, 0.0}});
-  if (block) {
-    system.add(
-        Polygon{.body = body, .vertices = {{-half, -half}, {half, -half}, {half, half}, {-half, half}}});
-  } else {
-    system.add(Disc{.body = body, .radius = half});
-  }
-  return body;
-}
-
-/// The cradle as a simulation: all discs touch but the first, which arrives; together, or one after the
-/// other.
-void simulate_cradles(Page& page, Mode mode, ImpactOrder order) {
-  constexpr double radius = 0.125;
-  const bool sequential = order == ImpactOrder::sequential,
-             events = std::holds_alternative<EventDriven>(mode);
-  std::visit([order](auto& options) { options.impact_rules.order = order; }, mode);
-  const Clock clock;
-  Comparison velocities;
-  for (const auto& at : reference("contacts_planar.json", "newton_cradle", "cases")) {
-    System system;
-    system.set_default_law({.friction = 0.0, .normal_restitution = of(at, "e")});
-    std::vector<BodyId> discs;
-    for (int i = 0; i < at.at("N").get<int>(); ++i) {
-      const double x = i == 0 && events ? -0.5 : 2.0 * radius * i;
-      discs.push_back(add_body(system, false, radius, {x, 0.0}, i == 0 ? 1.0 : 0.0));
-    }
-    Simulation simulation(std::move(system), mode);
-    simulation.run_until(events ? 0.5 + 1e-9 : 1e-9);
-    const Json& expected =
-        sequential ? at.at("sequential_velocities") : at.at("simultaneous_velocities").at(0);
-    for (std::size_t i = 0; i < discs.size(); ++i)
-      velocities(simulation.state().velocity(discs[i])[0], expected[i].get<double>());
-  }
-  page.rows.push_back(row(mode,
-                          std::string("velocities behind Newton's cradle, ") +
-                              (sequential ? "one contact after the other" : "all contacts at once") +
-                              " [m/s]",
-                          velocities, clock.seconds()));
-}
-
-/// Forces on the floor and between bodies of a stack, by level from below.
-void simulate_stack(Page& page, const Mode& mode, bool blocks) {
-  const Json data = reference("contacts_planar.json", "static_stack");
-  const Json& expected = data.at(blocks ? "block_corner_forces_bottom_up" : "disc_contact_forces_bottom_up");
-  constexpr double half = 0.1;
-  constexpr std::size_t n = 10;
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.set_default_law({.friction = 0.3, .normal_restitution = 0.0});
-  system.add(HalfPlane{.normal = {0.0, 1.0}});
-  for (std::size_t i = 0; i < n; ++i)
-    add_body(system, blocks, half, {0.0, (2.0 * static_cast<double>(i) + 1.0) * half});
-  const Clock clock;
-  Simulation simulation(std::move(system), mode);
-  simulation.run_until(0.1);
-  Comparison forces;
-  for (const LastingContact& contact : simulation.contact_forces()) {
-    const auto level = static_cast<std::size_t>(std::lround(contact.point[1] / (2.0 * half)));
-    forces(contact.force[0], expected.at(level).get<double>());
-  }
-  page.rows.push_back(row(
-      mode, blocks ? "forces at corners of a stack of ten blocks [N]" : "forces in a stack of ten discs [N]",
-      forces, clock.seconds()));
-}
-
-/// Three smooth discs between walls, described at rest.
-void simulate_pyramid(Page& page, const Mode& mode) {
-  const Json data = reference("contacts_planar.json", "three_disc_pyramid");
-  constexpr double r = 0.1, x = r + 0.5e-3 * r;
-  System system;
-  system.add(Gravity{{0.0, -g}});
-  system.set_default_law({.friction = 0.0, .normal_restitution = 0.0});
-  const ObstacleId floor = system.add(HalfPlane{.normal = {0.0, 1.0}});
-  for (const double side : {1.0, -1.0})
-    system.add(HalfPlane{.point = {-side * (x + r), 0.0}, .normal = {side, 0.0}});
-  for (const double side : {1.0, -1.0}) add_body(system, false, r, {-side * x, r});
-  add_body(system, false, r, {0.0, r + std::sqrt(4.0 * r * r - x * x)});
-  const Clock clock;
-  Simulation simulation(std::move(system), mode);
-  simulation.run_until(2e-3);
-  Comparison forces;
-  for (const LastingContact& contact : simulation.contact_forces()) {
-    const char* const name = contact.other.valid()       ? "top_pair_each"
-                             : contact.obstacle == floor ? "floor_each"
-                                                         : "wall_each";
-    forces(contact.force[0], of(data, name));
-  }
-  page.rows.push_back(row(mode, "forces in a pyramid of three discs [N]", forces, clock.seconds()));
-}
-
 }  // namespace
 
 Page several_bodies() {
@@ -218,27 +123,19 @@ Page several_bodies() {
   page.title = "Cradle, stacks and a pyramid";
   page.source = "enumeration of modes and statics, `contacts_planar.json`";
   page.text =
-      "Newton's cradle (3 and 5 masses, four e), ten discs and ten blocks one above the other, and three "
-      "smooth discs between walls: as contact problems W P + b by themselves (impulses of a millisecond of "
-      "weight, divided by it), and as simulations, whose forces are those of the contacts that last "
-      "(`Simulation::contact_forces()`).";
+      "Problems with contacts between bodies, which simulations do not have: as contact problems W P + b by "
+      "themselves. Newton's cradle (3 and 5 masses, four e, all contacts at once), ten discs and ten blocks "
+      "one above the other, and three smooth discs between walls: impulses of a millisecond of weight, "
+      "divided by it.";
   page.figures = {{"stacks", "Forces in the stacks by level from below; crosses: statics."}};
   SolverChain chain;
   add_cradle(page, chain);
   add_stacks(page, chain);
   add_pyramid(page, chain);
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-9}), Mode(tight())}) {
-    for (const ImpactOrder order : {ImpactOrder::simultaneous, ImpactOrder::sequential})
-      simulate_cradles(page, mode, order);
-  }
-  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-4}), Mode(tight())}) {
-    for (const bool blocks : {false, true}) simulate_stack(page, mode, blocks);
-    simulate_pyramid(page, mode);
-  }
   page.remarks =
       "For the cradle the law gives what all contacts do at once, not the passing on of the impact from mass "
       "to mass: with e = 1 three masses leave with −1/3, 2/3, 2/3 of the speed. That is the law's answer, "
-      "not nature's; the sequential law passes the impact on.";
+      "not nature's.";
   return page;
 }
 

@@ -51,6 +51,11 @@ TEST(SystemCheck, ShapesOfBodiesNeedALawToTouchEachOther) {
   EXPECT_TRUE(says(found[1], "there is no obstacle to touch")) << found[1].text;
   // A body of ice can touch, and steel touches it.
   disc_of(system, ice, {2.0, 0.0});
+  const auto rest = system.check();
+  ASSERT_EQ(rest.size(), 1U);  // steel passes through steel
+  EXPECT_EQ(rest[0].kind, FindingKind::contact_without_law);
+  EXPECT_EQ(rest[0].parts, std::vector<std::string>{"disc #0 and another one of its material"});
+  system.between(steel, steel, rough);
   EXPECT_TRUE(system.check().empty());
 }
 
