@@ -56,7 +56,6 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
   at.touch_gap = starts ? group.motion.model().options->gap_tolerance : 4.0 * at.scales.gap_noise;
   if (starts && !group.motion.active().list().empty()) group.projection.apply_to_known_contacts(at);
   at.take_contacts_before();
-  at.leave_out_twins();
   at.find_islands();
   if (group.impacts.resolve(at)) {
     group.modes.forget_ends();  // what stopped moves again,

@@ -28,8 +28,6 @@ struct CAROM_API InstantMemory {
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
   EventIslands islands;
-  std::vector<Index> corners;  // pairs of sharp corners that may touch
-  std::vector<Index> twins;    // pairs that are left out, since their twins count
 };
 
 /// One instant of one clock group.
@@ -58,10 +56,6 @@ struct CAROM_API EventInstant {
   void update();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
-  /// Leaves out one contact of two sharp corners that meet each other exactly, each before an edge of the
-  /// other, from here to the end of the instant: the one that approaches more slowly. Both normals at once
-  /// would hook the corners, and no impulses answer to that. After take_contacts_before().
-  void leave_out_twins();
   /// Finds the islands, by the contacts as they are; they stay during the event.
   void find_islands();
   /// True if a pair touches.
@@ -77,12 +71,6 @@ struct CAROM_API EventInstant {
   [[nodiscard]] const double* velocities() const { return now.state.v.data(); }
   /// Takes the velocities of the sample over into the state.
   void take_velocities();
-
-private:
-  [[nodiscard]] bool are_twins(Index a, Index b) const;
-
-  std::vector<Index>& corners_;
-  std::vector<Index>& twins_;
 };
 
 }  // namespace carom

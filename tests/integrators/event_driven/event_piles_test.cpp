@@ -213,6 +213,23 @@ TEST(EventPilesLong, TwentyDiscsThatBounceComeToRest) {
   EXPECT_EQ(runs.at_rest, 1);
 }
 
+// Thirty-one contacts of 20 discs with forces of many freedoms: Lemke's method did not find their largest
+// margin, and each event followed the one before at the same time.
+TEST(EventPilesLong, ForcesOfManyFreedomsAreSharedOut) {
+  Runs runs;
+  run({20, true, 0.5, 0.3, 33}, 1.1, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
+// Discs jam at a contact that slides by 1e-7 m/s beside one that slides by 1e-3 m/s: impulses of the limit
+// were small against those of the shortest step, and not found.
+TEST(EventPilesLong, JamsOfWhatSlidesSlowlyAreFound) {
+  Runs runs;
+  run({20, true, 0.8, 0.3, 3}, 1.23, runs);
+  EXPECT_GT(runs.jams, 0);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
