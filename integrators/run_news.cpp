@@ -21,7 +21,8 @@ void write_doubtful(Log& log, const std::string& when, const StepReport& report,
     if (contact.restitution_factor == 0.0 && jams++ == 0) jam = &contact;
     if (contact.outcome != Outcome::accepted_at_cap) continue;
     ++capped;
-    if (worst == nullptr || contact.residual > worst->residual) worst = &contact;
+    const bool larger = worst == nullptr || contact.residual > worst->residual;
+    if (larger || (contact.worst && contact.residual == worst->residual)) worst = &contact;
   }
   if (jams > 0) {
     log.write(LogLevel::warning, when + std::to_string(jams) + " contacts jam, as that of " +

@@ -43,6 +43,7 @@ struct ContactRecord : ContactPlace, ImpactNote {
   std::array<double, 3> work{};             ///< P (gamma^- + gamma^+)/2, by direction [J]
   ContactMode mode = ContactMode::open;     ///< of the mean velocities
   bool impact = false;                      ///< closed faster than the capture speed
+  bool worst = false;                       ///< of an answer at the cap: its residual is that of this contact
   Outcome outcome = Outcome::not_solved;    ///< number of solutions of its problem, if known
   double residual = 0.0;                    ///< certificate of its problem
   std::string_view solver{};                ///< solver whose answer was used

@@ -49,6 +49,22 @@ void name_contact(const Assembly& assembly, const IslandProblem& problem, std::s
   entry.restitution_factor = problem.restitution_factor();
 }
 
+/// Marks where the residual of a problem is taken, unless that is at friction in a joint.
+/// \param records of its contacts and limits
+void mark_worst(const IslandProblem& problem, std::span<ContactRecord> records) {
+  std::size_t record = 0;
+  int group = 0;
+  for (const Constraint& at : problem.constraints()) {
+    if (at.type == ConstraintType::rolling) continue;  // of the group and the record of its contact
+    const bool recorded = !at.has_dry_friction();
+    if (group++ == problem.report().worst_group) {
+      if (recorded) records[record].worst = true;
+      return;
+    }
+    if (recorded) ++record;
+  }
+}
+
 }  // namespace
 
 void ContactTally::add(const ContactTally& other) {
@@ -76,6 +92,9 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     }
   }
   tally(problem, static_cast<int>(result_.report.contacts.size() - first));
+  if (problem.report().outcome == Outcome::accepted_at_cap) {
+    mark_worst(problem, std::span(result_.report.contacts).subspan(first));
+  }
   if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
   if (!(work.gain > 0.0)) return 0.0;
   const double gain = book_gain(problem, work, impact, trial);

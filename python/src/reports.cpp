@@ -77,7 +77,7 @@ void bind_steps(nb::module_& core) {
     fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
         "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
         "time", &P::time)("velocity_before", &P::velocity_before)("velocity_after", &P::velocity_after)(
-        "impulse", &P::impulse)("work", &P::work)("mode", &P::mode)("impact", &P::impact)(
+        "impulse", &P::impulse)("work", &P::work)("mode", &P::mode)("impact", &P::impact)("worst", &P::worst)(
         "outcome", &P::outcome)("residual", &P::residual)("solver", &P::solver)(
         "energy_gain", &P::energy_gain)("contact_work", &P::contact_work)(
         "restitution_factor", &P::restitution_factor)("cut_sequence", &P::cut_sequence)("rolling_moment",
