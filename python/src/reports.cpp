@@ -106,21 +106,25 @@ void bind_steps(nb::module_& core) {
 
 void bind_statistics(nb::module_& core) {
   const std::vector<std::string> keys{"Statistics", "StepStatistics", "ContactCounts"};
-  bind_record<Statistics>(core, "Statistics", keys, false, [](auto& fields) {
-    using P = Statistics;
-    fields("steps", &P::steps)("sweeps", &P::sweeps)("most_sweeps", &P::most_sweeps)(
-        "largest_contraction", &P::largest_contraction)("steps_by_iteration", &P::steps_by_iteration)(
-        "fallbacks", &P::fallbacks)("rejected_steps", &P::rejected_steps)(
-        "steps_across_impacts", &P::steps_across_impacts)("impacts", &P::impacts)(
-        "contact_steps", &P::contact_steps)("several_solutions", &P::several_solutions)(
-        "forces_not_unique", &P::forces_not_unique)("energy_gains", &P::energy_gains)(
-        "energy_gained", &P::energy_gained)("lasting_gains", &P::lasting_gains)(
-        "lasting_gained", &P::lasting_gained)("cut_sequences", &P::cut_sequences)(
-        "scaled_impacts", &P::scaled_impacts)("plastic_jams", &P::plastic_jams)(
-        "deepest_gap", &P::deepest_gap)("worst_residual", &P::worst_residual)(
-        "certified_steps", &P::certified_steps)("events", &P::events)("flow_steps", &P::flow_steps)(
-        "flow_evaluations", &P::flow_evaluations)("flow_restarts", &P::flow_restarts);
-  });
+  bind_record<Statistics>(
+      core, "Statistics", keys, false,
+      [](auto& fields) {
+        using P = Statistics;
+        fields("steps", &P::steps)("sweeps", &P::sweeps)("most_sweeps", &P::most_sweeps)(
+            "largest_contraction", &P::largest_contraction)("steps_by_iteration", &P::steps_by_iteration)(
+            "fallbacks", &P::fallbacks)("rejected_steps", &P::rejected_steps)(
+            "steps_across_impacts", &P::steps_across_impacts)("impacts", &P::impacts)(
+            "contact_steps", &P::contact_steps)("several_solutions", &P::several_solutions)(
+            "forces_not_unique", &P::forces_not_unique)("energy_gains", &P::energy_gains)(
+            "energy_gained", &P::energy_gained)("lasting_gains", &P::lasting_gains)(
+            "lasting_gained", &P::lasting_gained)("cut_sequences", &P::cut_sequences)(
+            "scaled_impacts", &P::scaled_impacts)("plastic_jams", &P::plastic_jams)(
+            "deepest_gap", &P::deepest_gap)("worst_residual", &P::worst_residual)(
+            "certified_steps", &P::certified_steps)("events", &P::events)("flow_steps", &P::flow_steps)(
+            "flow_evaluations", &P::flow_evaluations)("flow_restarts", &P::flow_restarts);
+      })
+      .def("certified_share", &Statistics::certified_share, nb::arg("residual"),
+           doc("ContactCounts.certified_share"));
   bind_record<ChainStatistics>(core, "ChainStatistics", {"ChainStatistics"}, false, [](auto& fields) {
     using P = ChainStatistics;
     fields("problems", &P::problems)("accepted", &P::accepted)("tried", &P::tried)(

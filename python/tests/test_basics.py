@@ -244,3 +244,24 @@ def test_example_runs():
     example = pathlib.Path(__file__).parents[1] / "examples" / "bouncing_ball.py"
     simulation = runpy.run_path(str(example))["run"]()
     assert simulation.event_count() == 23
+
+
+@pytest.mark.parametrize("mode", [TimeStepping(step=1e-3), EventDriven()])
+def test_forces_of_a_brick_at_rest_carry_its_weight(mode):
+    system = System()
+    system.add(planar.Gravity((0.0, -9.81)))
+    brick = system.add(RigidBody(mass=planar.box(2.0, 0.4, 0.2), position=(0.0, 0.1)), name="brick")
+    corners = [(-0.2, -0.1), (0.2, -0.1), (0.2, 0.1), (-0.2, 0.1)]
+    system.add(planar.Polygon(body=brick, vertices=corners))
+    ground_id = system.add(planar.HalfPlane(normal=(0.0, 1.0)), Surface(friction=0.5, normal_restitution=0.0), name="floor")
+    simulation = Simulation(system, mode)
+    simulation.run_until(0.1)
+    forces = simulation.contact_forces()
+    assert len(forces) == 2 and all(one.force[0] > 0.0 for one in forces)
+    for one in forces:
+        assert simulation.name(one.key).endswith("on half-plane 'floor'")
+    # A weight of 19.62 N, to the rounding of the solution.
+    assert carom.force_on(forces, brick).mean_force == pytest.approx((0.0, 19.62), abs=1e-9)
+    assert carom.force_on(forces, ground_id).mean_force == pytest.approx((0.0, -19.62), abs=1e-9)
+    assert simulation.statistics().certified_share(1e-10) == 1.0
+    assert len(simulation.statistics().certified_steps) > 2
