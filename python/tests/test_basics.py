@@ -253,7 +253,8 @@ def test_forces_of_a_brick_at_rest_carry_its_weight(mode):
     brick = system.add(RigidBody(mass=planar.box(2.0, 0.4, 0.2), position=(0.0, 0.1)), name="brick")
     corners = [(-0.2, -0.1), (0.2, -0.1), (0.2, 0.1), (-0.2, 0.1)]
     system.add(planar.Polygon(body=brick, vertices=corners))
-    ground_id = system.add(planar.HalfPlane(normal=(0.0, 1.0)), Surface(friction=0.5, normal_restitution=0.0), name="floor")
+    rough = Surface(friction=0.5, normal_restitution=0.0)
+    ground_id = system.add(planar.HalfPlane(normal=(0.0, 1.0)), rough, name="floor")
     simulation = Simulation(system, mode)
     simulation.run_until(0.1)
     forces = simulation.contact_forces()
