@@ -100,7 +100,7 @@ void LargestMargin::polish_inverse() {
   }
 }
 
-/// The line that is farthest below the margin, or the first one that is. `no_line` if there is no_line.
+/// The line that is farthest below the margin, or the first one that is. `no_line` if there is none.
 std::size_t LargestMargin::lowest(bool first) const {
   std::size_t found = no_line;
   double least = margin_ - rounding_;

@@ -65,8 +65,8 @@ void JumpSearch::show_end(const At& at, StepTrial& trial) {
   for (const LocatedMotion* motion : at.motions) motion->show_end(at.in, motion->phases().back(), trial);
 }
 
-/// One instant after the other is taken back, the last first: exact for laws
-/// that are not linear too. \param loads at the end
+/// One instant after the other is taken back, the last first: exact for laws that are not linear too.
+/// \param loads at the end
 void JumpSearch::evaluate(const At& at, const std::vector<double>& loads, StepTrial& trial) {
   constexpr std::size_t most_instants = 4;  // beyond which they are added up
   instants_.clear();
