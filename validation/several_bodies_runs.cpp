@@ -37,6 +37,19 @@ std::vector<double> behind_cradle(std::size_t discs, double restitution, const M
   return velocities;
 }
 
+constexpr std::size_t drawn_discs = 5;
+
+/// Velocities behind a cradle by the number of the disc.
+Curve cradle_curve(ImpactOrder order, double restitution, const std::vector<double>& found,
+                   const Json& expected) {
+  Curve curve{.name = "cradle_" + std::string(to_string(order)) + "_e" + short_text(restitution),
+              .columns = {"mass", "velocity [m/s]", "reference [m/s]"},
+              .rows = {}};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    curve.rows.push_back({static_cast<double>(i + 1), found[i], expected.at(i).get<double>()});
+  return curve;
+}
+
 void add_cradles(Page& page, Mode mode, ImpactOrder order) {
   std::visit([order](auto& options) { options.impact_rules.order = order; }, mode);
   const bool sequential = order == ImpactOrder::sequential;
@@ -47,6 +60,8 @@ void add_cradles(Page& page, Mode mode, ImpactOrder order) {
         sequential ? at.at("sequential_velocities") : at.at("simultaneous_velocities").at(0);
     const std::vector<double> found = behind_cradle(at.at("N").get<std::size_t>(), of(at, "e"), mode);
     for (std::size_t i = 0; i < found.size(); ++i) velocities(found[i], expected.at(i).get<double>());
+    if (found.size() == drawn_discs && std::holds_alternative<EventDriven>(mode))
+      page.curves.push_back(cradle_curve(order, of(at, "e"), found, expected));
   }
   const char* const law = sequential ? "one contact after the other" : "all contacts at once";
   page.rows.push_back(row(mode, std::string("velocities behind Newton's cradle, ") + law + " [m/s]",
