@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 from plot_johansson import (
     figure3_tables, figure4_tables, figure5_horak, figure6_motion, figure7_energy_bar, figure8_energy_pair, meaning,
 )
+from plot_several_bodies import cradles, stacks
 from plotting import columns_of
 
 plt.rcParams.update({"figure.dpi": 110, "font.size": 9, "axes.grid": False, "legend.frameon": False})
@@ -229,19 +230,6 @@ def random_contacts(data):
     return figure
 
 
-def stacks(data):
-    figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
-    for name, color, label in (("discs", BLUE, "disc on disc"), ("blocks", ORANGE, "each corner of a block")):
-        run = columns_of(data / f"stack_{name}.csv")
-        axes.plot([level + 1 for level in run["level"]], run["force"], "o", color=color, markerfacecolor="none", label=f"{label}, solver")
-        axes.plot([level + 1 for level in run["level"]], run["reference"], "x", color="black", markersize=4,
-                  label="statics" if name == "blocks" else None)
-    axes.set(xlabel="number of the contact, from the floor upwards", ylabel="normal force [N]", ylim=(0, None))
-    axes.set_xticks(range(1, 11))
-    axes.legend()
-    return figure
-
-
 def lcp_cases(data):
     run = columns_of(data / "lcp_cases.csv")
     # In the order of LcpStatus.
@@ -318,8 +306,8 @@ def convergence(data):
 PICTURES = (
     figure3_tables, figure4_tables, figure5_horak, figure6_motion, figure7_energy_bar, figure8_energy_pair,
     energy_gain, foerster, kharaz, incline_variants, bouncing_ball, rolling, coulomb_oscillator, ladder,
-    rocking_block, impact_oscillator, vibrating_table, painleve, three_solutions, random_contacts, stacks,
-    lcp_cases, mechanisms, spring_pendulum, convergence,
+    rocking_block, impact_oscillator, vibrating_table, painleve, three_solutions, random_contacts, cradles,
+    stacks, lcp_cases, mechanisms, spring_pendulum, convergence,
 )
 
 
