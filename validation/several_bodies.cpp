@@ -145,10 +145,8 @@ Page several_bodies() {
       "edge of the other block. How the two share the force is not unique: the rows of simulations compare "
       "their sum.\n\n"
       "Bodies at rest are run with the options as they come: the columns of options are empty. With "
-      "`impacts = located` high stacks of blocks (six and more were tried) do not keep these digits: "
-      "contacts "
-      "that rounding opens are missing for a part of a step, and a stack may rock by up to 1e-4 rad, with "
-      "corners that carry no force meanwhile.";
+      "`impacts = located` high stacks of blocks do not keep these digits: contacts that rounding opens are "
+      "missing for a part of a step.";
   return page;
 }
 

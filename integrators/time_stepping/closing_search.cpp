@@ -1,9 +1,11 @@
 // Problem: which contact closes first in a step that did not know of it.
 
+#include <carom/contact/detection/body_outlines.h>
 #include <carom/integrators/time_stepping/closing_search.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
@@ -36,15 +38,41 @@ bool ClosingSearch::may_close(const Constraint& contact, Modes acted) const {
   return known == closed_.end() || (known->fast < most_impacts_ && known->slow < most_impacts_);
 }
 
-/// True if a contact was open at the start: if it is not listed then, as other contacts of its parts, for the
-/// nearest features of two outlines change.
-bool ClosingSearch::was_open(const Constraint& contact) const {
+/// True if a contact was open at the start. One that is not listed then may have been closed as another one
+/// of its parts, for the nearest features of two outlines change: if one of these was, its vertex says it.
+bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
   const auto is_it = [&](const Constraint& other) { return other.key == contact.key; };
   const auto known = std::find_if(at_start_.begin(), at_start_.end(), is_it);
   if (known != at_start_.end()) return known->gap >= -rounding;
-  return std::none_of(at_start_.begin(), at_start_.end(), [&](const Constraint& other) {
+  const bool is_alone = std::none_of(at_start_.begin(), at_start_.end(), [&](const Constraint& other) {
     return have_same_parts(other.key, contact.key) && other.gap < -rounding;
   });
+  return is_alone || gap_of_vertex(contact, start) >= -rounding;
+}
+
+/// Gap of the vertex of a contact of two bodies at the start, to all of the other outline; of other contacts
+/// minus infinity [m].
+double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
+  const BodyOutlines& outlines = detector_->bodies().outlines();
+  const bool of_bodies = contact.type == ConstraintType::contact && contact.bodies == 2 && !outlines.empty();
+  Index one = of_bodies ? outlines.find(contact.key.a) : none;
+  Index other = of_bodies ? outlines.find(contact.key.b) : none;
+  if (one == none || other == none) return -std::numeric_limits<double>::infinity();
+  FeatureKey vertex = contact.key.a;
+  if (vertex == outlines.list()[one].surface()) {
+    vertex = contact.key.b;
+    std::swap(one, other);
+  }
+  const BodyOutline& of_vertex = outlines.list()[one];
+  const Index feature = of_vertex.vertices.begin + (vertex.feature - of_vertex.key.feature);
+  Constraint at;
+  detector_->contact({.body = of_vertex.body,
+                      .feature = feature,
+                      .material = of_vertex.material,
+                      .other = outlines.list()[other].body,
+                      .outline = other},
+                     start.view(), evaluation_, places_, at);
+  return at.gap;
 }
 
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
@@ -64,7 +92,7 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
   }
   find(start, reach, at_start_);
   for (const Constraint& contact : at_end_) {
-    if (!(contact.gap < first.gap) || !was_open(contact)) continue;
+    if (!(contact.gap < first.gap) || !was_open(contact, start)) continue;
     first = {contact.gap, contact.normal_velocity(v), contact.key};
   }
   near_ = std::max(near_, 2.0 * std::abs(std::min(first.gap, 0.0)));

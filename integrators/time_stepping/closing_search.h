@@ -62,7 +62,8 @@ private:
     int fast = 0, slow = 0;
   };
   [[nodiscard]] bool may_close(const Constraint& contact, Modes acted) const;
-  [[nodiscard]] bool was_open(const Constraint& contact) const;
+  [[nodiscard]] bool was_open(const Constraint& contact, const State& start);
+  [[nodiscard]] double gap_of_vertex(const Constraint& contact, const State& start);
   void find(const State& state, double margin, std::vector<Constraint>& out);
 
   const Assembly* assembly_;
