@@ -95,7 +95,7 @@ TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
 }
 
 struct EventFindings {
-  int jammed = 0;           // scenes that end where contacts have no answer, which names them
+  int jammed = 0;           // scenes that end where moving ground presses a body, which names the contacts
   int missed = 0;           // and where a closing was missed, on ground that moves
   std::int64_t looked = 0;  // outputs with contacts that last
 };
@@ -122,7 +122,8 @@ EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count) {
       const std::string text = error.what();
       const bool missed = text.find("was missed") != std::string::npos;
       EXPECT_FALSE(error.failure().parts.empty()) << text;
-      EXPECT_TRUE(!missed || scene.moves()) << text;
+      // Over ground at rest a jam has an answer.
+      EXPECT_TRUE(scene.moves()) << text;
       ++(missed ? findings.missed : findings.jammed);
     }
     // Tolerances of 1e-9 of some 1,000 steps.
@@ -133,12 +134,31 @@ EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count) {
 
 void expect_sound(const EventFindings& findings, std::uint64_t count) {
   EXPECT_GE(findings.looked, static_cast<std::int64_t>(count));  // else nothing was tried
-  EXPECT_LE(findings.jammed, 1 + static_cast<int>(count / 100));
+  EXPECT_LE(findings.jammed, 1 + static_cast<int>(count / 500));
   EXPECT_LE(findings.missed, 1 + static_cast<int>(count / 1000));
 }
 
 TEST(MixedScenes, AccountsCloseAndContactsPushFromEventToEvent) {
   expect_sound(run_scenes_by_events(0, 60), 60);
+}
+
+TEST(MixedScenes, JamsAreSolvedWithoutRestitutionFromEventToEvent) {
+  // Each of them has impacts that no impulses solve by the law: e differ, of contacts or along n and t.
+  for (const std::uint64_t number : {414, 673, 1254, 1986, 2002, 2158, 3371, 3471, 3515, 3770, 3895}) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    const MixedScene scene(number);
+    Simulation simulation(scene.system(), EventDriven{});
+    EXPECT_NO_THROW(simulation.run_until(1.0));
+    EXPECT_GT(simulation.statistics().plastic_jams, 0);
+    for (const EventRecord& event : simulation.events()) {
+      if (event.restitution_factor != 0.0) continue;
+      EXPECT_EQ(event.kind, EventKind::impact);
+      EXPECT_EQ(event.energy_gain, 0.0);
+      // But for rounding of sums; ground that moves does work.
+      if (!scene.moves()) EXPECT_LE(event.energy_after, event.energy_before * (1.0 + 1e-12));
+    }
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-7 * std::max(1.0, simulation.energy().scale()));
+  }
 }
 
 TEST(MixedScenesLong, AccountsCloseAndContactsPushFromEventToEvent) {
