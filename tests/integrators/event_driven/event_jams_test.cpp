@@ -2,12 +2,14 @@
 // they are solved with e = 0, or refused by name.
 
 #include "tests/energy/ledger_check.h"
+#include "tests/integrators/mixed_scenes.h"
 #include "tests/integrators/throws.h"
 
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -70,6 +72,15 @@ TEST(EventJams, TheLogSaysSo) {
   simulation.log() = Log([&](LogLevel, std::string_view line) { text.append(line).append("\n"); });
   simulation.run_until(1.0);
   EXPECT_NE(text.find("jams with others; their impact was solved with e = 0"), std::string::npos) << text;
+}
+
+TEST(EventJams, OfWhatHardlySlidesHasAnImpactWithoutCollision) {
+  // A polygon comes to rest between two pegs; one contact still slides by 1e-10 m/s. What normal velocities
+  // are left, 1e-13 m/s, decide whether impulses exist that stop it.
+  Simulation simulation(carom_test::MixedScene(2267).system(), EventDriven{});
+  simulation.run_until(1.0);
+  EXPECT_GE(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 2);
+  EXPECT_NEAR(simulation.state().velocity(simulation.system().bodies().front()).norm(), 0.0, 1e-9);
 }
 
 }  // namespace
