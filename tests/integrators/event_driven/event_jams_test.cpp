@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -81,6 +82,21 @@ TEST(EventJams, OfWhatHardlySlidesHasAnImpactWithoutCollision) {
   simulation.run_until(1.0);
   EXPECT_GE(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 2);
   EXPECT_NEAR(simulation.state().velocity(simulation.system().bodies().front()).norm(), 0.0, 1e-9);
+}
+
+TEST(EventForces, AreSearchedUpToTheEndOfSlidingOnly) {
+  // Steps reach far behind the time at which a body stops; there, sliding on against friction as it is now,
+  // its forces come back.
+  for (const std::uint64_t number : {1249u, 6929u, 9750u}) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    Simulation simulation(carom_test::MixedScene(number).system(), EventDriven{});
+    simulation.observe([](const Simulation& now) {
+      for (const LastingContact& contact : now.contact_forces()) {
+        EXPECT_GE(contact.force[0], -1e-6) << now.name(contact.key) << ", t = " << now.time();
+      }
+    });
+    simulation.run_until(1.0);
+  }
 }
 
 }  // namespace
