@@ -70,6 +70,8 @@ void write_event_news(Log& log, std::span<const EventRecord> events, const Detec
     } else if (event.kind == EventKind::several_accelerations) {
       write(LogLevel::warning, "several accelerations are possible (" + state_of() + "); it is " +
                                    std::string(to_string(event.mode)) + " now");
+    } else if (event.kind == EventKind::impact && event.restitution_factor == 0.0) {
+      write(LogLevel::warning, "it jams with others; their impact was solved with e = 0");
     } else if (event.kind == EventKind::accumulation) {
       write(LogLevel::info, "closed, impacts slower than the capture speed");
     }

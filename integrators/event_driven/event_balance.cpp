@@ -154,7 +154,8 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
     event.accumulation_time = impact.accumulation_time;
   }
   if (impact.note.cut_sequence) ++tally.cut_sequences;
-  if (impact.note.restitution_factor < 1.0) ++tally.scaled_impacts;
+  if (impact.note.restitution_factor < problem.restitution_factor()) ++tally.scaled_impacts;
+  if (problem.restitution_factor() == 0.0) ++tally.plastic_jams;
   if (!work.is_gain()) return 0.0;
   for (std::size_t i = first; i < fresh.size(); ++i) fresh[i].energy_gain = work.gain;
   energy_gain += work.gain;

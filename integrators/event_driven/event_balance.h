@@ -51,6 +51,7 @@ struct EventTally {
   std::int64_t forces_not_unique = 0;
   std::int64_t cut_sequences = 0;
   std::int64_t scaled_impacts = 0;
+  std::int64_t plastic_jams = 0;  ///< contact problems solved with e = 0, since they had no answer
   double worst_residual = 0.0;
 };
 

@@ -185,16 +185,22 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
          end.value >= step.ends.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
 }
 
-/// Gaps are predicted to rounding, other guards to a part of a step: an event that is located later than it
-/// was predicted may lie behind the closing of a gap.
+/// Gaps that move are predicted to rounding, other guards to a part of a step, and so are gaps that hardly
+/// move, as of a contact that opens beside one that stays closed: an event that is located later than it was
+/// predicted may lie behind the closing of another gap.
 Event EventDetector::first_of(SearchedStep& step, const Event& predicted, const Event& located) {
   constexpr double as_predicted = 1e-9;  // of the step
   const double length = step.end() - step.begin();
-  if (predicted.guard == Guard::gap || located.time - predicted.time <= as_predicted * length) return located;
-  const Event gap = predict_gap(step, memory_->passed_over, located);
-  if (gap.guard != Guard::gap) return located;
-  const Event closing = locate_event(step, gap, landing_);
-  return closing.guard == Guard::gap && closing.time < located.time ? closing : located;
+  if (located.time - predicted.time <= as_predicted * length) return located;
+  std::vector<double>& from = memory_->passed_over.gaps;  // of no use behind the first event
+  Event first = located, known = predicted;
+  for (;;) {
+    if (known.guard == Guard::gap) from[known.which] = step.end();
+    known = predict_gap(step, memory_->passed_over, first);
+    if (!(known.time < first.time)) return first;
+    const Event closing = locate_event(step, known, landing_);
+    if (closing.guard == Guard::gap && closing.time < first.time) first = closing;
+  }
 }
 
 void EventDetector::accept() { guards_.update(start_.sample.guards, scales_.guard_noise); }

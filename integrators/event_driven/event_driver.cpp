@@ -221,6 +221,7 @@ void EventDriver::count(Companion& companion) {
   statistics.impacts += balance_.tally.impacts;
   statistics.cut_sequences += balance_.tally.cut_sequences;
   statistics.scaled_impacts += balance_.tally.scaled_impacts;
+  statistics.plastic_jams += balance_.tally.plastic_jams;
   statistics.several_solutions += balance_.tally.several_solutions;
   statistics.forces_not_unique += balance_.tally.forces_not_unique;
   statistics.worst_residual = std::max(statistics.worst_residual, balance_.tally.worst_residual);

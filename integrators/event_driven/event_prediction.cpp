@@ -48,15 +48,15 @@ private:
   SearchedStep* step_;
 };
 
-/// A guard with one number, or a number and its rate, in a sample. Behind a gap that closes, or the end of a
-/// feature, forces are not looked at: the motion goes on there as it does not, and they may pass a pole
-/// (contacts that meet at the end of an edge), which a polynomial over the whole step would not show.
+/// A guard with one number, or a number and its rate, in a sample. Behind a gap that closes, the end of a
+/// feature or of sliding, forces are not looked at: the motion goes on there as it does not, and they may
+/// pass a pole (contacts that meet at the end of an edge) or come back, which a polynomial over the whole
+/// step would not show.
 template <class F>
 void search(SearchedStep& step, GuardSampler& sampler, const FallRule& rule, const F& read, Event candidate,
             Event& found) {
   QuantityOf quantity([&](double time) { return read(step.memory.samples.at(time, sampler)); });
-  const bool is_place = found.guard == Guard::gap || found.guard == Guard::feature;
-  const bool cut = rule.derivatives == 0 && is_place && found.time < step.end();
+  const bool cut = rule.derivatives == 0 && until(found) < step.end();
   candidate.time =
       FallSearch(quantity, rule, until(found))
           .first(read(step.ends.start().sample),

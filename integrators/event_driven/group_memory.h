@@ -26,6 +26,7 @@ struct CAROM_API GroupMemory {
       : motion(assembly),
         flows(options.method, options.relative_tolerance),
         instant(assembly),
+        impacts(options.impact_rules),
         detection(instant.now),
         work(assembly.components().size()) {
     motion.limit = EvaluationLimit(options.evaluation_limit, stop);

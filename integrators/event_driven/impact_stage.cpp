@@ -94,6 +94,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
     memory_->note.restitution_factor = limit_gain(problem, touching, again);
     if (!problem.report().usable()) fail_unsolved(problem, at);
   }
+  memory_->note.restitution_factor *= problem.restitution_factor();
   const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
   if (closes_slow) close_captured(at);
@@ -156,6 +157,9 @@ void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant
   std::string what = "the contact problem of an impact is not solved (" +
                      std::string(to_string(problem.report().outcome)) + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
+  if (options_->impact_rules.refuse_jams && touching.size() > 1) {
+    what += " (impact_rules.refuse_jams is set; use one e for surfaces between which a body jams)";
+  }
   failure_->fail(what, failure_->names(touching), &problem);
 }
 

@@ -15,6 +15,7 @@
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/event_driven/impact_settling.h>
 #include <carom/integrators/run/impact_note.h>
+#include <carom/integrators/run/impact_rules.h>
 
 #include <cstdint>
 #include <span>
@@ -29,16 +30,21 @@ struct ImpactCounts {
   int closings = 0;  ///< and of those that were slow: projections that closed contacts
 };
 
-/// Ways of solving an impact of many contacts by Newton's law: by sweeps, whose modes are solved exactly.
-inline constexpr IslandOptions many_contacts{.factored_from = factored_constraints,
-                                             .factored_to = most_exact_contacts};
+/// Ways of solving an impact by Newton's law. Of many contacts: by sweeps, whose modes are solved exactly.
+[[nodiscard]] constexpr IslandOptions options_of_impacts(const ImpactRules& rules) {
+  return {.factored_from = factored_constraints,
+          .factored_to = most_exact_contacts,
+          .plastic_jams = !rules.refuse_jams};
+}
 
 /// Memory of impacts, shared by clock groups.
 struct ImpactMemory {
-  IslandProblem problem{many_contacts};  ///< by Newton's law,
-  IslandProblem of_other_law;            ///< and by others
-  std::vector<Constraint> touching;      ///< constraints of the problem,
-  std::vector<Index> places;             ///< and their pairs, as long as all of these are in it
+  explicit ImpactMemory(const ImpactRules& rules) : problem(options_of_impacts(rules)) {}
+
+  IslandProblem problem;             ///< by Newton's law,
+  IslandProblem of_other_law;        ///< and by others
+  std::vector<Constraint> touching;  ///< constraints of the problem,
+  std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
   std::vector<double> before_closing;  ///< state
   std::vector<ImpactCounts> counts;    ///< by island

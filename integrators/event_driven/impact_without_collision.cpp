@@ -29,8 +29,11 @@ bool share_restitution(std::vector<Constraint>& contacts) {
 
 void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, ImpactStage& impacts,
                                      const GroupFailure& failure, SolverChain& chain, EventInstant& at) {
-  list_touching(candidates, at);
-  if (!find_listed(chain, at) && !find_limit(candidates, chain, at)) {
+  const auto find = [&](NormalSpeed speed) {
+    list_touching(candidates, speed, at);
+    return find_listed(chain, at) || find_limit(candidates, chain, at);
+  };
+  if (!find(NormalSpeed::removed) && !find(NormalSpeed::kept)) {
     failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
                  &problem_);
   }
@@ -63,7 +66,8 @@ bool ImpactWithoutCollision::find_listed(SolverChain& chain, EventInstant& at) {
   return true;
 }
 
-void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates, const EventInstant& at) {
+void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates, NormalSpeed speed,
+                                           const EventInstant& at) {
   touching_.clear();
   taking_part_.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -71,7 +75,7 @@ void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates
     if (candidates[i].at.has_dry_friction() && !candidates[i].rolls()) continue;
     taking_part_.push_back(i);
     Constraint& contact = touching_.emplace_back(candidates[i].at);
-    // At no speed: the rest is rounding, which the certificate of P = 0 would refuse.
+    if (speed == NormalSpeed::kept) continue;
     const double rounding = contact.normal_velocity(at.velocities());
     contact.surface_velocity[0] += rounding;
     contact.surface_velocity_after[0] += rounding;

@@ -15,6 +15,7 @@
 #include <carom/integrators/event_driven/mode_decision.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,11 @@ public:
                SolverChain& chain, EventInstant& at);
 
 private:
-  void list_touching(std::span<const Candidate> candidates, const EventInstant& at);
+  // The normal velocities of what touches are rounding, which the certificate of P = 0 would refuse: they
+  // are removed. But where sliding is almost as slow, they are what makes the velocities those of bodies: of
+  // contacts that jam, H^T P = 0, an answer without restitution needs P.gamma = 0.
+  enum class NormalSpeed : std::uint8_t { removed, kept };
+  void list_touching(std::span<const Candidate> candidates, NormalSpeed speed, const EventInstant& at);
   [[nodiscard]] bool find_listed(SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool solve(SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool find_limit(std::span<const Candidate> candidates, SolverChain& chain, EventInstant& at);

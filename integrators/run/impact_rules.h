@@ -30,8 +30,9 @@ struct ImpactRules {
   int sequence_limit = 1000;
   EnergyGain energy_gain = EnergyGain::report;  ///< of an impact that would add energy
   /// Refuse, with a SolverError that names them, contacts that jam a body and have no answer by the law of
-  /// impact (docs/contact_law.md). Else time stepping solves their island with e = 0 in that step, which
-  /// ImpactNote::restitution_factor says; the event-driven mode refuses them in any case.
+  /// impact (docs/contact_law.md).
+  /// Else their island is solved with e = 0, in that step of time stepping or in that impact of the
+  /// event-driven mode, which ImpactNote::restitution_factor says.
   bool refuse_jams = false;
 };
 

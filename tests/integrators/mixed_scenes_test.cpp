@@ -95,8 +95,7 @@ TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
 }
 
 struct EventFindings {
-  int jammed = 0;           // scenes that end where contacts have no answer, which names them
-  int missed = 0;           // and where a closing was missed, on ground that moves
+  int pressed = 0;          // scenes that end where moving ground presses a body, which names the contacts
   std::int64_t looked = 0;  // outputs with contacts that last
 };
 
@@ -120,10 +119,12 @@ EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count) {
       simulation.run_until(1.0);
     } catch (const SolverError& error) {
       const std::string text = error.what();
-      const bool missed = text.find("was missed") != std::string::npos;
       EXPECT_FALSE(error.failure().parts.empty()) << text;
-      EXPECT_TRUE(!missed || scene.moves()) << text;
-      ++(missed ? findings.missed : findings.jammed);
+      // Over ground at rest a jam has an answer. Of 10,000 scenes in one friction grows without bound.
+      EXPECT_TRUE(scene.moves() && (text.find("approaches at") != std::string::npos ||
+                                    text.find("grow without bound (Painleve)") != std::string::npos))
+          << text;
+      ++findings.pressed;
     }
     // Tolerances of 1e-9 of some 1,000 steps.
     EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-7 * std::max(1.0, simulation.energy().scale()));
@@ -133,20 +134,48 @@ EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count) {
 
 void expect_sound(const EventFindings& findings, std::uint64_t count) {
   EXPECT_GE(findings.looked, static_cast<std::int64_t>(count));  // else nothing was tried
-  EXPECT_LE(findings.jammed, 1 + static_cast<int>(count / 100));
-  EXPECT_LE(findings.missed, 1 + static_cast<int>(count / 1000));
+  EXPECT_LE(findings.pressed, 1 + static_cast<int>(count / 500));
 }
 
 TEST(MixedScenes, AccountsCloseAndContactsPushFromEventToEvent) {
   expect_sound(run_scenes_by_events(0, 60), 60);
 }
 
+TEST(MixedScenes, AGapThatHardlyMovesHidesNoClosing) {
+  // A corner stays within 1e-12 m of where another one is closed, and is found touching at once in every
+  // step; at last it closes a quarter of a step later than predicted, and behind the closing of another gap.
+  for (const std::uint64_t number : {2u, 2754u}) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    Simulation simulation(MixedScene(number).system(), EventDriven{.interval = 1e-4});
+    EXPECT_NO_THROW(simulation.run_until(1.0));
+  }
+}
+
+TEST(MixedScenes, JamsAreSolvedWithoutRestitutionFromEventToEvent) {
+  // Each of them has impacts that no impulses solve by the law: e differ, of contacts or along n and t.
+  for (const std::uint64_t number :
+       {414u, 673u, 1254u, 1986u, 2002u, 2158u, 3371u, 3471u, 3515u, 3770u, 3895u}) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    const MixedScene scene(number);
+    Simulation simulation(scene.system(), EventDriven{});
+    EXPECT_NO_THROW(simulation.run_until(1.0));
+    EXPECT_GT(simulation.statistics().plastic_jams, 0);
+    for (const EventRecord& event : simulation.events()) {
+      if (event.restitution_factor != 0.0) continue;
+      EXPECT_EQ(event.kind, EventKind::impact);
+      EXPECT_EQ(event.energy_gain, 0.0);
+      // But for rounding of sums; ground that moves does work.
+      EXPECT_TRUE(scene.moves() || event.energy_after <= event.energy_before * (1.0 + 1e-12));
+    }
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-7 * std::max(1.0, simulation.energy().scale()));
+  }
+}
+
 TEST(MixedScenesLong, AccountsCloseAndContactsPushFromEventToEvent) {
   const std::uint64_t count = carom_test::all_seeds() ? 10000 : 300;
   const EventFindings findings = run_scenes_by_events(0, count);
   expect_sound(findings, count);
-  RecordProperty("jammed", std::to_string(findings.jammed));
-  RecordProperty("missed", std::to_string(findings.missed));
+  RecordProperty("pressed", std::to_string(findings.pressed));
 }
 
 /// Whether impacts of one body follow each other within `apart` [s]: steps longer than that take them for

@@ -1,0 +1,102 @@
+// Impacts that have no answer by the law, since contacts that jam a body have unequal e: from event to event
+// they are solved with e = 0, or refused by name.
+
+#include "tests/energy/ledger_check.h"
+#include "tests/integrators/mixed_scenes.h"
+#include "tests/integrators/throws.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+using carom_test::ledger_closes;
+
+constexpr double mass = 2.0, speed = 1.0;  // [kg], [m/s]
+
+/// A disc that fills the room between two planes and moves towards one of them. Newton's law asks for
+/// v <= -0.9 of the upper plane and v >= -0.2 of the lower one.
+System squeezed(double lower, double upper) {
+  constexpr double radius = 0.25;
+  System system;
+  system.add(HalfPlane{.point = {0.0, -radius}, .normal = {0.0, 1.0}},
+             Surface{.friction = 0.0, .normal_restitution = lower}, "low");
+  system.add(HalfPlane{.point = {0.0, radius}, .normal = {0.0, -1.0}},
+             Surface{.friction = 0.0, .normal_restitution = upper}, "high");
+  const BodyId body = system.add(RigidBody{.mass = disc(mass, radius), .velocity = {3.0, speed}}, "disc");
+  system.add(Disc{.body = body, .radius = radius}, "disc");
+  return system;
+}
+
+TEST(EventJams, AnImpactWithoutAnAnswerIsSolvedWithoutRestitution) {
+  Simulation simulation(squeezed(0.2, 0.9), EventDriven{});
+  simulation.run_until(1.0);
+  const BodyId disc = simulation.system().body("disc");
+  EXPECT_NEAR(simulation.state().velocity(disc)[1], 0.0, 1e-15);
+  EXPECT_NEAR(simulation.state().position(disc)[0], 3.0, 1e-13);  // it slides on, without friction
+  EXPECT_EQ(simulation.statistics().plastic_jams, 1);
+  EXPECT_EQ(simulation.statistics().scaled_impacts, 0);
+  EXPECT_NEAR(simulation.energy().flow(EnergyFlow::impact_normal), 0.5 * mass * speed * speed, 1e-14);
+  EXPECT_TRUE(ledger_closes(simulation.energy()));
+  int noted = 0;
+  for (const EventRecord& event : simulation.events()) noted += event.restitution_factor == 0.0 ? 1 : 0;
+  EXPECT_EQ(noted, 2);
+}
+
+TEST(EventJams, EqualRestitutionIsKept) {
+  // Here v^+ = -e v^- is an answer for both, to and fro until that is slower than the capture speed.
+  Simulation simulation(squeezed(0.5, 0.5), EventDriven{});
+  simulation.run_until(1.0);
+  EXPECT_EQ(simulation.statistics().plastic_jams, 0);
+  EXPECT_GT(simulation.statistics().impacts, 10);
+  EXPECT_NEAR(simulation.state().velocity(simulation.system().body("disc"))[1], 0.0, 1e-12);
+}
+
+TEST(EventJams, AreRefusedByNameIfAskedFor) {
+  Simulation simulation(squeezed(0.2, 0.9), EventDriven{.impact_rules = {.refuse_jams = true}});
+  EXPECT_THROWS(SolverError, simulation.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'",
+                "half-plane 'high' approaches at 1 m/s");
+  EXPECT_EQ(simulation.statistics().plastic_jams, 0);
+}
+
+TEST(EventJams, TheLogSaysSo) {
+  std::string text;
+  Simulation simulation(squeezed(0.2, 0.9), EventDriven{});
+  simulation.log() = Log([&](LogLevel, std::string_view line) { text.append(line).append("\n"); });
+  simulation.run_until(1.0);
+  EXPECT_NE(text.find("jams with others; their impact was solved with e = 0"), std::string::npos) << text;
+}
+
+TEST(EventJams, OfWhatHardlySlidesHasAnImpactWithoutCollision) {
+  // A polygon comes to rest between two pegs; one contact still slides by 1e-10 m/s. What normal velocities
+  // are left, 1e-13 m/s, decide whether impulses exist that stop it.
+  Simulation simulation(carom_test::MixedScene(2267).system(), EventDriven{});
+  simulation.run_until(1.0);
+  EXPECT_GE(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 2);
+  EXPECT_NEAR(simulation.state().velocity(simulation.system().bodies().front()).norm(), 0.0, 1e-9);
+}
+
+TEST(EventForces, AreSearchedUpToTheEndOfSlidingOnly) {
+  // Steps reach far behind the time at which a body stops; there, sliding on against friction as it is now,
+  // its forces come back.
+  for (const std::uint64_t number : {1249u, 6929u, 9750u}) {
+    SCOPED_TRACE("scene " + std::to_string(number));
+    Simulation simulation(carom_test::MixedScene(number).system(), EventDriven{});
+    simulation.observe([](const Simulation& now) {
+      for (const LastingContact& contact : now.contact_forces()) {
+        EXPECT_GE(contact.force[0], -1e-6) << now.name(contact.key) << ", t = " << now.time();
+      }
+    });
+    simulation.run_until(1.0);
+  }
+}
+
+}  // namespace
