@@ -42,11 +42,12 @@ class Touch:
 
     def _filter(self, geom: Element) -> _core.ContactFilter:
         """Each pair of masks is a group, as in MuJoCo one geom says for both whether they touch."""
-        if len(self._bits) > 32:
-            raise SceneError("has more than 32 pairs of contype and conaffinity; allowed: up to 32")
+        nothing = len(self._bits)  # a group that no geom has
+        if nothing > 31:
+            raise SceneError("has more than 31 pairs of contype and conaffinity; allowed: up to 31")
         type_, affinity = self._masks(geom)
         own = self._bits.index((type_, affinity))
-        others = [i for i, (t, a) in enumerate(self._bits) if type_ & a or t & affinity]
+        others = [i for i, (t, a) in enumerate(self._bits) if type_ & a or t & affinity] or [nothing]
         return _core.ContactFilter(groups=1 << own, touches=sum(1 << i for i in others))
 
     def _material(self, key: tuple[float, bool]) -> Any:
