@@ -22,7 +22,7 @@ namespace {
 
 using namespace random_piles;
 
-/// What is watched at the output states of a run.
+/// Overlap, account and energy at the output states of a run.
 struct Watch {
   double deepest = -1.0;  // overlap [m]
   double residual = 0.0;  // of the energy account, of what flowed

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What a Simulation holds.
+/// The parts of a Simulation, behind its public header.
 
 #include <carom/integrators/call_guard.h>
 #include <carom/integrators/callbacks.h>

@@ -1,5 +1,5 @@
-// What slides off an edge, falls into an inner corner, or lies with forces that are not unique: contacts push
-// and never pull, none closes unseen, and accounts close.
+// Bodies that slide off an edge, fall into an inner corner, or lie with forces that are not unique: contacts
+// push and never pull, none closes unseen, and accounts close.
 
 #include "tests/integrators/event_driven/body_scenes.h"
 #include "tests/integrators/event_run.h"
