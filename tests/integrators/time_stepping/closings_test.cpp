@@ -6,6 +6,7 @@
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/event_run.h"
 #include "tests/integrators/same_run.h"
+#include "tests/integrators/time_stepping/located_runs.h"
 #include "tests/random.h"
 #include "tests/temporary_folder.h"
 
@@ -24,27 +25,14 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::bits_of;
+using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::run;
 using carom_test::tight;
 
 constexpr double g = 9.81;
 
 TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
-
-double distance(const State& a, const State& b) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < a.q.size(); ++i) most = std::max(most, std::abs(a.q[i] - b.q[i]));
-  return most;
-}
-
-State run(const System& system, const Mode& mode, double end) {
-  Simulation simulation(system, mode);
-  simulation.run_until(end);
-  if (std::holds_alternative<TimeStepping>(mode)) {
-    EXPECT_TRUE(ledger_closes(simulation.energy()));
-  }
-  return simulation.state();
-}
 
 BodyId add_disc(System& system, const Vec<2>& position, const Vec<2>& velocity, double radius = 0.1,
                 double mass = 1.0) {

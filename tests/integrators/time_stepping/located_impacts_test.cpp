@@ -6,6 +6,8 @@
 #include "tests/allocation_counter.h"
 #include "tests/analytic/convergence.h"
 #include "tests/energy/ledger_check.h"
+#include "tests/integrators/event_run.h"
+#include "tests/integrators/time_stepping/located_runs.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
 #include "tests/temporary_folder.h"
@@ -25,39 +27,15 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::add_floor;
+using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::run;
+using carom_test::tight;
 
 constexpr double g = 9.81;
 
 TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
-
-EventDriven tight() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-13}; }
-
-State run(const System& system, const TimeStepping& options, double end) {
-  Simulation simulation(system, options);
-  simulation.run_until(end);
-  EXPECT_TRUE(ledger_closes(simulation.energy()));
-  return simulation.state();
-}
-
-State run(const System& system, const EventDriven& options, double end) {
-  Simulation simulation(system, options);
-  simulation.run_until(end);
-  return simulation.state();
-}
-
-double distance(const State& a, const State& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.q.size(); ++i) largest = std::max(largest, std::abs(a.q[i] - b.q[i]));
-  return largest;
-}
-
-void add_floor(System& system, double friction, double e_n, double e_t) {
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}},
-             Surface{.friction = friction, .normal_restitution = e_n, .tangential_restitution = e_t},
-             "floor");
-}
 
 System ball(double height, double speed, double e) {
   System system;

@@ -4,6 +4,7 @@
 #include "tests/analytic/convergence.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/event_run.h"
+#include "tests/integrators/time_stepping/located_runs.h"
 
 #include <carom/carom.h>
 
@@ -12,38 +13,16 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <variant>
 
 namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::add_floor;
+using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::run;
 using carom_test::tight;
-
-constexpr double g = 9.81;
-
-State run(const System& system, const Mode& mode, double end) {
-  Simulation simulation(system, mode);
-  simulation.run_until(end);
-  if (std::holds_alternative<TimeStepping>(mode)) {
-    EXPECT_TRUE(ledger_closes(simulation.energy()));
-  }
-  return simulation.state();
-}
-
-double distance(const State& a, const State& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.q.size(); ++i) largest = std::max(largest, std::abs(a.q[i] - b.q[i]));
-  return largest;
-}
-
-void add_floor(System& system, double friction, double e_n, double e_t) {
-  system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}},
-             Surface{.friction = friction, .normal_restitution = e_n, .tangential_restitution = e_t},
-             "floor");
-}
 
 /// Two particles that bounce, on a spring with a dashpot.
 System pair(double damping, double friction) {
