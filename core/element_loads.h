@@ -6,7 +6,6 @@
 #include <carom/core/element_view.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
-#include <carom/core/internal_step.h>
 
 namespace carom {
 

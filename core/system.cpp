@@ -46,8 +46,11 @@ System::Notes& System::notes() {
   return *notes_;
 }
 
-const std::map<std::pair<Index, Index>, bool>& System::contact_decisions() const {
-  return notes().contact_decisions;
+std::vector<ContactDecision> System::contact_decisions() const {
+  std::vector<ContactDecision> all;
+  for (const auto& [pair, allowed] : notes().contact_decisions)
+    all.push_back({{pair.first, token_}, {pair.second, token_}, allowed});
+  return all;
 }
 
 template <class Identity, class K>

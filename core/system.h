@@ -12,7 +12,6 @@
 #include <carom/core/registry.h>
 #include <carom/core/surface.h>
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +22,13 @@
 namespace carom {
 
 struct ContactSide;
+
+/// Whether shapes of two bodies may touch, as decided (System::allow_contact()).
+struct ContactDecision {
+  BodyId a{};            ///< added before the other one
+  BodyId b{};            ///< the other
+  bool allowed = false;  ///< whether they may
+};
 
 /// Describes a model; it has no state. Parts are checked when they are added. Copies are independent and keep
 /// the identities of their parts.
@@ -76,8 +82,8 @@ public:
   void allow_contact(BodyId a, BodyId b, std::optional<bool> allowed = true);
   /// As decided; empty if it is not. Throws ModelError likewise.
   [[nodiscard]] std::optional<bool> is_contact_allowed(BodyId a, BodyId b) const;
-  /// All decisions, by serial numbers of bodies, the lesser first.
-  [[nodiscard]] const std::map<std::pair<Index, Index>, bool>& contact_decisions() const;
+  /// All decisions, in the order of their bodies.
+  [[nodiscard]] std::vector<ContactDecision> contact_decisions() const;
 
   /// The material of that name, made if it is new. Throws ModelError for an empty name.
   MaterialId material(std::string_view name);

@@ -61,9 +61,8 @@ void PairFilter::collect_excluded(const Assembly& assembly) {
   const System& system = assembly.system();
   const Layout& layout = *assembly.layout();
   Pairs pairs = joined_pairs(system, layout);
-  const auto index = [&](Index serial) { return layout.index({serial, system.token()}); };
-  for (const auto& [serials, allowed] : system.contact_decisions()) {
-    const std::pair<Index, Index> pair = std::minmax(index(serials.first), index(serials.second));
+  for (const auto& [a, b, allowed] : system.contact_decisions()) {
+    const std::pair<Index, Index> pair = std::minmax(layout.index(a), layout.index(b));
     if (allowed) {
       pairs.erase(pair);
     } else {

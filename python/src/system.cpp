@@ -285,8 +285,8 @@ void bind_laws_of(nb::class_<Model>& type) {
           "contact_decisions",
           [](Model& self) {
             nb::list list;
-            for (const auto& [pair, allowed] : self.get().contact_decisions())
-              list.append(nb::make_tuple(pair.first, pair.second, allowed));
+            for (const auto& [a, b, allowed] : self.get().contact_decisions())
+              list.append(nb::make_tuple(a.serial, b.serial, allowed));
             return list;
           },
           nb::sig("def contact_decisions(self) -> list[tuple[int, int, bool]]"),

@@ -161,7 +161,11 @@ TEST(ContactDecisions, AreCheckedKeptAndRemovedWithTheirBodies) {
   system.allow_contact(a, c);
   system.allow_contact(a, b);
   system.remove(c);
-  EXPECT_EQ(system.contact_decisions().size(), 1U);
+  const std::vector<ContactDecision> decisions = system.contact_decisions();
+  ASSERT_EQ(decisions.size(), 1U);
+  EXPECT_EQ(decisions[0].a, a);
+  EXPECT_EQ(decisions[0].b, b);
+  EXPECT_TRUE(decisions[0].allowed);
   EXPECT_MODEL_ERROR(system.allow_contact(a, c), "contact of two bodies", "a body that was removed");
   EXPECT_MODEL_ERROR(system.allow_contact(a, a), "second body is particle #0, the first", "another body");
   EXPECT_MODEL_ERROR(system.allow_contact(a, ground), "ground", "a body of this system");
