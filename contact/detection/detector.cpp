@@ -118,6 +118,11 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
 
+std::optional<ContactPair> pair_of(const Detector& detector, const ConstraintKey& key) {
+  if (key.b.owner == FeatureKey::Owner::obstacle) return detector.pieces().pair_of(key);
+  return detector.bodies().outlines().pair_of(key);
+}
+
 void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
             const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {
   if (!pair.is_of_pieces()) return detector.bodies().follow(pair, feature, state, evaluation, contact);

@@ -15,6 +15,7 @@
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -158,6 +159,10 @@ private:
                                                    const GroundPlaces& places) {
   return moves(detector, pair) ? detector.pieces().shapes().motion(pair.ground_shape, places) : nullptr;
 }
+/// The vertex and the outline that the key of a contact names, where both sides are outlines; of other keys
+/// nothing.
+[[nodiscard]] CAROM_API std::optional<ContactPair> pair_of(const Detector& detector,
+                                                           const ConstraintKey& key);
 /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one feature
 /// of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key and law
 /// stay.

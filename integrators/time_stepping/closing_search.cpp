@@ -1,11 +1,10 @@
 // Problem: which contact closes first in a step that did not know of it.
 
-#include <carom/contact/detection/body_outlines.h>
 #include <carom/integrators/time_stepping/closing_search.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 namespace carom {
 
@@ -50,28 +49,14 @@ bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
   return is_alone || gap_of_vertex(contact, start) >= -rounding;
 }
 
-/// Gap of the vertex of a contact of two bodies at the start, to all of the other outline; of other contacts
+/// Gap of the vertex of a contact at the start, to all of the other outline; of contacts without outlines
 /// minus infinity [m].
 double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
-  const BodyOutlines& outlines = detector_->bodies().outlines();
-  const bool of_bodies = contact.type == ConstraintType::contact && contact.bodies == 2 && !outlines.empty();
-  Index one = of_bodies ? outlines.find(contact.key.a) : none;
-  Index other = of_bodies ? outlines.find(contact.key.b) : none;
-  if (one == none || other == none) return -std::numeric_limits<double>::infinity();
-  FeatureKey vertex = contact.key.a;
-  if (vertex == outlines.list()[one].surface()) {
-    vertex = contact.key.b;
-    std::swap(one, other);
-  }
-  const BodyOutline& of_vertex = outlines.list()[one];
-  const Index feature = of_vertex.vertices.begin + (vertex.feature - of_vertex.key.feature);
+  std::optional<ContactPair> pair;
+  if (contact.type == ConstraintType::contact) pair = pair_of(*detector_, contact.key);
+  if (!pair) return -std::numeric_limits<double>::infinity();
   Constraint at;
-  detector_->contact({.body = of_vertex.body,
-                      .feature = feature,
-                      .material = of_vertex.material,
-                      .other = outlines.list()[other].body,
-                      .outline = other},
-                     start.view(), evaluation_, places_, at);
+  detector_->contact(*pair, start.view(), evaluation_, places_, at);
   return at.gap;
 }
 
