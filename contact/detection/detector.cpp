@@ -77,12 +77,6 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
   return out;
 }
 
-std::vector<ContactPair> Detector::joint_friction(Index component) const {
-  std::vector<ContactPair> out;
-  joints_.append_friction(component, out);
-  return out;
-}
-
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        Constraint& out) const {
   if (pair.rolling) {
