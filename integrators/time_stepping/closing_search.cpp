@@ -20,13 +20,6 @@ bool have_same_parts(const ConstraintKey& a, const ConstraintKey& b) {
 
 }  // namespace
 
-void ClosingSearch::find(const State& state, double margin, std::vector<Constraint>& out) {
-  evaluate_positions(*assembly_, state.view(), evaluation_);
-  detector_->place(state.time, places_);
-  out.clear();
-  detector_->find_all({state.view(), evaluation_, places_, nullptr, margin}, search_, out);
-}
-
 /// True unless the contact acted up to the end of the part, or has closed often enough.
 bool ClosingSearch::may_close(const Constraint& contact, Modes acted) const {
   const auto is_of = [&](const auto& entry) { return entry.first == contact.key; };
@@ -53,15 +46,15 @@ bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
 /// minus infinity [m].
 double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
   std::optional<ContactPair> pair;
-  if (contact.type == ConstraintType::contact) pair = pair_of(*detector_, contact.key);
+  if (contact.type == ConstraintType::contact) pair = pair_of(look_.detector(), contact.key);
   if (!pair) return -std::numeric_limits<double>::infinity();
   Constraint at;
-  detector_->contact(*pair, start.view(), evaluation_, places_, at);
+  look_.contact(*pair, start.view(), at);
   return at.gap;
 }
 
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
-  find(end, near_, at_end_);
+  look_.find(end.view(), near_, at_end_);
   const double* const v = end.v.data();
   std::erase_if(at_end_, [&](const Constraint& contact) {
     return !(contact.normal_velocity(v) < 0.0) || !may_close(contact, acted);
@@ -75,7 +68,7 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
     const double speed = std::max(contact.speed(0, v), contact.speed(0, start.v.data()));
     reach = std::max(reach, std::abs(contact.gap) + caution * (end.time - start.time) * speed);
   }
-  find(start, reach, at_start_);
+  look_.find(start.view(), reach, at_start_);
   for (const Constraint& contact : at_end_) {
     if (!(contact.gap < first.gap) || !was_open(contact, start)) continue;
     first = {contact.gap, contact.normal_velocity(v), contact.key};
