@@ -31,6 +31,7 @@ set(carom_public_headers
     contact/solvers/solution_list.h
     contact/solvers/solver_chain.h
     contact/solvers/sweep_budget.h
+    contact/solvers/sweep_watch.h
     core/body_kind.h
     core/column.h
     core/constraint.h

@@ -1,4 +1,4 @@
-#include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/contact_look.h>
 #include <carom/core/dynamics/total_momentum.h>
 #include <carom/core/errors.h>
 #include <carom/core/part_check.h>
@@ -15,16 +15,9 @@ namespace {
 
 /// Deepest penetration of the present state, of bodies into ground or each other [m].
 double deepest_penetration(const Simulation& simulation) {
-  const Assembly& assembly = simulation.assembly();
-  const StateView state = simulation.state().view();
-  const Detector detector(assembly);
-  Evaluation evaluation = make_evaluation(assembly);
+  const Detector detector(simulation.assembly());
   std::vector<Constraint> contacts;
-  GroundPlaces places;
-  BodyContactSearch search;
-  detector.place(state.time, places);
-  evaluate_positions(assembly, state, evaluation);
-  detector.find_all({state, evaluation, places}, search, contacts);
+  ContactLook(simulation.assembly(), detector).find(simulation.state().view(), 0.0, contacts);
   double deepest = 0.0;
   for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);
   return deepest;

@@ -15,9 +15,20 @@ ActuatorSlopes::ActuatorSlopes(const ActuatorLaw& law, const ActuatorLaw& by_coo
                        : difference_quotient([&](double faster) { return law(time, x, faster); }, rate,
                                              std::max(1.0, std::abs(rate)))) {}
 
-void check_actuator_law(const PartCheck& check, const ActuatorLaw& law, const std::string& name,
-                        const std::string& unit, const std::string& place, double x, double rate) {
-  if (law) check.finite(law(0.0, x, rate), name + " at time 0, " + place, unit);
+void ActuatorLaws::demand_given(const PartCheck& check) const {
+  if (!law) check.refuse(name, "not given", "a function of time, " + coordinate + " and rate");
+}
+
+void ActuatorLaws::demand_finite(const PartCheck& check, double x, double rate) const {
+  const std::string& per = unit_of_coordinate;
+  const std::string place = " at time 0, " + coordinate + " " + to_text(x) + " " + per + ", rate " +
+                            to_text(rate) + " " + per + "/s";
+  const auto demand = [&](const ActuatorLaw& one, const std::string& of, const std::string& its_unit) {
+    if (one) check.finite(one(0.0, x, rate), of + place, its_unit);
+  };
+  demand(law, name, unit);
+  demand(by_coordinate, name + "_by_" + coordinate, unit + "/" + per);
+  demand(by_rate, name + "_by_rate", unit + " s/" + per);
 }
 
 namespace generic {
@@ -38,15 +49,10 @@ std::vector<BodyId> RotaryActuator::bodies() const { return {from, to}; }
 
 void RotaryActuator::check(const PartCheck& check) const {
   check_angular_ends(check, from, to);
-  if (!torque) check.refuse("torque", "not given", "a function of time, angle and rate");
+  const ActuatorLaws laws{torque, torque_by_angle, torque_by_rate, "torque", "N m", "angle", "rad"};
+  laws.demand_given(check);
   const RelativeAngle start(check.system(), from, to);
-  const std::string place = "angle " + to_text(start.angle) + " rad, rate " + to_text(start.rate) + " rad/s";
-  const auto try_law = [&](const ActuatorLaw& law, const char* name, const char* unit) {
-    check_actuator_law(check, law, name, unit, place, start.angle, start.rate);
-  };
-  try_law(torque, "torque", "N m");
-  try_law(torque_by_angle, "torque_by_angle", "N m/rad");
-  try_law(torque_by_rate, "torque_by_rate", "N m s/rad");
+  laws.demand_finite(check, start.angle, start.rate);
 }
 
 void RotaryActuator::loads(const ElementView<2>& at, ElementLoads<2>& out) const {

@@ -27,9 +27,20 @@ struct CAROM_API ActuatorSlopes {
   double by_speed;  ///< df/d(dx/dt)
 };
 
-/// Demands that a law and its derivatives, where they are given, are finite at the start.
-CAROM_API void check_actuator_law(const PartCheck& check, const ActuatorLaw& law, const std::string& name,
-                                  const std::string& unit, const std::string& place, double x, double rate);
+/// The laws of an actuator as its check sees them, with their words for messages; a view.
+struct CAROM_API ActuatorLaws {
+  const ActuatorLaw& law;                      ///< required
+  const ActuatorLaw& by_coordinate;            ///< its derivatives, may be empty
+  const ActuatorLaw& by_rate;                  ///< likewise
+  std::string name, unit;                      ///< of the law: "force", "N"
+  std::string coordinate, unit_of_coordinate;  ///< "length", "m"
+
+  /// Demands that the law is given.
+  void demand_given(const PartCheck& check) const;
+  /// Demands that the law and the derivatives that are given are finite at time 0. \param x, rate at the
+  /// start
+  void demand_finite(const PartCheck& check, double x, double rate) const;
+};
 
 namespace generic {
 
@@ -59,16 +70,10 @@ struct LinearActuator {
   /// rate that the bodies are described with, unless the length is 0.
   void check(const PartCheck& check) const {
     check_line_ends(check, from, to);
-    if (!force) check.refuse("force", "not given", "a function of time, length and rate");
+    const ActuatorLaws laws{force, force_by_length, force_by_rate, "force", "N", "length", "m"};
+    laws.demand_given(check);
     const auto start = LineOfAction<D>::described(check.system(), from, to);
-    if (start.length == 0.0) return;
-    const std::string place = "length " + to_text(start.length) + " m, rate " + to_text(start.rate) + " m/s";
-    const auto try_law = [&](const ActuatorLaw& law, const char* name, const char* unit) {
-      check_actuator_law(check, law, name, unit, place, start.length, start.rate);
-    };
-    try_law(force, "force", "N");
-    try_law(force_by_length, "force_by_length", "N/m");
-    try_law(force_by_rate, "force_by_rate", "N s/m");
+    if (start.length != 0.0) laws.demand_finite(check, start.length, start.rate);
   }
   /// Books the loads.
   void loads(const ElementView<D>& at, ElementLoads<D>& out) const {

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Runs clang-tidy over the sources of the library.
 
-    scripts/tidy.py [<build dir>] [<source>...]    build/sanitizers, which must be configured; all
-
 Most of what clang-tidy does for a file it does for the headers of Eigen and of the standard library. So files are
 looked at together, as one text, which need not mean anything as long as it compiles: where it does not, or where
 something is found in it, it is halved, down to single files. Only what is found in a single file counts.
 """
 
+import argparse
 import json
 import os
 import re
@@ -77,9 +76,15 @@ def tidy(files, flags, build):
 
 
 def main():
-    arguments = sys.argv[1:]
-    build = Path(arguments.pop(0) if arguments else root / "build" / "sanitizers").resolve()
-    wanted = {Path(name).resolve() for name in arguments}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", nargs="?", type=Path, default=root / "build" / "sanitizers",
+                        help="build directory, which must be configured; build/sanitizers")
+    parser.add_argument("sources", nargs="*", type=Path, help="sources of the library; all")
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
+    wanted = {name.resolve() for name in arguments.sources}
+    if not (build / "compile_commands.json").is_file():
+        parser.error(f"{build} is not configured: it has no compile_commands.json")
     (build / "tidy").mkdir(exist_ok=True)
 
     groups = {}  # by folder and flags

@@ -77,9 +77,10 @@ void add_stacks(Page& page, SolverChain& chain) {
         data.at(blocks ? "block_corner_forces_bottom_up" : "disc_contact_forces_bottom_up");
     const std::size_t contacts = blocks ? 2 : 1;
     for (std::size_t i = 0; i < impulse.size(); ++i) {
-      const double force = impulse[i] / step, reference = expected[i / contacts].get<double>();
+      const std::size_t level = i / contacts;
+      const double force = impulse[i] / step, reference = expected[level].get<double>();
       forces(force, reference);
-      curve.rows.push_back({1.0 * static_cast<double>(i / contacts), force, reference});
+      curve.rows.push_back({static_cast<double>(level), force, reference});
     }
     page.rows.push_back(solver_row(
         "chain",

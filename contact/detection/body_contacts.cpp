@@ -69,9 +69,11 @@ void look_up_lasting(const BodyOutlines& outlines, std::span<const ConstraintKey
   memory.lasting.assign(keys.begin(), keys.end());
   memory.pairs_of_lasting.clear();
   for (const ConstraintKey& key : keys) {
-    const bool of_bodies = key.b.owner == FeatureKey::Owner::shape;
-    memory.pairs_of_lasting.emplace_back(of_bodies ? outlines.find(key.a) : none,
-                                         of_bodies ? outlines.find(key.b) : none);
+    const std::optional<ContactPair> pair = outlines.pair_of(key);
+    if (!pair) continue;
+    Index a = outlines.outline_of(pair->feature), b = pair->outline;
+    if (outlines.list()[b].key < outlines.list()[a].key) std::swap(a, b);
+    memory.pairs_of_lasting.emplace_back(a, b);
   }
 }
 
@@ -178,7 +180,6 @@ void BodyContacts::add_lasting_pairs(const ContactQuery& query, BodyContactSearc
   const std::size_t known = pairs.size();
   look_up_lasting(outlines_, query.lasting->keys(), memory);
   for (const std::pair<Index, Index>& pair : memory.pairs_of_lasting) {
-    if (pair.first == none || pair.second == none) continue;
     if (are_within(memory.boxes[pair.first], memory.boxes[pair.second], query.margin)) continue;
     if (may_touch(outlines_.list()[pair.first], outlines_.list()[pair.second])) pairs.push_back(pair);
   }

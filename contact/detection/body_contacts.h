@@ -41,7 +41,7 @@ struct BodyContactSearch {
   std::vector<std::pair<Index, Index>> pairs;             ///< of outlines that may touch
   std::vector<BodyTouch> touching;                        ///< of those, contacts
   std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
-  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< their outlines, `none` of other contacts
+  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of those that are of bodies
   Constraint trial;                                       ///< of one that turning may have opened
 };
 

@@ -80,9 +80,22 @@ Index BodyOutlines::find(const FeatureKey& key) const {
   for (Index i = first[key.serial]; i < list_.size(); ++i) {
     const FeatureKey& of = list_[i].key;
     if (of.owner != key.owner || of.serial != key.serial) return none;
-    if (key.feature <= list_[i].surface().feature) return i;
+    if (list_[i].has(key)) return i;
   }
   return none;
+}
+
+std::optional<ContactPair> BodyOutlines::pair_of(const ConstraintKey& key) const {
+  if (key.b.owner != FeatureKey::Owner::shape) return {};
+  const Index a = find(key.a), b = find(key.b);
+  if (a == none || b == none) return {};
+  const bool of_a = key.a != list_[a].surface();
+  const BodyOutline &of_vertex = list_[of_a ? a : b], &whole = list_[of_a ? b : a];
+  return ContactPair{.body = of_vertex.body,
+                     .feature = of_vertex.place(of_a ? key.a : key.b),
+                     .material = of_vertex.material,
+                     .other = whole.body,
+                     .outline = of_a ? b : a};
 }
 
 void BodyOutlines::place(const BodyOutline& outline, const BodySlot& body, const StateView& state,

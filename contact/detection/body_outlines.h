@@ -3,7 +3,9 @@
 /// \file
 /// Convex outlines of the bodies of an assembly, which bodies may touch each other with. Collected once.
 
+#include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/outline_features.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/contact_filter.h>
@@ -12,25 +14,19 @@
 #include <carom/core/space.h>
 #include <carom/core/state.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace carom {
 
 /// A convex outline fixed to a body: a point, a disc, a capsule or a polygon.
-struct BodyOutline {
+struct BodyOutline : OutlineFeatures {
   Index body = none;      ///< in the order of assembly
   Index material = none;  ///< number in BodyOutlines::materials()
   ContactFilter filter;   ///< what it may touch
-  FeatureKey key;         ///< of its vertex 0; vertex i has the feature number i more
-  Range vertices;         ///< places of its vertices among those of all
   double radius = 0.0;    ///< rounding radius [m]
   double reach = 0.0;     ///< radius of a circle around the centre of mass that holds it [m]
-
-  /// Identity of a vertex.
-  [[nodiscard]] FeatureKey vertex(Index i) const { return {key.owner, key.serial, key.feature + i}; }
-  /// Identity of the outline as a whole, against which a vertex of another one stands.
-  [[nodiscard]] FeatureKey surface() const { return vertex(vertices.size()); }
 };
 
 /// All outlines, ordered by body.
@@ -57,6 +53,8 @@ public:
   [[nodiscard]] bool any_off_centre() const;
   /// Place of the outline of a key; `none` if there is none.
   [[nodiscard]] Index find(const FeatureKey& key) const;
+  /// The vertex and the outline that the key of a contact of two bodies names; of other keys nothing.
+  [[nodiscard]] std::optional<ContactPair> pair_of(const ConstraintKey& key) const;
 
   /// Writes the vertices of an outline where its body is. The position group of `evaluation` must be up to
   /// date. \param out as many points as it has vertices

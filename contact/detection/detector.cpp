@@ -77,12 +77,6 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
   return out;
 }
 
-std::vector<ContactPair> Detector::joint_friction(Index component) const {
-  std::vector<ContactPair> out;
-  joints_.append_friction(component, out);
-  return out;
-}
-
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        Constraint& out) const {
   if (pair.rolling) {
@@ -117,6 +111,11 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
+
+std::optional<ContactPair> pair_of(const Detector& detector, const ConstraintKey& key) {
+  if (key.b.owner == FeatureKey::Owner::obstacle) return detector.pieces().pair_of(key);
+  return detector.bodies().outlines().pair_of(key);
+}
 
 void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
             const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {

@@ -15,6 +15,7 @@
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -71,6 +72,10 @@ public:
   }
   /// Contacts of bodies with pieces of shapes on ground.
   [[nodiscard]] const PieceContacts& pieces() const { return pieces_; }
+  /// Contacts of bodies with shapes on ground that have no pieces.
+  [[nodiscard]] const GroundContacts& ground() const { return ground_; }
+  /// Limits of joints, and friction in them.
+  [[nodiscard]] const JointRows& joints() const { return joints_; }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
   /// \param slack opening of any contact that is none [m]
@@ -79,22 +84,6 @@ public:
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
-  /// Friction in the joints of one component. Made at each call.
-  [[nodiscard]] std::vector<ContactPair> joint_friction(Index component) const;
-  /// Appends it as constraints, whose `friction_bound` has the constant part of the bound. Sets nothing of
-  /// the past.
-  void find_joint_friction(Index component, const StateView& state, const Evaluation& evaluation,
-                           std::vector<Constraint>& out) const {
-    joints_.find_friction(component, state, evaluation, out);
-  }
-  /// True if there is any in a component.
-  [[nodiscard]] bool has_dry_friction(Index component) const { return joints_.has_friction(component); }
-  /// True if there is any at all.
-  [[nodiscard]] bool has_dry_friction() const { return joints_.has_friction(); }
-  /// Brings the row of friction in a joint to a configuration, and its drift.
-  void update_friction_rows(const JointView& at, Constraint& contact) const {
-    joints_.update_friction(at, contact);
-  }
   /// The contact of a pair, or its rolling resistance, whatever its gap. The position group of `evaluation`
   /// must be up to date. Places its shape on ground by itself.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
@@ -103,31 +92,6 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
-  /// True if some law of impact is not Newton's.
-  friend bool has_other_impact_law(const Detector& of) {
-    return of.ground_.has_other_impact_law() || of.bodies_.has_other_impact_law();
-  }
-  /// True if some law has rolling resistance.
-  friend bool resists_rolling(const Detector& of) {
-    return of.ground_.resists_rolling() || of.bodies_.resists_rolling();
-  }
-  /// True if all that can touch are centres of bodies, or rounded points around them, and ground at rest.
-  friend bool only_centres_touch(const Detector& of) {
-    return of.bodies_.empty() && of.pieces_.empty() && of.joints_.empty() && !of.has_moving_ground() &&
-           of.ground_.only_centres();
-  }
-  /// Where that is so: GroundContacts::centre_rows() says what may touch what,
-  friend std::vector<CentreRow> centre_rows(const Detector& of) { return of.ground_.centre_rows(); }
-  /// and GroundContacts::may_touch() whether it does.
-  friend bool may_touch(const Detector& of, const CentreRow& row, const double* q) {
-    return of.ground_.may_touch(row, q);
-  }
-  /// True if the law of a pair of shapes has; not of the pair of such a resistance.
-  friend bool resists_rolling(const Detector& of, const ContactPair& pair) {
-    if (pair.joint_row != none || pair.rolling) return false;
-    if (pair.other != none) return of.bodies_.law(pair).resists_rolling();
-    return (pair.is_of_pieces() ? of.pieces_.law(pair) : of.ground_.law(pair)).resists_rolling();
-  }
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
     return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();
@@ -149,6 +113,25 @@ private:
   JointRows joints_;
 };
 
+/// True if some law of impact is not Newton's.
+[[nodiscard]] inline bool has_other_impact_law(const Detector& detector) {
+  return detector.ground().has_other_impact_law() || detector.bodies().has_other_impact_law();
+}
+/// True if some law has rolling resistance.
+[[nodiscard]] inline bool resists_rolling(const Detector& detector) {
+  return detector.ground().resists_rolling() || detector.bodies().resists_rolling();
+}
+/// True if the law of a pair of shapes has; not of the pair of such a resistance.
+[[nodiscard]] inline bool resists_rolling(const Detector& detector, const ContactPair& pair) {
+  if (pair.joint_row != none || pair.rolling) return false;
+  if (pair.other != none) return detector.bodies().law(pair).resists_rolling();
+  return (pair.is_of_pieces() ? detector.pieces().law(pair) : detector.ground().law(pair)).resists_rolling();
+}
+/// True if all that can touch are centres of bodies, or rounded points around them, and ground at rest.
+[[nodiscard]] inline bool only_centres_touch(const Detector& detector) {
+  return detector.bodies().empty() && detector.pieces().empty() && detector.joints().empty() &&
+         !detector.has_moving_ground() && detector.ground().only_centres();
+}
 /// True if the shape on ground of a pair moves.
 [[nodiscard]] inline bool moves(const Detector& detector, const ContactPair& pair) {
   return pair.ground_shape != none && detector.pieces().shapes().moves(pair.ground_shape);
@@ -158,6 +141,10 @@ private:
                                                    const GroundPlaces& places) {
   return moves(detector, pair) ? detector.pieces().shapes().motion(pair.ground_shape, places) : nullptr;
 }
+/// The vertex and the outline that the key of a contact names, where both sides are outlines; of other keys
+/// nothing.
+[[nodiscard]] CAROM_API std::optional<ContactPair> pair_of(const Detector& detector,
+                                                           const ConstraintKey& key);
 /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one feature
 /// of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key and law
 /// stay.

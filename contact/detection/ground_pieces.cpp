@@ -194,6 +194,12 @@ int GroundPieces::find(Index piece, const ConvexOutline& a, double margin,
   return count;
 }
 
+Index GroundPieces::outline_of(const FeatureKey& feature) const {
+  const auto found = std::find_if(outlines_.begin(), outlines_.end(),
+                                  [&](const GroundOutline& outline) { return outline.has(feature); });
+  return found == outlines_.end() ? none : static_cast<Index>(found - outlines_.begin());
+}
+
 bool GroundPieces::is_corner(Index vertex) const {
   return corners_[vertex] == ChainCorner::convex || corners_[vertex] == ChainCorner::free;
 }

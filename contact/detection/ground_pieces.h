@@ -13,6 +13,7 @@
 #include <carom/contact/detection/gap_face.h>
 #include <carom/contact/detection/gap_point.h>
 #include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/outline_features.h>
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -26,22 +27,16 @@
 namespace carom {
 
 /// A solid, a chain of faces between two concave corners, or the inside of a circle.
-struct GroundOutline {
+struct GroundOutline : OutlineFeatures {
   GroundPiece::Form form = GroundPiece::Form::solid;  ///< what it is made of
   Index shape = none;                                 ///< number in GroundShapes
-  FeatureKey key;          ///< of its vertex 0; vertex i has the feature number i more, the whole that behind
-  Range vertices;          ///< among those of all
-  double radius = 0.0;     ///< of a solid's outline, or of the circle [m]
-  double depth = 0.0;      ///< of a chain: what is deeper does not touch it [m]
-  bool is_closed = false;  ///< a chain whose last vertex is joined to the first
-  double surface_speed = 0.0;  ///< of a conveyor [m/s]
-  double reach = 0.0;          ///< radius of a circle around the shape's point o that holds it [m]
-  Box<2> box;                  ///< around it; of the inside of a circle around that
+  double radius = 0.0;                                ///< of a solid's outline, or of the circle [m]
+  double depth = 0.0;                                 ///< of a chain: what is deeper does not touch it [m]
+  bool is_closed = false;                             ///< a chain whose last vertex is joined to the first
+  double surface_speed = 0.0;                         ///< of a conveyor [m/s]
+  double reach = 0.0;  ///< radius of a circle around the shape's point o that holds it [m]
+  Box<2> box;          ///< around it; of the inside of a circle around that
 
-  /// Identity of a vertex.
-  [[nodiscard]] FeatureKey vertex(Index i) const { return {key.owner, key.serial, key.feature + i}; }
-  /// Identity of the outline as a whole.
-  [[nodiscard]] FeatureKey surface() const { return vertex(vertices.size()); }
   /// True if bodies are inside of it.
   [[nodiscard]] bool is_hollow() const { return form == GroundPiece::Form::hollow; }
   /// True if it is a chain.
@@ -75,6 +70,8 @@ public:
   [[nodiscard]] std::span<const Vec<2>> vertices() const { return vertices_; }
   /// Outline of a vertex.
   [[nodiscard]] Index outline_of(Index vertex) const { return outline_of_[vertex]; }
+  /// Outline of a feature; `none` if there is none.
+  [[nodiscard]] Index outline_of(const FeatureKey& feature) const;
   /// True if a vertex is a corner that an edge of a body may touch.
   [[nodiscard]] bool is_corner(Index vertex) const;
   /// An outline as a set; of a chain its vertices, of a circle its centre.

@@ -33,7 +33,8 @@ public:
 
   /// Appends the limits of one component that a query asks for.
   void find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
-  /// Appends the friction in the joints of one component, as Detector::find_joint_friction().
+  /// Appends the friction in the joints of one component as constraints, whose `friction_bound` has the
+  /// constant part of the bound. Sets nothing of the past.
   void find_friction(Index component, const StateView& state, const Evaluation& evaluation,
                      std::vector<Constraint>& out) const;
   /// Appends all limits of one component.

@@ -255,6 +255,23 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
   return in_space(at.outline_frame, gap).swapped();
 }
 
+std::optional<ContactPair> PieceContacts::pair_of(const ConstraintKey& key) const {
+  if (key.b.owner != FeatureKey::Owner::obstacle || empty()) return {};
+  const Index a = outlines_.find(key.a), b = pieces_.outline_of(key.b);
+  if (a == none || b == none) return {};
+  const BodyOutline& of_body = outlines_.list()[a];
+  const GroundOutline& on_ground = pieces_.outlines()[b];
+  ContactPair pair{.body = of_body.body, .ground_shape = on_ground.shape};
+  if (key.b == on_ground.surface()) {
+    pair.feature = of_body.place(key.a);
+    pair.ground_outline = b;
+  } else {
+    pair.outline = a;
+    pair.ground_vertex = on_ground.place(key.b);
+  }
+  return pair;
+}
+
 const Surface& PieceContacts::law(const ContactPair& pair) const {
   const bool of_body = pair.ground_outline != none;
   const BodyOutline& outline = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];

@@ -17,6 +17,7 @@
 #include <carom/core/export.h>
 #include <carom/core/surface.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,8 @@ public:
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component that may touch, ordered by body.
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
+  /// The vertex and the outline that the key of a contact of these names; of other keys nothing.
+  [[nodiscard]] std::optional<ContactPair> pair_of(const ConstraintKey& key) const;
 
   /// Law of a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const;

@@ -13,8 +13,10 @@
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/contact/solvers/solution_list.h>
+#include <carom/contact/solvers/sweep_watch.h>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -39,6 +41,8 @@ public:
   bool attempt(const ContactProblem& problem, SolverId id, ExactAttempt& state);
   /// Judges what was found, and reads the modes off it.
   static void conclude(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state);
+  /// Has every sweep of the projection looked at from now on.
+  void set_watch(SweepWatch watch) { projection_.set_watch(std::move(watch)); }
 
 private:
   [[nodiscard]] ContactSolver* solver(SolverId id);

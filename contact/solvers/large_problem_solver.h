@@ -9,9 +9,11 @@
 #include <carom/contact/solvers/nonlinear_cg_solver.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/sweep_budget.h>
+#include <carom/contact/solvers/sweep_watch.h>
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -49,8 +51,8 @@ public:
   }
   /// The last problem that was polished, with W in full.
   [[nodiscard]] const ContactProblem& dense() const { return dense_; }
-  /// The solver that is asked.
-  [[nodiscard]] NonlinearCgSolver& sweeps() { return sweeps_; }
+  /// Has every sweep looked at from now on.
+  void set_watch(SweepWatch watch) { sweeps_.set_watch(std::move(watch)); }
 
 private:
   [[nodiscard]] int sweeps_of(const ContactProblem& problem) const;

@@ -1,6 +1,7 @@
 // Problem: the paper's LCP for any number of contacts, tangential impulses eliminated.
 
 #include <carom/contact/solvers/lcp_forms.h>
+#include <carom/contact/solvers/residual.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,7 @@ double fused_difference(double a, double b, double c, double d) {
 void group_scales(const ContactProblem& problem, std::vector<double>& scale) {
   scale.assign(static_cast<std::size_t>(problem.rows()), 1.0);
   for (const RowGroup& group : problem.groups()) {
-    double trace = 0.0;
-    for (int i = group.first; i < group.first + group.size; ++i) trace += problem.w(i, i);
+    const double trace = group_trace(problem, group);
     if (!(trace > 0.0) || !std::isfinite(trace)) continue;
     const double s = std::exp2(-std::floor(0.5 * std::log2(trace)));
     for (int i = group.first; i < group.first + group.size; ++i) scale[static_cast<std::size_t>(i)] = s;

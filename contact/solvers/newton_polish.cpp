@@ -15,8 +15,7 @@ namespace {
 constexpr double rank_tolerance = 1e-12;
 
 double group_rho(const ContactProblem& problem, const RowGroup& group) {
-  double trace = 0.0;
-  for (int i = group.first; i < group.first + group.size; ++i) trace += problem.w(i, i);
+  const double trace = group_trace(problem, group);
   return trace > 0.0 ? 1.0 / trace : 0.0;
 }
 

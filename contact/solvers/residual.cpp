@@ -14,12 +14,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double trace(const ContactProblem& problem, const RowGroup& group) {
-  double sum = problem.diagonal(group.first);
-  for (int i = group.first + 1; i < group.first + group.size; ++i) sum += problem.diagonal(i);
-  return sum;
-}
-
 // distance() of a planar contact; raises the scale P* by its own. All in one go: a settled pile costs as many
 // of these as it has contacts, in each step.
 double planar_distance(double friction, const double* p, const double* b, const double* xi, double rho,
@@ -79,7 +73,8 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
 double largest_trace(const ContactProblem& problem) {
   if (problem.is_factored()) return problem.factors().largest_trace;
   double largest = 0.0;
-  for (const RowGroup& group : problem.groups()) largest = larger_magnitude(largest, trace(problem, group));
+  for (const RowGroup& group : problem.groups())
+    largest = larger_magnitude(largest, group_trace(problem, group));
   return largest;
 }
 
@@ -101,7 +96,7 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
   Residual worst;
   for (std::size_t g = 0; g < problem.groups().size(); ++g) {
     const RowGroup& group = problem.groups()[g];
-    const double own = trace(problem, group);
+    const double own = group_trace(problem, group);
     const double rho = own > least_trace ? 1.0 / own : rho_of_immovable;
     const auto first = static_cast<std::size_t>(group.first);
     double error = 0.0;

@@ -15,6 +15,13 @@ namespace carom {
 /// such a trace is rounding of a zero.
 inline constexpr double negligible_trace = 1e-15;
 
+/// Trace of the block W_ii of a group [1/kg].
+[[nodiscard]] inline double group_trace(const ContactProblem& problem, const RowGroup& group) {
+  double sum = problem.diagonal(group.first);
+  for (int i = group.first + 1; i < group.first + group.size; ++i) sum += problem.diagonal(i);
+  return sum;
+}
+
 /// Worst relative residual over the groups of a problem.
 struct Residual {
   double value = 0.0;  ///< dimensionless; infinity where a number is not finite

@@ -1,7 +1,5 @@
 // Problem: the residual of a solver over its work, which is timed without what looking at it costs.
 
-#include <carom/contact/solvers/nonlinear_cg_solver.h>
-#include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/residual_history.h>
 #include <carom/contact/solvers/solver_chain.h>
@@ -34,40 +32,21 @@ private:
   Clock::duration looked_{};
 };
 
-double residual_of(const ContactProblem& problem, std::span<const double> impulse, std::vector<double>& xi) {
-  xi.resize(impulse.size());
-  problem.velocities(impulse, xi);
-  return residual(problem, impulse, xi).value;
-}
-
-/// Lets a solver sweep, and notes what it comes to. Its answer is that of the chain.
-template <class Solver>
-void watch_sweeps(Solver& solver, const ContactProblem& problem, ResidualHistory& history) {
-  std::vector<double> impulse(static_cast<std::size_t>(problem.rows())), xi;
-  WorkClock clock;
-  solver.set_watch([&](int sweep, std::span<const double> at) {
-    const double seconds = clock.seconds();
-    clock.look([&] { history.sweeps.push_back({sweep, seconds, residual_of(problem, at, xi)}); });
-  });
-  static_cast<void>(solver.solve(problem, impulse));
-}
-
 }  // namespace
 
 ResidualHistory residual_history(const ContactProblem& problem, SolverId solver, const SweepBudget& budget) {
   SolverChain chain;
   if (problem.is_factored()) chain.set_budget(budget);
   ResidualHistory history{.solver = to_string(solver)};
-  if (solver == SolverId::projection && !problem.is_factored()) {
-    ProjectionSolver projection;
-    watch_sweeps(projection, problem, history);
-  } else if (solver == SolverId::nonlinear_cg && problem.is_factored()) {
-    NonlinearCgSolver sweeps;
-    sweeps.set_budget(budget);
-    watch_sweeps(sweeps, problem, history);
-  }
-  std::vector<double> impulse(static_cast<std::size_t>(problem.rows()));
-  const WorkClock clock;
+  std::vector<double> impulse(static_cast<std::size_t>(problem.rows())), xi(impulse.size());
+  WorkClock clock;
+  chain.set_watch([&](int sweep, std::span<const double> at) {
+    const double seconds = clock.seconds();
+    clock.look([&] {
+      problem.velocities(at, xi);
+      history.sweeps.push_back({sweep, seconds, residual(problem, at, xi).value});
+    });
+  });
   const ContactReport report = chain.solve_with(solver, problem, impulse);
   history.answer = {report.iterations, clock.seconds(), report.residual};
   history.outcome = report.outcome;

@@ -17,12 +17,6 @@ namespace {
 // Pivots below this part of the largest make the system of a set of modes singular.
 constexpr double singular_part = 1e-11;
 
-double group_trace(const ContactProblem& problem, const RowGroup& group) {
-  double sum = 0.0;
-  for (int i = group.first; i < group.first + group.size; ++i) sum += problem.w(i, i);
-  return sum;
-}
-
 }  // namespace
 
 /// Candidate at hand of an enumeration, and the equations it comes from.

@@ -211,6 +211,11 @@ void SolverChain::set_budget(const SweepBudget& budget) {
   work_->capped = true;
 }
 
+void SolverChain::set_watch(const SweepWatch& watch) {
+  work_->exact.set_watch(watch);
+  work_->large.set_watch(watch);
+}
+
 std::span<const double> SolverChain::velocities() const { return work_->xi; }
 std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }
 const ChainStatistics& SolverChain::statistics() const { return work_->statistics; }

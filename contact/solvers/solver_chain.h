@@ -11,6 +11,7 @@
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/sweep_budget.h>
+#include <carom/contact/solvers/sweep_watch.h>
 #include <carom/core/export.h>
 
 #include <memory>
@@ -67,6 +68,9 @@ public:
   /// Sets the budget of problems in factors. Throws std::invalid_argument unless sweeps >= 0, 0 < residual
   /// and 0 <= accepted.
   void set_budget(const SweepBudget& budget);
+
+  /// Has every sweep of `projection` and `nonlinear_cg` looked at from now on; empty: no more.
+  void set_watch(const SweepWatch& watch);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.
   [[nodiscard]] std::span<const double> velocities() const;

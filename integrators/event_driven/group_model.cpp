@@ -32,8 +32,7 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
   for (const Index component : group.components) {
     std::vector<ContactPair> pairs = detector.pairs(component);
     if (!joints.empty()) {
-      const std::vector<ContactPair> dry_friction = detector.joint_friction(component);
-      pairs.insert(pairs.end(), dry_friction.begin(), dry_friction.end());
+      detector.joints().append_friction(component, pairs);
       std::stable_sort(pairs.begin(), pairs.end(), [&](const ContactPair& a, const ContactPair& b) {
         return assembly.mechanism(a.body) < assembly.mechanism(b.body);
       });
@@ -58,7 +57,7 @@ std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& d
 
 bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
   return std::any_of(group.components.begin(), group.components.end(),
-                     [&](Index component) { return detector.has_dry_friction(component); });
+                     [&](Index component) { return detector.joints().has_friction(component); });
 }
 
 /// Works that are integrated along in the motion of a group.

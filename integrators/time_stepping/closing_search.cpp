@@ -1,11 +1,10 @@
 // Problem: which contact closes first in a step that did not know of it.
 
-#include <carom/contact/detection/body_outlines.h>
 #include <carom/integrators/time_stepping/closing_search.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 namespace carom {
 
@@ -20,13 +19,6 @@ bool have_same_parts(const ConstraintKey& a, const ConstraintKey& b) {
 }
 
 }  // namespace
-
-void ClosingSearch::find(const State& state, double margin, std::vector<Constraint>& out) {
-  evaluate_positions(*assembly_, state.view(), evaluation_);
-  detector_->place(state.time, places_);
-  out.clear();
-  detector_->find_all({state.view(), evaluation_, places_, nullptr, margin}, search_, out);
-}
 
 /// True unless the contact acted up to the end of the part, or has closed often enough.
 bool ClosingSearch::may_close(const Constraint& contact, Modes acted) const {
@@ -50,33 +42,19 @@ bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
   return is_alone || gap_of_vertex(contact, start) >= -rounding;
 }
 
-/// Gap of the vertex of a contact of two bodies at the start, to all of the other outline; of other contacts
+/// Gap of the vertex of a contact at the start, to all of the other outline; of contacts without outlines
 /// minus infinity [m].
 double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
-  const BodyOutlines& outlines = detector_->bodies().outlines();
-  const bool of_bodies = contact.type == ConstraintType::contact && contact.bodies == 2 && !outlines.empty();
-  Index one = of_bodies ? outlines.find(contact.key.a) : none;
-  Index other = of_bodies ? outlines.find(contact.key.b) : none;
-  if (one == none || other == none) return -std::numeric_limits<double>::infinity();
-  FeatureKey vertex = contact.key.a;
-  if (vertex == outlines.list()[one].surface()) {
-    vertex = contact.key.b;
-    std::swap(one, other);
-  }
-  const BodyOutline& of_vertex = outlines.list()[one];
-  const Index feature = of_vertex.vertices.begin + (vertex.feature - of_vertex.key.feature);
+  std::optional<ContactPair> pair;
+  if (contact.type == ConstraintType::contact) pair = pair_of(look_.detector(), contact.key);
+  if (!pair) return -std::numeric_limits<double>::infinity();
   Constraint at;
-  detector_->contact({.body = of_vertex.body,
-                      .feature = feature,
-                      .material = of_vertex.material,
-                      .other = outlines.list()[other].body,
-                      .outline = other},
-                     start.view(), evaluation_, places_, at);
+  look_.contact(*pair, start.view(), at);
   return at.gap;
 }
 
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
-  find(end, near_, at_end_);
+  look_.find(end.view(), near_, at_end_);
   const double* const v = end.v.data();
   std::erase_if(at_end_, [&](const Constraint& contact) {
     return !(contact.normal_velocity(v) < 0.0) || !may_close(contact, acted);
@@ -90,7 +68,7 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
     const double speed = std::max(contact.speed(0, v), contact.speed(0, start.v.data()));
     reach = std::max(reach, std::abs(contact.gap) + caution * (end.time - start.time) * speed);
   }
-  find(start, reach, at_start_);
+  look_.find(start.view(), reach, at_start_);
   for (const Constraint& contact : at_end_) {
     if (!(contact.gap < first.gap) || !was_open(contact, start)) continue;
     first = {contact.gap, contact.normal_velocity(v), contact.key};

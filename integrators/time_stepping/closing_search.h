@@ -5,7 +5,7 @@
 /// that end there, whose rest begins with the impact (TimeStepping::impacts, where LocatedMotion does not
 /// follow a body alone: bodies that touch each other).
 
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/core/assembly.h>
@@ -42,11 +42,9 @@ public:
 
   /// Both must outlive it.
   ClosingSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
-      : assembly_(&assembly),
-        detector_(&detector),
+      : look_(assembly, detector),
         most_impacts_(options.most_impacts),
-        capture_speed_(options.capture_speed),
-        evaluation_(make_evaluation(assembly)) {}
+        capture_speed_(options.capture_speed) {}
 
   /// Forgets what has closed: a step begins.
   void begin_step() { closed_.clear(); }
@@ -64,15 +62,10 @@ private:
   [[nodiscard]] bool may_close(const Constraint& contact, Modes acted) const;
   [[nodiscard]] bool was_open(const Constraint& contact, const State& start);
   [[nodiscard]] double gap_of_vertex(const Constraint& contact, const State& start);
-  void find(const State& state, double margin, std::vector<Constraint>& out);
 
-  const Assembly* assembly_;
-  const Detector* detector_;
+  ContactLook look_;
   int most_impacts_;
   double capture_speed_;
-  Evaluation evaluation_;
-  GroundPlaces places_;
-  BodyContactSearch search_;
   std::vector<Constraint> at_start_, at_end_;
   std::vector<Count> closed_;
   double near_ = 0.0;  // gaps that are looked at, for the parts of one search [m]

@@ -48,7 +48,7 @@ void ContactTurning::begin(std::span<const StepIsland> islands, bool alone) {
 
 /// True of a contact of a body that may be followed alone.
 bool ContactTurning::may_be_followed(const Constraint& contact) const {
-  return contact.bodies == 1 && !assembly_->is_jointed(contact.body()) &&
+  return contact.bodies == 1 && !look_.assembly().is_jointed(contact.body()) &&
          !std::binary_search(shared_.begin(), shared_.end(), contact.body());
 }
 
@@ -96,11 +96,7 @@ double ContactTurning::reach(const StepInput& in) const {
 }
 
 void ContactTurning::find_at(const State& state, double margin, std::vector<Constraint>& out) {
-  out.clear();
-  detector_->place(state.time, places_);
-  for (Index component = 0; component < assembly_->components().size(); ++component)
-    evaluate_positions(*assembly_, component, state.view(), evaluation_);
-  detector_->find_all({state.view(), evaluation_, places_, nullptr, margin}, search_, out);
+  look_.find(state.view(), margin, out);
   std::sort(out.begin(), out.end(), is_before);
 }
 

@@ -10,6 +10,7 @@
 /// so that contacts neither sink nor gain energy but by errors of third order in a step. The step is repeated
 /// with the rows of its own path until its end no longer changes.
 
+#include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
@@ -31,10 +32,7 @@ class CAROM_API ContactTurning {
 public:
   /// Both must outlive it.
   ContactTurning(const Assembly& assembly, const Detector& detector)
-      : assembly_(&assembly),
-        detector_(&detector),
-        evaluation_(make_evaluation(assembly)),
-        lengths_(assembly.length_scales()) {}
+      : look_(assembly, detector), lengths_(assembly.length_scales()) {}
 
   /// Begins a step whose contacts are those of some islands, as they are at its start.
   /// \param alone whether bodies none of whose contacts is shared are followed by themselves
@@ -59,11 +57,7 @@ private:
   [[nodiscard]] double reach(const StepInput& in) const;
   void find_at(const State& state, double margin, std::vector<Constraint>& out);
 
-  const Assembly* assembly_;
-  const Detector* detector_;
-  Evaluation evaluation_;
-  GroundPlaces places_;
-  BodyContactSearch search_;
+  ContactLook look_;
   State middle_;
   std::vector<Turned> turned_;  // by key
   std::vector<Index> shared_;   // bodies with contacts of two, ascending

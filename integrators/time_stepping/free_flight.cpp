@@ -18,7 +18,7 @@ bool starts_free(const StepInput& in, const Detector& detector, std::span<const 
   if (!in.companion.modes.empty() || !in.companion.contacts.empty()) return false;
   const double* const q = in.start.q.data();
   for (const CentreRow& row : rows) {
-    if (may_touch(detector, row, q)) return false;
+    if (detector.ground().may_touch(row, q)) return false;
   }
   return true;
 }
@@ -56,7 +56,8 @@ bool FreeFlight::fits(const StepParts& parts) {
          std::all_of(batches.begin(), batches.end(), is_small);
 }
 
-FreeFlight::FreeFlight(StepParts& parts) : parts_(&parts), rows_(centre_rows(parts.constraints.detector())) {
+FreeFlight::FreeFlight(StepParts& parts)
+    : parts_(&parts), rows_(parts.constraints.detector().ground().centre_rows()) {
   for (const Range batch : parts.schedule.batches()) {
     // As in every step: components that are taken in one loop are swept.
     const bool alone = batch.size() == 1 && parts.options.iteration != Iteration::automatic;

@@ -184,9 +184,9 @@ void JointStage::update_friction_rows(JointContacts& contacts, StepTrial& trial)
   const JointView end{trial.end.view(), trial.at_end.rotation.data()};
   for (std::size_t c = 0; c < contacts.constraints.size(); ++c) {
     Constraint& friction = contacts.constraints[c];
-    contacts.detector.update_friction_rows(end, friction);
+    contacts.detector.joints().update_friction(end, friction);
     const double at_end = friction.times(0, arrays.scratch.data());
-    contacts.detector.update_friction_rows(halfway, friction);
+    contacts.detector.joints().update_friction(halfway, friction);
     friction.surface_velocity_after[0] = friction.times(0, arrays.scratch.data()) - at_end;
     contacts.problem->update_bound(c);
   }

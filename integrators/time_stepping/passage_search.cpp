@@ -42,10 +42,7 @@ double circle_in(const GroundPieces& pieces, Index outline) {
 }  // namespace
 
 PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
-    : assembly_(&assembly),
-      detector_(&detector),
-      at_(assembly.initial_state()),
-      evaluation_(make_evaluation(assembly)) {
+    : look_(assembly, detector), at_(assembly.initial_state()) {
   reach_.assign(assembly.layout()->bodies().size(), 0.0);
   displacement_.resize(at_.v.size());
   const auto add_all = [&](const BodyOutlines& outlines) {
@@ -118,7 +115,7 @@ double PassageSearch::approach(const Constraint& contact) const {
 double PassageSearch::most_approach(const State& start, const State& end) {
   double most = 0.0;
   Index body = 0;
-  for (const BodySlot& slot : assembly_->layout()->bodies()) {
+  for (const BodySlot& slot : look_.assembly().layout()->bodies()) {
     // Coordinates and velocities of the plane correspond one to one.
     for (Index i = 0; i < slot.v_size; ++i) {
       displacement_[slot.v + i] = end.q[slot.q + i] - start.q[slot.q + i];
@@ -129,14 +126,14 @@ double PassageSearch::most_approach(const State& start, const State& end) {
     ++body;
   }
   most *= 2.0;
-  if (!detector_->has_moving_ground()) return most;
+  if (!look_.detector().has_moving_ground()) return most;
   // Of ground twice what its speed at either end makes of it.
   double fastest = 0.0;
-  const GroundPieces& pieces = detector_->pieces().pieces();
+  const GroundPieces& pieces = look_.detector().pieces().pieces();
   for (const GroundOutline& outline : pieces.outlines()) {
-    if (!detector_->pieces().shapes().moves(outline.shape)) continue;
+    if (!look_.detector().pieces().shapes().moves(outline.shape)) continue;
     for (const double time : {start.time, end.time}) {
-      const GroundMotion motion = detector_->pieces().shapes().motion(outline.shape, time);
+      const GroundMotion motion = look_.detector().pieces().shapes().motion(outline.shape, time);
       fastest = std::max(fastest, std::hypot(motion.velocity[0], motion.velocity[1]) +
                                       outline.reach * std::abs(motion.spin));
     }
@@ -147,15 +144,12 @@ double PassageSearch::most_approach(const State& start, const State& end) {
 /// Finds what is near at a share of the step.
 void PassageSearch::look(const State& start, double share) {
   at_.time = start.time + share * step_;
-  for (const BodySlot& slot : assembly_->layout()->bodies()) {
+  for (const BodySlot& slot : look_.assembly().layout()->bodies()) {
     for (Index i = 0; i < slot.v_size; ++i) {
       at_.q[slot.q + i] = start.q[slot.q + i] + share * displacement_[slot.v + i];
     }
   }
-  evaluate_positions(*assembly_, at_.view(), evaluation_);
-  detector_->place(at_.time, places_);
-  contacts_.clear();
-  detector_->find_all({at_.view(), evaluation_, places_, &places_at_end_, margin_}, search_, contacts_);
+  look_.find(at_.view(), margin_, contacts_, &places_at_end_);
   std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
 }
 
@@ -183,7 +177,7 @@ PassageSearch::Passage PassageSearch::first(const State& start, const State& end
   const double most = most_approach(start, end);
   if (!(most > thinnest_)) return {};
   at_.v = start.v;
-  detector_->place(end.time, places_at_end_);
+  look_.detector().place(end.time, places_at_end_);
   margin_ = most;
   look(start, 0.0);
   keep_depths();

@@ -12,6 +12,7 @@
 /// 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the step's end.
 
 #include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -53,15 +54,12 @@ private:
   void keep_depths();
   [[nodiscard]] double depth_at_start(const Constraint& contact) const;
 
-  const Assembly* assembly_;
-  const Detector* detector_;
+  ContactLook look_;
   std::map<FeatureKey, double> thickness_;  // of outlines, by their first feature: a circle in them [m]
   std::vector<double> reach_;               // by body, from its centre of mass [m]
   double thinnest_ = 0.0;                   // depth that any pair may have [m]
   State at_;
-  Evaluation evaluation_;
-  GroundPlaces places_, places_at_end_;
-  BodyContactSearch search_;
+  GroundPlaces places_at_end_;
   std::vector<Constraint> contacts_;
   std::vector<double> displacement_;               // over all velocities, of the whole step
   std::vector<std::pair<Pair, double>> at_start_;  // pairs that overlap then, by how much [m]

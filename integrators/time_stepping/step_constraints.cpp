@@ -89,8 +89,8 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
     out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), parts), out.end());
   }
   // Components with joints come alone.
-  if (detector_.has_dry_friction() && components.size() == 1) {
-    detector_.find_joint_friction(components.begin, start, trial.at_start, out);
+  if (detector_.joints().has_friction() && components.size() == 1) {
+    detector_.joints().find_friction(components.begin, start, trial.at_start, out);
   }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);

@@ -53,9 +53,9 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   JointModel model(wheel.system);
   const Detector detector(model.assembly);
   const Index component = 0;  // all hang together
-  ASSERT_TRUE(detector.has_dry_friction(component));
+  ASSERT_TRUE(detector.joints().has_friction(component));
   std::vector<Constraint> found;
-  detector.find_joint_friction(component, model.state.view(), model.evaluation, found);
+  detector.joints().find_friction(component, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 1u);
   const Constraint& contact = found[0];
   EXPECT_TRUE(contact.has_dry_friction());
@@ -68,7 +68,9 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   EXPECT_EQ(contact.normal_velocity(model.state.v.data()), 0.0);
   EXPECT_DOUBLE_EQ(contact.tangential_velocity(model.state.v.data()), model.state.rate(slide));
   EXPECT_TRUE(detector.pairs(component).empty());
-  EXPECT_EQ(detector.joint_friction(component).size(), 1u);
+  std::vector<ContactPair> pairs;
+  detector.joints().append_friction(component, pairs);
+  EXPECT_EQ(pairs.size(), 1u);
 }
 
 TEST(JointFriction, RefusesWhatCannotBe) {

@@ -1,4 +1,4 @@
-// Impacts of coupled_impacts.json (30 digits, coupled_impacts.py): a ball between tables that move, a bar in
+// Impacts of coupled_impacts.json (40 digits, coupled_impacts.py): a ball between tables that move, a bar in
 // a corner, boxes that meet, a string and a net on springs, a chain against a wall. In both modes; in time
 // stepping by both rules, with impacts located and at the start of steps.
 

@@ -42,7 +42,7 @@ TEST(Detector, FindsContactsThenLimits) {
   const Detector detector(model.assembly);
   EXPECT_FALSE(detector.has_moving_ground());
   EXPECT_TRUE(detector.needs_rotations());
-  EXPECT_TRUE(detector.has_dry_friction(0));
+  EXPECT_TRUE(detector.joints().has_friction(0));
   EXPECT_TRUE(detector.has_static_friction());
   std::vector<Constraint> found;
   detector.find(0, model.state.view(), model.evaluation, 0.0, found);
@@ -52,7 +52,7 @@ TEST(Detector, FindsContactsThenLimits) {
             "point 'tip' (feature 0) of rigid body 'flap' on half-plane 'floor'");
   EXPECT_EQ(found[1].type, ConstraintType::limit);
   EXPECT_EQ(detector.name(found[1].key), "stop 'stop' (lower)");
-  detector.find_joint_friction(0, model.state.view(), model.evaluation, found);
+  detector.joints().find_friction(0, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[2].type, ConstraintType::joint_friction);
 }
@@ -67,9 +67,9 @@ TEST(Detector, PairsGiveTheConstraintsOfFind) {
     detector.place(0.7, places);
     std::vector<Constraint> found;
     detector.find(0, model.state.view(), model.evaluation, places, nullptr, 0.0, found);
-    detector.find_joint_friction(0, model.state.view(), model.evaluation, found);
+    detector.joints().find_friction(0, model.state.view(), model.evaluation, found);
     std::vector<ContactPair> pairs = detector.pairs(0);
-    for (const ContactPair& pair : detector.joint_friction(0)) pairs.push_back(pair);
+    detector.joints().append_friction(0, pairs);
     ASSERT_EQ(pairs.size(), found.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       EXPECT_EQ(moves(detector, pairs[i]), sways && i == 0);

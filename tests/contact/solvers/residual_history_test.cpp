@@ -55,6 +55,16 @@ TEST(ResidualHistory, EndsWithTheBudget) {
   EXPECT_LE(history.answer.residual, history.sweeps.back().residual);
 }
 
+// Masses that differ by 1e6 get some thirty times the sweeps of the budget: the history has all of them.
+TEST(ResidualHistory, IsThatOfTheAnswer) {
+  const ContactProblem problem =
+      contact_test::random_factors(1, {.contacts = 250, .bodies = 300, .mass_ratio = 1e6});
+  const ResidualHistory history =
+      residual_history(problem, SolverId::nonlinear_cg, {.residual = 1e-13, .sweeps = 7, .accepted = 1.0});
+  EXPECT_GT(history.answer.iterations, 7);
+  EXPECT_EQ(history.sweeps.size(), static_cast<std::size_t>(history.answer.iterations));
+}
+
 TEST(ResidualHistory, OfProjectionFallsToRounding) {
   const ContactProblem problem = contact_test::random_problem(7, 8).problem;
   const ResidualHistory history = residual_history(problem, SolverId::projection);

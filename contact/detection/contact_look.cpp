@@ -1,0 +1,16 @@
+#include <carom/contact/detection/contact_look.h>
+
+namespace carom {
+
+ContactLook::ContactLook(const Assembly& assembly, const Detector& detector)
+    : assembly_(&assembly), detector_(&detector), evaluation_(make_evaluation(assembly)) {}
+
+void ContactLook::find(const StateView& state, double margin, std::vector<Constraint>& out,
+                       const GroundPlaces* after) {
+  evaluate_positions(*assembly_, state, evaluation_);
+  detector_->place(state.time, places_);
+  out.clear();
+  detector_->find_all({state, evaluation_, places_, after, margin}, search_, out);
+}
+
+}  // namespace carom

@@ -1,0 +1,32 @@
+#pragma once
+
+/// \file
+/// Names of the features of an outline in the keys of contacts (ConstraintKey).
+
+#include <carom/core/constraint.h>
+#include <carom/core/ids.h>
+
+namespace carom {
+
+/// The vertices of an outline, of a body or on ground, and the outline as a whole: numbers that follow one
+/// another. A contact names the vertex of one side and the whole of the other.
+struct OutlineFeatures {
+  FeatureKey key;  ///< of its vertex 0; vertex i has the feature number i more, the whole that behind
+  Range vertices;  ///< places of its vertices among those of all outlines of its list
+
+  /// Identity of a vertex.
+  [[nodiscard]] FeatureKey vertex(Index i) const { return {key.owner, key.serial, key.feature + i}; }
+  /// Identity of the outline as a whole, against which a vertex of another one stands.
+  [[nodiscard]] FeatureKey surface() const { return vertex(vertices.size()); }
+  /// True if a feature is one of its vertices, or the whole.
+  [[nodiscard]] bool has(const FeatureKey& feature) const {
+    return feature.owner == key.owner && feature.serial == key.serial && feature.feature >= key.feature &&
+           feature.feature <= surface().feature;
+  }
+  /// Place of one of its vertices among those of all.
+  [[nodiscard]] Index place(const FeatureKey& vertex) const {
+    return vertices.begin + (vertex.feature - key.feature);
+  }
+};
+
+}  // namespace carom
