@@ -24,13 +24,13 @@ constexpr double mass = 2.0, speed = 1.0;  // [kg], [m/s]
 
 /// A disc that fills the room between two planes and moves towards one of them. Newton's law asks for
 /// v <= -0.9 of the upper plane and v >= -0.2 of the lower one.
-System squeezed(double lower, double upper) {
+System squeezed(double lower, double upper, ImpactLaw law = ImpactLaw::newton) {
   constexpr double radius = 0.25;
   System system;
   system.add(HalfPlane{.point = {0.0, -radius}, .normal = {0.0, 1.0}},
-             Surface{.friction = 0.0, .normal_restitution = lower}, "low");
+             Surface{.friction = 0.0, .normal_restitution = lower, .impact_law = law}, "low");
   system.add(HalfPlane{.point = {0.0, radius}, .normal = {0.0, -1.0}},
-             Surface{.friction = 0.0, .normal_restitution = upper}, "high");
+             Surface{.friction = 0.0, .normal_restitution = upper, .impact_law = law}, "high");
   const BodyId body = system.add(RigidBody{.mass = disc(mass, radius), .velocity = {3.0, speed}}, "disc");
   system.add(Disc{.body = body, .radius = radius}, "disc");
   return system;
@@ -64,6 +64,31 @@ TEST(EventJams, AreRefusedByNameIfAskedFor) {
   Simulation simulation(squeezed(0.2, 0.9), EventDriven{.impact_rules = {.refuse_jams = true}});
   EXPECT_THROWS(SolverError, simulation.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'",
                 "half-plane 'high' approaches at 1 m/s");
+  EXPECT_EQ(simulation.statistics().plastic_jams, 0);
+}
+
+TEST(EventJams, OfTheEnergeticLawAreSolvedOrRefusedLikewiseInBothModes) {
+  // No expansion does the work that the law asks for: the disc cannot move.
+  const System system = squeezed(0.2, 0.9, ImpactLaw::energetic);
+  for (const Mode& mode : {Mode(EventDriven{}), Mode(TimeStepping{.step = 1e-3})}) {
+    Simulation simulation(system, mode);
+    simulation.run_until(1.0);
+    EXPECT_NEAR(simulation.state().velocity(system.body("disc"))[1], 0.0, 1e-15);
+    EXPECT_EQ(simulation.statistics().plastic_jams, 1);
+    EXPECT_NEAR(simulation.energy().flow(EnergyFlow::impact_normal), 0.5 * mass * speed * speed, 1e-14);
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+  Simulation by_events(system, EventDriven{.impact_rules = {.refuse_jams = true}});
+  EXPECT_THROWS(SolverError, by_events.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'");
+  Simulation by_steps(system, TimeStepping{.step = 1e-3, .impact_rules = {.refuse_jams = true}});
+  EXPECT_THROWS(SolverError, by_steps.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'");
+}
+
+TEST(EventJams, PoissonsLawHasAnAnswer) {
+  // Both planes give back impulses, which cancel each other.
+  Simulation simulation(squeezed(0.2, 0.9, ImpactLaw::poisson), EventDriven{});
+  simulation.run_until(1.0);
+  EXPECT_NEAR(simulation.state().velocity(simulation.system().body("disc"))[1], 0.0, 1e-15);
   EXPECT_EQ(simulation.statistics().plastic_jams, 0);
 }
 
