@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -107,6 +109,33 @@ TEST(EventJams, OfWhatHardlySlidesHasAnImpactWithoutCollision) {
   simulation.run_until(1.0);
   EXPECT_GE(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 2);
   EXPECT_NEAR(simulation.state().velocity(simulation.system().bodies().front()).norm(), 0.0, 1e-9);
+}
+
+TEST(EventForces, ThatGrowWithoutBoundEndInAnImpactWithoutCollision) {
+  // A segment between terrain and a polygon slides at 4 mm/s, and stops at once.
+  Simulation simulation(carom_test::MixedScene(18134).system(), EventDriven{});
+  simulation.run_until(0.7555);
+  const State start = simulation.state();
+  simulation.run_until(0.7565);
+  EXPECT_EQ(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 3);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-9 * simulation.energy().scale());
+  // Time stepping, which does not know of it, tells the same, ever more closely.
+  double apart = 1.0;
+  for (const double step : {1e-5, 1e-6}) {
+    Simulation steps(simulation.system(), TimeStepping{.step = step});
+    State same = steps.state();
+    same.time = start.time;
+    same.q = start.q;
+    same.v = start.v;
+    steps.set_state(same);
+    steps.run_until(0.7565);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < same.q.size(); ++i)
+      largest = std::max(largest, std::abs(steps.state().q[i] - simulation.state().q[i]));
+    EXPECT_LE(largest, 5.0 * step);  // order 1, at some 20 rad/s
+    EXPECT_LE(largest, 0.2 * apart);
+    apart = largest;
+  }
 }
 
 TEST(EventForces, AreSearchedUpToTheEndOfSlidingOnly) {
