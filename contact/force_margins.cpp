@@ -13,8 +13,27 @@ namespace {
 // Margin where nothing can come to an end: friction in joints that slips [N].
 constexpr double unbounded_margin = 1.0;
 
+// Of the largest number of a null vector: rounding. A margin that rises by rounding along a vector which
+// wedges contacts would let their forces grow without bound until it is positive.
+constexpr double no_slope = 1e-10;
+
 // Of a multiplier of the margin, all of which sum to 1: rounding.
 constexpr double no_part = 1e-9;
+
+/// Sets numbers of a null vector to zero that are its rounding.
+void remove_rounding(std::span<double> vector) {
+  double largest = 0.0;
+  for (const double number : vector) largest = std::max(largest, std::abs(number));
+  for (double& number : vector) {
+    if (std::abs(number) <= no_slope * largest) number = 0.0;
+  }
+}
+
+/// A sum of which nothing is left but rounding is zero.
+double sum_of_slopes(double a, double b) {
+  const double sum = a + b;
+  return std::abs(sum) <= no_slope * (std::abs(a) + std::abs(b)) ? 0.0 : sum;
+}
 
 /// Lines of a contact: normal force, and both edges of friction, or of the moment, where it sticks.
 std::size_t lines_of(const ActiveContact& contact) {
@@ -52,6 +71,7 @@ void ForceMargins::add(std::span<const ActiveContact> contacts, std::size_t firs
       of_contact[0] = of_contact[-2];
       if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * of_contact[0];
     }
+    remove_rounding({vector, 2 * (last - first)});
   }
 }
 
@@ -65,8 +85,10 @@ void ForceMargins::collect(std::span<const ActiveContact> contacts, const double
     if (!c.at.has_dry_friction()) lines_.push_back({c.normal, dn});
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
-    lines_.push_back({scale * (c.friction * c.normal - c.tangential), scale * (c.friction * dn - dt)});
-    lines_.push_back({scale * (c.friction * c.normal + c.tangential), scale * (c.friction * dn + dt)});
+    for (const double side : {-1.0, 1.0}) {
+      lines_.push_back({scale * (c.friction * c.normal + side * c.tangential),
+                        scale * sum_of_slopes(c.friction * dn, side * dt)});
+    }
   }
 }
 
@@ -147,8 +169,9 @@ void ForceMargins::state_lines(std::span<const ActiveContact> contacts, std::siz
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {
-      line(scale * (c.friction * c.normal + side * c.tangential),
-           [&](const double* vector) { return scale * (c.friction * vector[at] + side * vector[at + 1]); });
+      line(scale * (c.friction * c.normal + side * c.tangential), [&](const double* vector) {
+        return scale * sum_of_slopes(c.friction * vector[at], side * vector[at + 1]);
+      });
     }
   }
 }

@@ -232,12 +232,12 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
     impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
   } else {
     chain.solve(problem_, answer_);
-    if (options_.plastic_jams && !answer_.report.usable() &&
-        remove_restitution(before_, restitution_, scratch_.given, problem_)) {
-      jammed_ = true;
-      forget_impulses();  // those of a jam have grown without bound
-      chain.solve(problem_, answer_);
-    }
+  }
+  if (options_.plastic_jams && !answer_.report.usable() &&
+      remove_restitution(before_, restitution_, scratch_.given, problem_)) {
+    jammed_ = true;
+    forget_impulses();               // those of a jam have grown without bound
+    chain.solve(problem_, answer_);  // without restitution all laws are one
   }
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;

@@ -20,13 +20,24 @@ struct Remainder {
 /// The zero, between two times of the step.
 struct Bracket {
   double low, high;
+  double reach;  // from the last time tried to the next, until times on both sides of the zero were [s]
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // a value below zero was found
   bool rises = false;  // at the high end it has turned: a zero may be before that
+  bool low_is_tried = false, high_is_tried = false;  // else they are ends of the step
+  // Illinois rule: the value of an end that stays counts half as much each time. A margin has kinks, beside
+  // which a plain secant moves one end only, ever more slowly.
+  double low_weight = 1.0, high_weight = 1.0;
+  bool took_low = false;
 
   void take(double time, double value, bool as_low) {
     (as_low ? low : high) = time;
     (as_low ? f_low : f_high) = value;
+    const bool again = as_low == took_low && (as_low ? low_is_tried : high_is_tried);
+    (as_low ? low_weight : high_weight) = 1.0;
+    if (again) (as_low ? high_weight : low_weight) *= 0.5;
+    took_low = as_low;
+    (as_low ? low_is_tried : high_is_tried) = true;
     below = below || !as_low;
     rises = rises && as_low;
   }
@@ -38,7 +49,8 @@ struct Bracket {
 };
 
 Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
-  Bracket bracket{step.begin(), step.end()};
+  constexpr double near = 1e-3;  // of the step
+  Bracket bracket{step.begin(), step.end(), near * (step.end() - step.begin())};
   const GuardSample &start = step.ends.start().sample, &end = step.ends.end().sample;
   if (predicted.guard == Guard::force) {
     const double level = step.ends.force_level(predicted.which);
@@ -89,10 +101,19 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
           step.ends.force_noise(predicted.which), false};
 }
 
-/// The next time to try: by the rate, by the secant, or the middle.
-double next_time(const Bracket& at, double time, const Remainder& rest, bool halve) {
-  const double next = rest.has_rate ? time - rest.value / rest.rate
-                                    : at.low + (at.high - at.low) * at.f_low / (at.f_low - at.f_high);
+/// The next time to try: by the rate, by the secant, or the middle. Without a rate the zero is enclosed near
+/// the time predicted first: a force may fall, rise and fall again within a step, and a secant to the end of
+/// the step leads to any of its zeros.
+double next_time(Bracket& at, double time, const Remainder& rest, bool halve) {
+  constexpr double growth = 4.0;
+  if (!rest.has_rate && !(at.low_is_tried && at.high_is_tried)) {
+    const double across = at.low_is_tried ? time + at.reach : time - at.reach;
+    at.reach *= growth;
+    if (across > at.low && across < at.high) return across;
+  }
+  const double low = at.low_weight * at.f_low, high = at.high_weight * at.f_high;
+  const double next =
+      rest.has_rate ? time - rest.value / rest.rate : at.low + (at.high - at.low) * low / (low - high);
   if (!(next > at.low && next < at.high) || halve) return 0.5 * (at.low + at.high);
   return next;
 }

@@ -1,5 +1,6 @@
 // Problem: name the cause that keeps a clock group from going on.
 
+#include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/run/failure_file.h>
@@ -16,6 +17,8 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
                         const IslandProblem* problem) const {
   std::string message = "event-driven at t = " + to_text(clock_->now) + " s: " + what;
   const Assembly& assembly = *model_->assembly;
+  if (problem != nullptr && problem->report().outcome == Outcome::no_solution)
+    message += pressed_by(assembly.system(), *problem);
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();

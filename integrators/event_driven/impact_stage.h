@@ -39,7 +39,8 @@ struct ImpactCounts {
 
 /// Memory of impacts, shared by clock groups.
 struct ImpactMemory {
-  explicit ImpactMemory(const ImpactRules& rules) : problem(options_of_impacts(rules)) {}
+  explicit ImpactMemory(const ImpactRules& rules)
+      : problem(options_of_impacts(rules)), of_other_law({.plastic_jams = !rules.refuse_jams}) {}
 
   IslandProblem problem;             ///< by Newton's law,
   IslandProblem of_other_law;        ///< and by others

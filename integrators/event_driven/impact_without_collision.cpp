@@ -27,16 +27,13 @@ bool share_restitution(std::vector<Constraint>& contacts) {
 
 }  // namespace
 
-void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, ImpactStage& impacts,
-                                     const GroupFailure& failure, SolverChain& chain, EventInstant& at) {
+bool ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, ImpactStage& impacts,
+                                     SolverChain& chain, EventInstant& at) {
   const auto find = [&](NormalSpeed speed) {
     list_touching(candidates, speed, at);
     return find_listed(chain, at) || find_limit(candidates, chain, at);
   };
-  if (!find(NormalSpeed::removed) && !find(NormalSpeed::kept)) {
-    failure.fail("no forces keep the contact, and no impact without collision does", failure.names(touching_),
-                 &problem_);
-  }
+  if (!find(NormalSpeed::removed) && !find(NormalSpeed::kept)) return false;
   const std::size_t first = at.balance.fresh.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
   std::size_t event = first;
@@ -48,6 +45,7 @@ void ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
   at.update();
   // It may throw the body against something else.
   if (impacts.resolve(at)) at.update();
+  return true;
 }
 
 /// Of the answers that are listed the most dissipative one. With unequal restitution there may be none, with

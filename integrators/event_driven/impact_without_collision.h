@@ -10,7 +10,6 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_instant.h>
-#include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 #include <carom/integrators/event_driven/mode_decision.h>
 
@@ -27,10 +26,12 @@ public:
   /// Up to enumeration_groups contacts: of all answers with impulses that change something takes the one that
   /// takes most energy. Of more, or where there is none: the limit for vanishing eps of the impulses of an
   /// impact with e = 0 and b = gamma + eps a, which exists wherever forces do not. Applies it, books and
-  /// records it by `impacts`, and resolves the impacts that follow. Fails where there is none.
-  /// \param candidates contacts of one island without forces that keep them
-  void resolve(std::span<const Candidate> candidates, ImpactStage& impacts, const GroupFailure& failure,
-               SolverChain& chain, EventInstant& at);
+  /// records it by `impacts`, and resolves the impacts that follow. False where there is none: nothing
+  /// happens. \param candidates contacts of one island without forces that keep them
+  [[nodiscard]] bool resolve(std::span<const Candidate> candidates, ImpactStage& impacts, SolverChain& chain,
+                             EventInstant& at);
+  /// The contact problem of the impact that was looked for last.
+  [[nodiscard]] const IslandProblem& problem() const { return problem_; }
 
 private:
   // The normal velocities of what touches are rounding, which the certificate of P = 0 would refuse: they

@@ -74,7 +74,8 @@ bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at
   const Decision decision = decide_candidates(pairs, at);
   if (decision == Decision::impossible || decision == Decision::failed) failure_->demand_finite_loads(at.now);
   if (decision == Decision::impossible) {
-    memory_->impact.resolve(memory_->candidates, *impacts_, *failure_, *chain_, at);
+    if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) fail_unkept();
+    unbounded_->clear();
     stopped_ = {};
     return false;
   }
@@ -157,10 +158,8 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
   if (decide_by_excess(pairs, at) == Decision::impossible) return Decision::impossible;
   collect_candidates(pairs, at);
   const std::vector<Candidate>& candidates = memory_->candidates;
-  if (unbounded) {
-    failure_->fail(unbounded_->reason() + "; forces of contact grow without bound (Painleve)",
-                   names_of_candidates());
-  }
+  // Where larger friction leaves forces too, sliding stops at once: an impact as well.
+  if (unbounded) return Decision::impossible;
   const bool slides = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
     return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
   });
@@ -168,6 +167,15 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
   const bool enumerated = groups_of(candidates) <= static_cast<std::size_t>(enumeration_groups);
   const Decision decision = decide(at);
   return decision == Decision::failed && slides && enumerated ? Decision::impossible : decision;
+}
+
+/// Fails where neither forces nor an impact without collision keep the candidates.
+void ModeSelection::fail_unkept() const {
+  const char* const unkept = "no forces keep the contact, and no impact without collision does";
+  failure_->fail(has_unbounded_force()
+                     ? unbounded_->reason() + "; forces of contact grow without bound (Painleve); " + unkept
+                     : unkept,
+                 names_of_candidates(), &memory_->impact.problem());
 }
 
 /// `impossible` if friction that is larger by little leaves no forces; `failed` otherwise.
@@ -181,9 +189,7 @@ Decision ModeSelection::decide_by_excess(std::span<const Index> pairs, EventInst
       law.friction = (1.0 + excess) * law.sliding_friction(std::abs(candidate.slip));
       law.static_friction = candidate.at.friction = law.friction;
     }
-    if (decide(at) != Decision::impossible) continue;
-    unbounded_->clear();
-    return Decision::impossible;
+    if (decide(at) == Decision::impossible) return Decision::impossible;
   }
   return Decision::failed;
 }

@@ -64,6 +64,7 @@ private:
   [[nodiscard]] Decision decide_by_excess(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] Decision decide_candidates(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] bool has_unbounded_force() const;
+  [[noreturn]] void fail_unkept() const;
   [[nodiscard]] std::vector<std::string> names_of_candidates() const;
   void close_candidates(ActiveSet& active) const;
   static void note_motions(const Constraint& contact, const EventInstant& at, EventRecord& event);

@@ -1,5 +1,6 @@
 // Problem: say what went wrong in a step, with names, and what would help.
 
+#include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/integrators/run/failure_file.h>
@@ -28,19 +29,6 @@ std::string listed(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];
   if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
   return text;
-}
-
-/// Obstacles of a problem that move along the normal of a contact: a body that they press has no room.
-std::string pressed_by(const System& system, const IslandProblem& problem) {
-  std::vector<std::string> names;
-  for (const Constraint& contact : problem.constraints()) {
-    const FeatureKey& ground = contact.key.b;
-    if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
-    if (contact.surface_velocity_after[0] == 0.0) continue;
-    const std::string name = system.name(ObstacleId{ground.serial, system.token()});
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return names.empty() ? std::string() : "; bodies are pressed by the motion of " + listed(names);
 }
 
 [[noreturn]] void refuse(const char* option, double value, const char* allowed) {

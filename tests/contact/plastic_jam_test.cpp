@@ -6,6 +6,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/core/assembly.h>
 
@@ -129,6 +130,42 @@ TEST(PlasticJam, IsSolvedWithoutRestitution) {
   ASSERT_TRUE(problem.solve(jam.chain).usable());
   EXPECT_EQ(problem.restitution_factor(), 1.0);
 }
+
+/// Random jams by another law than Newton's, of which all have an answer. Returns how many are plastic.
+int solve_random_jams(ImpactLaw law) {
+  int jammed = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    Random random(seed);
+    std::vector<Touch> touches(2 + random.below(2));
+    for (Touch& touch : touches) {
+      touch = {random.vec<2>(0.5), random.vec<2>(1.0).normalized(), {}};
+      const double e = random.uniform(0.0, 1.0), along = random.uniform(0.0, 1.0);
+      touch.law = {.friction = random.uniform(0.0, 1.5),
+                   .normal_restitution = e,
+                   .tangential_restitution = law == ImpactLaw::energetic ? 0.0 : along,
+                   .impact_law = law};
+    }
+    Jam jam(touches);
+    const std::array<double, 3> velocity{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-3, 3)};
+    IslandProblem problem(IslandOptions{.plastic_jams = true});
+    ImpactSolver solver;
+    problem.use(&solver, law);
+    jam.state(problem, velocity);
+    EXPECT_TRUE(problem.solve(jam.chain).usable()) << seed;
+    EXPECT_LE(problem.report().residual, 1e-10) << seed;  // tolerated_residual
+    if (problem.restitution_factor() == 1.0) continue;
+    ++jammed;
+    EXPECT_LE(jam.gain(problem, velocity), 1e-12) << seed;  // rounding, as below
+  }
+  return jammed;
+}
+
+TEST(PlasticJam, PoissonsLawHasAnAnswerOfItsOwn) {
+  // What the expansion gives back at least, e P of the compression, is in the cones of P.
+  EXPECT_EQ(solve_random_jams(ImpactLaw::poisson), 0);
+}
+
+TEST(PlasticJam, WhatIsJammedCannotGiveBackEnergy) { EXPECT_GT(solve_random_jams(ImpactLaw::energetic), 0); }
 
 TEST(PlasticJam, IsTakenOfRandomJamsWhereEnumerationFindsNoAnswerAndOnlyThere) {
   int without = 0, jammed = 0;

@@ -249,6 +249,36 @@ TEST(ImpactSolver, EnergeticLawOfSeveralContactsDoesNotGain) {
   EXPECT_GT(newton_gains, 0);
 }
 
+// Two contacts jam a body (its 4 rows have 3 freedoms), without restitution: the compression leaves 1e-16
+// m/s, which impulses of the expansion would have to answer to in vain.
+TEST(ImpactSolver, WhatTheCompressionStopsOfAJamStaysAtRest) {
+  const std::vector<double> w{
+      0.7038588744317656,     0.2303319596321336,    -0.7239595051074278, -0.0038841687784730294,
+      0.2303319596321336,     1.159095821415955,     -0.156683200978916,  0.0009387133746429077,
+      -0.7239595051074278,    -0.156683200978916,    0.8899031830351116,  -0.4007209154003587,
+      -0.0038841687784730294, 0.0009387133746429077, -0.4007209154003587, 1.1765675518944736};
+  ContactProblem problem;
+  problem.reset(4);
+  std::copy(w.begin(), w.end(), problem.matrix().begin());
+  const std::vector<double> before{1.1136924715771102e-14, -1.1445708772357956, -0.35441387793107215,
+                                   0.7813386170920429};
+  std::copy(before.begin(), before.end(), problem.vector().begin());
+  problem.sets()[0].kind = problem.sets()[2].kind = SetKind::half_line;
+  problem.sets()[1] = {.kind = SetKind::bounded_interval, .bound = 0, .coefficient = 0.307024354228201};
+  problem.sets()[3] = {.kind = SetKind::bounded_interval, .bound = 2, .coefficient = 0.5690573897211474};
+  problem.group();
+  for (const ImpactLaw law : {ImpactLaw::poisson, ImpactLaw::energetic}) {
+    SolverChain chain;
+    ImpactSolver solver;
+    ContactSolution answer;
+    solver.solve(law, problem, std::vector<double>(4, 0.0), chain, answer);
+    ASSERT_TRUE(answer.report.usable()) << to_string(law) << answer.report.reason;
+    std::vector<double> after(4);
+    problem.velocities(answer.impulse, after);
+    for (const double velocity : after) EXPECT_NEAR(velocity, 0.0, 1e-14);  // rounding of impulses of 3 N s
+  }
+}
+
 /// Checks of the two phases of one contact, for which phases are enumerated by hand.
 TEST(ImpactSolver, PoissonOfOneContactIsOneOfItsModes) {
   Random random(9);

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -24,13 +26,13 @@ constexpr double mass = 2.0, speed = 1.0;  // [kg], [m/s]
 
 /// A disc that fills the room between two planes and moves towards one of them. Newton's law asks for
 /// v <= -0.9 of the upper plane and v >= -0.2 of the lower one.
-System squeezed(double lower, double upper) {
+System squeezed(double lower, double upper, ImpactLaw law = ImpactLaw::newton) {
   constexpr double radius = 0.25;
   System system;
   system.add(HalfPlane{.point = {0.0, -radius}, .normal = {0.0, 1.0}},
-             Surface{.friction = 0.0, .normal_restitution = lower}, "low");
+             Surface{.friction = 0.0, .normal_restitution = lower, .impact_law = law}, "low");
   system.add(HalfPlane{.point = {0.0, radius}, .normal = {0.0, -1.0}},
-             Surface{.friction = 0.0, .normal_restitution = upper}, "high");
+             Surface{.friction = 0.0, .normal_restitution = upper, .impact_law = law}, "high");
   const BodyId body = system.add(RigidBody{.mass = disc(mass, radius), .velocity = {3.0, speed}}, "disc");
   system.add(Disc{.body = body, .radius = radius}, "disc");
   return system;
@@ -67,6 +69,31 @@ TEST(EventJams, AreRefusedByNameIfAskedFor) {
   EXPECT_EQ(simulation.statistics().plastic_jams, 0);
 }
 
+TEST(EventJams, OfTheEnergeticLawAreSolvedOrRefusedLikewiseInBothModes) {
+  // No expansion does the work that the law asks for: the disc cannot move.
+  const System system = squeezed(0.2, 0.9, ImpactLaw::energetic);
+  for (const Mode& mode : {Mode(EventDriven{}), Mode(TimeStepping{.step = 1e-3})}) {
+    Simulation simulation(system, mode);
+    simulation.run_until(1.0);
+    EXPECT_NEAR(simulation.state().velocity(system.body("disc"))[1], 0.0, 1e-15);
+    EXPECT_EQ(simulation.statistics().plastic_jams, 1);
+    EXPECT_NEAR(simulation.energy().flow(EnergyFlow::impact_normal), 0.5 * mass * speed * speed, 1e-14);
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+  Simulation by_events(system, EventDriven{.impact_rules = {.refuse_jams = true}});
+  EXPECT_THROWS(SolverError, by_events.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'");
+  Simulation by_steps(system, TimeStepping{.step = 1e-3, .impact_rules = {.refuse_jams = true}});
+  EXPECT_THROWS(SolverError, by_steps.run_until(1.0), "no solution", "refuse_jams", "half-plane 'low'");
+}
+
+TEST(EventJams, PoissonsLawHasAnAnswer) {
+  // Both planes give back impulses, which cancel each other.
+  Simulation simulation(squeezed(0.2, 0.9, ImpactLaw::poisson), EventDriven{});
+  simulation.run_until(1.0);
+  EXPECT_NEAR(simulation.state().velocity(simulation.system().body("disc"))[1], 0.0, 1e-15);
+  EXPECT_EQ(simulation.statistics().plastic_jams, 0);
+}
+
 TEST(EventJams, TheLogSaysSo) {
   std::string text;
   Simulation simulation(squeezed(0.2, 0.9), EventDriven{});
@@ -82,6 +109,33 @@ TEST(EventJams, OfWhatHardlySlidesHasAnImpactWithoutCollision) {
   simulation.run_until(1.0);
   EXPECT_GE(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 2);
   EXPECT_NEAR(simulation.state().velocity(simulation.system().bodies().front()).norm(), 0.0, 1e-9);
+}
+
+TEST(EventForces, ThatGrowWithoutBoundEndInAnImpactWithoutCollision) {
+  // A segment between terrain and a polygon slides at 4 mm/s, and stops at once.
+  Simulation simulation(carom_test::MixedScene(18134).system(), EventDriven{});
+  simulation.run_until(0.7555);
+  const State start = simulation.state();
+  simulation.run_until(0.7565);
+  EXPECT_EQ(simulation.statistics().events[static_cast<std::size_t>(EventKind::impact_without_collision)], 3);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-9 * simulation.energy().scale());
+  // Time stepping, which does not know of it, tells the same, ever more closely.
+  double apart = 1.0;
+  for (const double step : {1e-5, 1e-6}) {
+    Simulation steps(simulation.system(), TimeStepping{.step = step});
+    State same = steps.state();
+    same.time = start.time;
+    same.q = start.q;
+    same.v = start.v;
+    steps.set_state(same);
+    steps.run_until(0.7565);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < same.q.size(); ++i)
+      largest = std::max(largest, std::abs(steps.state().q[i] - simulation.state().q[i]));
+    EXPECT_LE(largest, 5.0 * step);  // order 1, at some 20 rad/s
+    EXPECT_LE(largest, 0.2 * apart);
+    apart = largest;
+  }
 }
 
 TEST(EventForces, AreSearchedUpToTheEndOfSlidingOnly) {
