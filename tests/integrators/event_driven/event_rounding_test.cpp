@@ -1,4 +1,4 @@
-// Scenes whose rounding is large: far from the origin, after many turns.
+// Scenes whose rounding is large: far from the origin, after many turns, of masses that differ a millionfold.
 // They come to the same rest as scenes of ordinary numbers.
 
 #include "tests/integrators/event_driven/body_scenes.h"
@@ -57,6 +57,28 @@ TEST(EventRounding, BoxComesToLieAfterManyTurns) {
     EXPECT_NEAR(simulation.state().angle(box), turned, 1e-8 + 4.0 * epsilon * turned) << turns;
     EXPECT_EQ(simulation.contact_forces().size(), 2u) << turns;
     EXPECT_LT(simulation.events().size(), 400u) << turns;
+  }
+}
+
+// Forces of 1e7 N nearly cancel on a disc of 1 kg.
+TEST(EventRounding, HeavyDiscRestsOnALightOne) {
+  for (const double friction : {0.0, 0.3}) {
+    for (const double heavy : {1e3, 1e5, 1e6, 1e7}) {
+      System system;
+      system.add(Gravity{{0.0, -g}});
+      system.set_default_law({.friction = friction, .normal_restitution = 0.5});
+      system.add(HalfPlane{.normal = {0.0, 1.0}});
+      const BodyId below = add_disc(system, 1.0, 0.1, {0.0, 0.1});
+      const BodyId above = add_disc(system, heavy, 0.5, {0.0, 0.7});
+      Simulation simulation(system, EventDriven{});
+      simulation.run_until(0.1);
+      EXPECT_NEAR(simulation.state().position(above)[1], 0.7, 1e-9) << heavy;  // gap_tolerance
+      const auto forces = simulation.contact_forces();
+      // Twice the weights times the rounding of some ten operations.
+      const double rounding = 20.0 * epsilon * (1.0 + heavy) * g;
+      EXPECT_NEAR(force_on(forces, below).mean_force[1], g, 10.0 * rounding) << heavy;
+      EXPECT_NEAR(force_on(forces, above).mean_force[1], heavy * g, 1e-9 * heavy * g) << heavy;
+    }
   }
 }
 
