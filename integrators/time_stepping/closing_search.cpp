@@ -78,8 +78,10 @@ double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& star
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
   find(end, near_, at_end_);
   const double* const v = end.v.data();
+  // What is in something has closed, even where it recedes again, past the middle of the other.
   std::erase_if(at_end_, [&](const Constraint& contact) {
-    return !(contact.normal_velocity(v) < 0.0) || !may_close(contact, acted);
+    const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding;
+    return !closes || !may_close(contact, acted);
   });
   Closing first;
   if (at_end_.empty()) return first;
