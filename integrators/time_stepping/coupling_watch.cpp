@@ -11,9 +11,9 @@ CouplingRating rate_at_start(const StepInput& in, Index component, StepTrial& tr
 
 }  // namespace
 
-bool couplings_lead_astray(const StepInput& in, Index component, StepTrial& trial) {
+bool leads_astray(Iteration iteration, const StepInput& in, Index component, StepTrial& trial) {
   constexpr double largest_rate = 20.0;  // sweeps contract below 1
-  return rate_at_start(in, component, trial).rate > largest_rate;
+  return iteration == Iteration::anderson && rate_at_start(in, component, trial).rate > largest_rate;
 }
 
 void CouplingWatch::rate(const StepInput& in, Index component, double contraction, StepTrial& trial,
