@@ -1,6 +1,7 @@
 #include <carom/core/errors.h>
 #include <carom/integrators/contact_forces.h>
 
+#include <algorithm>
 #include <string>
 
 namespace carom {
@@ -90,14 +91,19 @@ PartForce force_on(std::span<const LastingContact> forces, ObstacleId obstacle) 
 
 std::vector<LastingContact> lasting_forces(const StepReport& report) {
   std::vector<LastingContact> out;
+  // A step in several parts has a record of each; their directions differ by what turns within the step.
+  const bool parted = std::any_of(report.contacts.begin(), report.contacts.end(),
+                                  [&](const ContactRecord& contact) { return contact.time != report.time; });
   for (const ContactRecord& contact : report.contacts) {
     if (contact.impact || contact.directions < 2 || !(report.step > 0.0)) continue;
-    LastingContact& force = out.emplace_back();
-    static_cast<ContactPlace&>(force) = contact;
-    force.velocity = contact.velocity_after;
-    for (std::size_t row = 0; row < 3; ++row) force.force[row] = contact.impulse[row] / report.step;
-    force.rolling_moment = contact.rolling_moment / report.step;
-    force.mode = contact.mode;
+    const auto is_it = [&](const LastingContact& other) { return other.key == contact.key; };
+    auto force = parted ? std::find_if(out.begin(), out.end(), is_it) : out.end();
+    if (force == out.end()) force = out.insert(out.end(), LastingContact{});
+    static_cast<ContactPlace&>(*force) = contact;
+    force->velocity = contact.velocity_after;
+    for (std::size_t row = 0; row < 3; ++row) force->force[row] += contact.impulse[row] / report.step;
+    force->rolling_moment += contact.rolling_moment / report.step;
+    force->mode = contact.mode;
   }
   return out;
 }

@@ -37,7 +37,7 @@ struct PartForce {
 /// Likewise on a shape on ground.
 [[nodiscard]] CAROM_API PartForce force_on(std::span<const LastingContact> forces, ObstacleId obstacle);
 
-/// Mean forces of the contacts of a step of time stepping that last, those of impacts left out.
+/// Mean forces of the contacts of a step of time stepping that last, one for each, those of impacts left out.
 [[nodiscard]] CAROM_API std::vector<LastingContact> lasting_forces(const StepReport& report);
 
 }  // namespace carom

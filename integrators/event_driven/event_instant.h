@@ -47,7 +47,8 @@ struct CAROM_API EventInstant {
   EventBalance& balance;               ///< books
   EventScales scales{};                ///< of the phase to come
   double touch_gap = 0.0;              ///< gaps up to here touch [m]
-  /// The rate of a driver jumps: contacts that were closed approach without having approached before.
+  /// The rate of a driver, or of a shape on ground, jumps: contacts that were closed approach without having
+  /// approached before.
   bool rate_jumps = false;
 
   /// Brings the sample, without contact, and all contacts to the state. Pairs of two bodies that cannot touch

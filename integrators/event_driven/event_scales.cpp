@@ -37,8 +37,9 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
   double size = 1.0, velocity = 0.0;
   for (const auto& part : motion.model().parts()) {
     const Range q = part.ranges.q, v = part.ranges.v;
-    for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(at.state.q[i]));
     for (Index i = v.begin; i < v.end; ++i) {
+      // In the plane, and of particles, coordinates have the order of velocities.
+      size = std::max(size, std::abs(at.state.q[q.begin + i - v.begin]) * lengths[i]);
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
       scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }

@@ -83,6 +83,31 @@ void accept_step(GroupParts& group, EventBalance& balance) {
   if (group.projection.apply(now, group.y, balance)) flow.correct(group.y);
 }
 
+namespace {
+
+/// True if the velocity of a shape on ground jumps, by more than tolerances leave: what was closed on it
+/// parts, is hit, or begins to slip, and is not projected onto the new velocity.
+bool ground_jumps(const GroupParts& group, const MotionSample& now) {
+  constexpr double left_by_tolerances = 10.0;
+  const GroupModel& model = group.motion.model();
+  const double* const velocity = now.state.v.data();
+  const auto jumps = [&](double apart, double size) {
+    const EventDriven& options = *model.options;
+    return std::abs(apart) >
+           left_by_tolerances * (options.relative_tolerance * size + options.absolute_tolerance);
+  };
+  const std::vector<ActiveContact>& closed = group.motion.active().list();
+  return std::any_of(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
+    if (!moves(*model.detector, contact.pair)) return false;
+    const Constraint& at = contact.at;
+    return jumps(at.normal_velocity(velocity), at.speed(0, velocity)) ||
+           (contact.sticks() &&
+            jumps(at.tangential_velocity(velocity), at.speed(at.tangent_row(), velocity)));
+  });
+}
+
+}  // namespace
+
 void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
   group.motion.sample(at.time, at.y.data(), Forces::all, at.now);
   // A meeting is counted where groups meet: others join at an event of one of them.
@@ -91,14 +116,16 @@ void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
     group.modes.note(event, group.motion.active(), 4.0 * group.detector.force_noise(event));
   record_event(event, group, at.balance);
   // Contacts push but do not pull: where the rate of a driver jumps, what was closed may part, or be hit.
-  // Slower jumps count as none, as impacts do.
+  // Slower jumps count as none, as impacts do. So may what is closed on ground that jumps, however slowly:
+  // nothing else gives it the new velocity.
   if (event.guard == Guard::discontinuity) {
     const GroupModel& model = group.motion.model();
     const std::span<double> velocities = at.y.subspan(model.unknowns.q_size(), model.unknowns.v_size());
+    const bool by_ground = ground_jumps(group, at.now);
     const std::span<const double> impulses = group.motion.joints().follow_jump(
         at.now, velocities, model.options->capture_speed, at.balance.flows[EnergyFlow::external]);
-    at.rate_jumps = !impulses.empty();
-    if (at.rate_jumps) at.balance.list_joint_impulses(impulses, at.time, model, at.now);
+    at.rate_jumps = by_ground || !impulses.empty();
+    if (!impulses.empty()) at.balance.list_joint_impulses(impulses, at.time, model, at.now);
   }
   if (at.rate_jumps) return;
   if (event.guard == Guard::slip) {

@@ -74,7 +74,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   std::vector<Constraint>& touching = memory_->touching;
   const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
-  const bool captured = fastest <= options_->capture_speed && counts.sequence == 0;
+  const bool captured = fastest <= capture_speed(at) && counts.sequence == 0;
   memory_->note = {};
   memory_->note.cut_sequence =
       sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
@@ -198,9 +198,24 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
 
+/// Speed of what touches after a fall through the rounding of gaps [m/s].
+double ImpactStage::speed_of_rounding(const EventInstant& at) const {
+  double fall = 0.0;
+  for (const Constraint& contact : memory_->touching) {
+    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
+  }
+  return std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
+}
+
+/// Impacts up to this speed close what touches [m/s]. Far from the origin bounces end in the rounding of gaps
+/// before they are as slow as the option says: each would begin a little deeper than the one before it.
+double ImpactStage::capture_speed(const EventInstant& at) const {
+  return std::max(options_->capture_speed, speed_of_rounding(at));
+}
+
 /// Adds contacts that are about to close too.
 void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant& at) {
-  const double limit = options_->capture_speed * options_->capture_speed;
+  const double speed_limit = capture_speed(at), limit = speed_limit * speed_limit;
   for (const Index i : pairs) {
     if (at.touches(i)) continue;
     const Constraint& contact = at.contacts[i];
@@ -221,11 +236,7 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
 void ImpactStage::close_captured(EventInstant& at) {
   // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
   // lifts it by, it falls again.
-  double fall = 0.0;
-  for (const Constraint& contact : memory_->touching) {
-    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
-  }
-  const double slow = std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
+  const double slow = speed_of_rounding(at);
   memory_->before_closing.assign(at.y.begin(), at.y.end());
   // To stop one may be to move another, in almost singular positions: then it may not be stopped. And bodies
   // that slide may have to part, however slowly, where others guide them.
@@ -240,7 +251,7 @@ void ImpactStage::close_captured(EventInstant& at) {
 /// \param slow sliding speed up to which `with_sliding` stops sliding too [m/s]
 bool ImpactStage::close_captured(Closing closing, double slow, EventInstant& at) {
   constexpr int most_projections = 3;  // a shift turns rows
-  const double fastest = closing == Closing::pressed ? at.scales.speed_noise : options_->capture_speed;
+  const double fastest = closing == Closing::pressed ? at.scales.speed_noise : capture_speed(at);
   std::vector<ActiveContact>& list = memory_->captured;
   list.clear();
   for (std::size_t i = 0; i < memory_->touching.size(); ++i) {

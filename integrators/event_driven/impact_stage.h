@@ -82,6 +82,8 @@ private:
   [[nodiscard]] IslandProblem& problem_by_law();
   void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
+  [[nodiscard]] double speed_of_rounding(const EventInstant& at) const;
+  [[nodiscard]] double capture_speed(const EventInstant& at) const;
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(EventInstant& at);
   // Contacts that a projection closes: those that part slower than the capture speed, where those that slide

@@ -94,8 +94,7 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
       problem_.slide(c, -sign * contacts_[c].friction);
   }
   problem_.set_free_velocity(now.acceleration.data());
-  size_ = 0.0;
-  for (const double b : problem_.problem().vector()) size_ = std::max(size_, std::abs(b));
+  size_ = size_without_contact(problem_);
   const bool follow = bounds_follow(motion);
   const bool solved =
       follow ? converge_friction_bounds(motion, now, candidates, chain) : problem_.solve(chain).usable();
@@ -104,6 +103,7 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
     name_cause(problem_, taking_part_, slips_, candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
+  size_ = std::max(size_, size_by_rounding(problem_));
   Decision decision = Decision::made;
   if (!follow) read_modes(candidates, problem_.impulses());
   if (report.outcome == Outcome::several_solutions || finds_several(candidates)) {

@@ -4,9 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace carom {
+
+double size_without_contact(const IslandProblem& problem) {
+  double size = 0.0;
+  for (const double b : problem.problem().vector()) size = std::max(size, std::abs(b));
+  return size;
+}
+
+double size_by_rounding(const IslandProblem& problem) {
+  constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+  const std::span<const double> force = problem.impulses();
+  double largest = 0.0;
+  for (int row = 0; row < static_cast<int>(force.size()); ++row) {
+    const double by_force = problem.problem().diagonal(row) * force[static_cast<std::size_t>(row)];
+    largest = std::max(largest, std::abs(by_force));
+  }
+  return rounding / SlipDirections::no_acceleration * largest;
+}
 
 void open_where_parting(const DecidedContacts& decided, std::span<Candidate> candidates) {
   for (std::size_t c = 0; c < decided.contacts.size(); ++c) {

@@ -38,6 +38,11 @@ struct MotionComparison {
   std::vector<double> force, none, answered, given;  ///< by row
 };
 
+/// Largest acceleration of contacts that no force acts on [m/s^2].
+[[nodiscard]] CAROM_API double size_without_contact(const IslandProblem& problem);
+/// Size against which the rounding of the accelerations that an answer leads to is no acceleration: forces
+/// that nearly cancel, of a heavy body that rests on a light one, leave the light one theirs [m/s^2].
+[[nodiscard]] CAROM_API double size_by_rounding(const IslandProblem& problem);
 /// Opens closed candidates whose contacts part.
 CAROM_API void open_where_parting(const DecidedContacts& decided, std::span<Candidate> candidates);
 /// Lets closed candidates stick that have no velocity of slip and get none, except where friction is

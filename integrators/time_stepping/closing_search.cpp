@@ -42,6 +42,15 @@ bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
   return is_alone || gap_of_vertex(contact, start) >= -rounding;
 }
 
+/// Least gap of the parts of a contact at the start, at least as large as `reach` where none is listed [m].
+double ClosingSearch::gap_at_start(const Constraint& contact, double reach) const {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Constraint& other : at_start_) {
+    if (have_same_parts(other.key, contact.key)) gap = std::min(gap, other.gap);
+  }
+  return std::isinf(gap) ? reach : gap;
+}
+
 /// Gap of the vertex of a contact at the start, to all of the other outline; of contacts without outlines
 /// minus infinity [m].
 double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
@@ -56,8 +65,11 @@ double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& star
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
   look_.find(end.view(), near_, at_end_);
   const double* const v = end.v.data();
+  // What is in something has closed, even where it recedes again, past the middle of the other, if it came
+  // fast: slow contacts that dip by little are not worth a part.
   std::erase_if(at_end_, [&](const Constraint& contact) {
-    return !(contact.normal_velocity(v) < 0.0) || !may_close(contact, acted);
+    const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding;
+    return !closes || !may_close(contact, acted);
   });
   Closing first;
   if (at_end_.empty()) return first;
@@ -71,6 +83,9 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
   look_.find(start.view(), reach, at_start_);
   for (const Constraint& contact : at_end_) {
     if (!(contact.gap < first.gap) || !was_open(contact, start)) continue;
+    const bool recedes = !(contact.normal_velocity(v) < 0.0);
+    const double fallen = capture_speed_ * (end.time - start.time);
+    if (recedes && !(gap_at_start(contact, reach) - contact.gap > fallen)) continue;
     first = {contact.gap, contact.normal_velocity(v), contact.key};
   }
   near_ = std::max(near_, 2.0 * std::abs(std::min(first.gap, 0.0)));

@@ -61,6 +61,7 @@ private:
   };
   [[nodiscard]] bool may_close(const Constraint& contact, Modes acted) const;
   [[nodiscard]] bool was_open(const Constraint& contact, const State& start);
+  [[nodiscard]] double gap_at_start(const Constraint& contact, double reach) const;
   [[nodiscard]] double gap_of_vertex(const Constraint& contact, const State& start);
 
   ContactLook look_;

@@ -2,12 +2,25 @@
 
 namespace carom {
 
+namespace {
+
+CouplingRating rate_at_start(const StepInput& in, Index component, StepTrial& trial) {
+  evaluate_positions(in.assembly, component, in.start.view(), trial.at_end);
+  return rate_couplings(in.assembly, component, in.start.view(), trial.at_end, in.step);
+}
+
+}  // namespace
+
+bool leads_astray(Iteration iteration, const StepInput& in, Index component, StepTrial& trial) {
+  constexpr double largest_rate = 20.0;  // sweeps contract below 1
+  return iteration == Iteration::anderson && rate_at_start(in, component, trial).rate > largest_rate;
+}
+
 void CouplingWatch::rate(const StepInput& in, Index component, double contraction, StepTrial& trial,
                          StepReport& report) {
   constexpr double worsening = 2.0;
   if (contraction_[component] < 0.0 || contraction > worsening * contraction_[component]) {
-    evaluate_positions(in.assembly, component, in.start.view(), trial.at_end);
-    ratings_[component] = rate_couplings(in.assembly, component, in.start.view(), trial.at_end, in.step);
+    ratings_[component] = rate_at_start(in, component, trial);
     contraction_[component] = contraction;
   }
   if (!(ratings_[component].rate > report.worst_coupling_rate)) return;

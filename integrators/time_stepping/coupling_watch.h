@@ -14,6 +14,12 @@
 
 namespace carom {
 
+/// True of Anderson's iteration where couplings of a component are so stiff that iterates wander farther than
+/// bodies are apart: it may find another solution of equations that are not linear (a spring turned end for
+/// end). \param trial rotations in it are worked with
+[[nodiscard]] CAROM_API bool leads_astray(Iteration iteration, const StepInput& in, Index component,
+                                          StepTrial& trial);
+
 /// Ratings of all components.
 class CAROM_API CouplingWatch {
 public:

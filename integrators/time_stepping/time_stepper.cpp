@@ -168,6 +168,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   std::optional<SolverError> failed;
   for (std::size_t tried = 0; tried < iteration_count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
+    if (tried == 1 && leads_astray(iteration, in, component, parts_.trial)) continue;
     iteration_.use(iteration);
     if (tried > 0) {
       parts_.constraints.restore(in, island, parts_.trial);

@@ -217,4 +217,30 @@ TEST(ContactReport, RecorderWritesARowForEveryContact) {
   EXPECT_THROWS(FileError, ContactRecorder(simulation, folder / "none/contacts.csv"), "contacts.csv");
 }
 
+// Where impacts are located a step may have several parts, with a record of each contact in each of them.
+TEST(ContactReport, ContactsThatLastHaveOneForceEach) {
+  System system;
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}});
+  for (const double x : {0.0, 0.5, 1.0}) add_disc(system, 1.0, 0.1, {x, 0.1}, {2.0 - 2.0 * x, 0.0});
+  Simulation simulation(system, TimeStepping{.step = 1e-2, .impacts = ImpactTimes::located});
+  bool parted = false;
+  for (int i = 0; i < 50; ++i) {
+    simulation.step();
+    const std::vector<LastingContact> forces = simulation.contact_forces();
+    std::size_t lasting = 0;
+    for (const ContactRecord& contact : simulation.report().contacts) lasting += contact.impact ? 0U : 1U;
+    parted = parted || lasting > forces.size();
+    double weight = 0.0;
+    for (const LastingContact& contact : forces) {
+      const auto same = [&](const LastingContact& other) { return other.key == contact.key; };
+      EXPECT_EQ(std::count_if(forces.begin(), forces.end(), same), 1);
+      if (contact.obstacle.valid()) weight += contact.force[0];
+    }
+    EXPECT_GT(weight, 0.0);
+  }
+  EXPECT_TRUE(parted);
+}
+
 }  // namespace

@@ -346,4 +346,24 @@ TEST(Closings, TakeNoMemoryOnceTheyWereSeen) {
   EXPECT_EQ(carom_test::allocations() - before, 0);
 }
 
+// A disc that flies at 10 km/s is in a large one at the end of a step, and leaves it by then: past the
+// middle.
+TEST(Closings, StrikesWhatItWouldHaveLeftAtTheEndOfTheStep) {
+  constexpr double speed = 1e4, offset = 0.3, distance = 1.001, mass = 1e-6;
+  for (const double start : {-20.0, -20.3, -20.6}) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+    add_disc(system, {0.0, 0.0}, {0.0, 0.0}, 1.0, 1.0);
+    const BodyId shot = add_disc(system, {start, offset}, {speed, 0.0}, 1e-3, mass);
+    Simulation simulation(system, located(1e-4));
+    simulation.run_until(3e-3);
+    // The impulse along the line of centres (-c, s).
+    const double s = offset / distance, c = std::sqrt(1.0 - s * s);
+    const double impulse = 2.0 * speed * c / (1.0 / mass + 1.0);
+    // The closing is found to 1e-12 m, which turns the line of centres by as much.
+    EXPECT_NEAR(simulation.state().velocity(shot)[0], speed - impulse / mass * c, 1e-7) << start;
+    EXPECT_NEAR(simulation.state().velocity(shot)[1], impulse / mass * s, 1e-7) << start;
+  }
+}
+
 }  // namespace

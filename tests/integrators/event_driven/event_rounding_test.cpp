@@ -1,0 +1,85 @@
+// Scenes whose rounding is large: far from the origin, after many turns, of masses that differ a millionfold.
+// They come to the same rest as scenes of ordinary numbers.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace {
+
+using namespace body_scenes;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// Bounces of a bar that comes to lie: below the rounding of gaps each would begin deeper than the one before.
+TEST(EventRounding, BarComesToLieFarFromTheOrigin) {
+  constexpr double radius = 0.02, end = 5.0;
+  for (const double far : {0.0, 1e3, 1e6}) {
+    System system;
+    system.add(Gravity{{0.0, -g}});
+    system.add(HalfPlane{.point = {far, far}, .normal = {0.0, 1.0}},
+               Surface{.friction = 0.3, .normal_restitution = 0.8});
+    const BodyId bar = system.add(RigidBody{.mass = rod(1.0, 1.0),
+                                            .position = {far, far + 1.0},
+                                            .angle = 0.4,
+                                            .velocity = {1.0, 0.0},
+                                            .spin = 1.0});
+    system.add(Segment{.body = bar, .from = {-0.5, 0.0}, .to = {0.5, 0.0}, .radius = radius});
+    Simulation simulation(system, EventDriven{});
+    simulation.run_until(end);
+    // Where gaps count as closed, and 256 roundings of the coordinates that they are differences of.
+    const double rounding = 1e-9 + 256.0 * epsilon * far;
+    EXPECT_NEAR(simulation.state().position(bar)[1] - far, radius, rounding) << far;
+    EXPECT_NEAR(simulation.state().angle(bar), 0.0, 4.0 * rounding) << far;
+    EXPECT_EQ(simulation.contact_forces().size(), 2u) << far;
+    EXPECT_LT(simulation.events().size(), 400u) << far;  // 145 at the origin
+  }
+}
+
+TEST(EventRounding, BoxComesToLieAfterManyTurns) {
+  constexpr double end = 3.0;
+  for (const double turns : {0.0, 1e3, 159155.0}) {
+    const double turned = 2.0 * std::numbers::pi * turns;
+    System system;
+    system.add(Gravity{{0.0, -g}});
+    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.4, .normal_restitution = 0.5});
+    const BodyId box = add_box(system, 1.0, 0.4, 0.2, {0.0, 1.0}, turned + 0.2, {0.3, 0.0}, 2.0);
+    Simulation simulation(system, EventDriven{});
+    simulation.run_until(end);
+    // Gaps are sums of the height and the angle times 0.2 m.
+    EXPECT_NEAR(simulation.state().position(box)[1], 0.1, 1e-9 + epsilon * turned) << turns;
+    EXPECT_NEAR(simulation.state().angle(box), turned, 1e-8 + 4.0 * epsilon * turned) << turns;
+    EXPECT_EQ(simulation.contact_forces().size(), 2u) << turns;
+    EXPECT_LT(simulation.events().size(), 400u) << turns;
+  }
+}
+
+// Forces of 1e7 N nearly cancel on a disc of 1 kg.
+TEST(EventRounding, HeavyDiscRestsOnALightOne) {
+  for (const double friction : {0.0, 0.3}) {
+    for (const double heavy : {1e3, 1e5, 1e6, 1e7}) {
+      System system;
+      system.add(Gravity{{0.0, -g}});
+      system.set_default_law({.friction = friction, .normal_restitution = 0.5});
+      system.add(HalfPlane{.normal = {0.0, 1.0}});
+      const BodyId below = add_disc(system, 1.0, 0.1, {0.0, 0.1});
+      const BodyId above = add_disc(system, heavy, 0.5, {0.0, 0.7});
+      Simulation simulation(system, EventDriven{});
+      simulation.run_until(0.1);
+      EXPECT_NEAR(simulation.state().position(above)[1], 0.7, 1e-9) << heavy;  // gap_tolerance
+      const auto forces = simulation.contact_forces();
+      // Twice the weights times the rounding of some ten operations.
+      const double rounding = 20.0 * epsilon * (1.0 + heavy) * g;
+      EXPECT_NEAR(force_on(forces, below).mean_force[1], g, 10.0 * rounding) << heavy;
+      EXPECT_NEAR(force_on(forces, above).mean_force[1], heavy * g, 1e-9 * heavy * g) << heavy;
+    }
+  }
+}
+
+}  // namespace
