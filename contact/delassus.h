@@ -42,10 +42,11 @@ public:
 
   /// Leaves W as its factors H and M^-1, where all bodies are those of the plane and answer for themselves;
   /// else false, and nothing is made. Slots are bodies in the order in which the constraints name them. Call
-  /// group() afterwards. Without ratios and levers only. \param directions must outlive it \param problem in
-  /// factors, of as many rows
-  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
-                                   ContactProblem& problem);
+  /// group() afterwards. Without ratios and levers only. \param directions must outlive it \param some rows,
+  /// of whole constraints: all of them at once, or some after the others, up to the first for which it is
+  /// false \param problem in factors, of as many rows
+  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, Range some,
+                                   BodyResponse& response, ContactProblem& problem);
   /// Slots of the factors; none where W is made in full.
   [[nodiscard]] std::span<const Slot> slots() const {
     return factored_ ? std::span<const Slot>(slots_) : std::span<const Slot>();

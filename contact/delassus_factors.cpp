@@ -68,15 +68,17 @@ bool has_rows_of_two(const Constraint& at, std::span<const ImpulseDirection> dir
 
 }  // namespace
 
-bool Delassus::build_factors(std::span<const ImpulseDirection> directions, BodyResponse& response,
+bool Delassus::build_factors(std::span<const ImpulseDirection> directions, Range some, BodyResponse& response,
                              ContactProblem& problem) {
   constexpr int no_slot = ResponseFactors::no_slot;
   directions_ = directions;
-  slots_.clear();
-  factored_ = true;
   ResponseFactors& factors = problem.factors();
-  slots_of_constraint_.clear();
-  for (std::size_t r = 0; r < directions.size();) {
+  factored_ = true;
+  if (some.begin == 0) {
+    slots_.clear();
+    slots_of_constraint_.clear();
+  }
+  for (std::size_t r = some.begin; r < some.end;) {
     const Constraint& at = *directions[r].constraint;
     // One by one: written as a list and read as one, they would have to wait for each other.
     const int first = slot_of(at, 0, response), second = slot_of(at, 1, response),
@@ -90,12 +92,13 @@ bool Delassus::build_factors(std::span<const ImpulseDirection> directions, BodyR
       r += 2;
       continue;
     }
-    for (; r < directions.size() && directions[r].constraint == &at; ++r) {
+    for (; r < some.end && directions[r].constraint == &at; ++r) {
       ResponseFactors::Row& row = factors.rows[r];
       row.slot = {first, second, third};
       write_row(at, at.row(directions[r].row), row);
     }
   }
+  if (factored_ && some.end < directions.size()) return true;
   // Bodies are no slots until the next problem.
   for (const Slot& own : slots_) slot_of_body_[own.block.body] = ResponseFactors::no_slot;
   if (factored_) write_masses(factors);

@@ -6,6 +6,7 @@
 // bound of their own in place of mu P_n.
 
 #include <carom/contact/contact_velocity.h>
+#include <carom/contact/fetch_contact.h>
 #include <carom/contact/free_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
@@ -13,7 +14,6 @@
 #include <carom/contact/solvers/factor_products.h>
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
-#include <carom/core/numerics/fetch_ahead.h>
 
 #include <algorithm>
 #include <array>
@@ -88,12 +88,13 @@ bool remove_restitution(std::span<const double> before, std::span<double> restit
 
 }  // namespace
 
-void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before) {
+void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before,
+                          BodyResponse* response, SweepStart start) {
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = jammed_ = false;
   answer_.response.clear();
   if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
-    return build_any(velocity_before);
+    return build_any(velocity_before, response, start);
   }
   // The hot path: one planar contact after another, so that only its numbers need to be filled in.
   const Constraint& contact = constraints[0];
@@ -106,9 +107,11 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     before_[row] = along[row] - contact.surface_velocity[row];
     answer_.impulse[row] = 0.0;
   }
+  if (response != nullptr) respond(*response);
 }
 
-void IslandProblem::build_any(const double* velocity_before) {
+void IslandProblem::build_any(const double* velocity_before, BodyResponse* response, SweepStart start) {
+  constexpr std::size_t at_a_time = 32;  // they and their rows fit into the nearest cache
   const std::span<const Constraint> constraints = constraints_;
   modes_.clear();
   const auto [rows, fits_factors] = count_rows(constraints, first_row_);
@@ -125,9 +128,37 @@ void IslandProblem::build_any(const double* velocity_before) {
   scratch_.given.resize(factored ? count : 0);
   answer_.impulse.assign(count, 0.0);
   slides_.assign(constraints.size(), 0.0);
-  std::size_t row = 0;
-  for (std::size_t c = 0; c < constraints.size(); ++c) {
-    fetch_ahead(constraints, c + 4);
+  if (!factored || response == nullptr) {
+    write_rows({0, static_cast<Index>(constraints.size())}, velocity_before);
+    if (!factored) problem_.group();  // factors are still to be written
+    if (response != nullptr) respond(*response);
+    return;
+  }
+  for (std::size_t first = 0; first < constraints.size(); first += at_a_time) {
+    const std::size_t last = std::min(first + at_a_time, constraints.size());
+    const Range some{static_cast<Index>(first), static_cast<Index>(last)};
+    write_rows(some, velocity_before);
+    const int row = first_row_[first], end = last < first_row_.size() ? first_row_[last] : rows;
+    if (!delassus_.build_factors(directions_, {static_cast<Index>(row), static_cast<Index>(end)}, *response,
+                                 problem_)) {
+      write_rows({some.end, static_cast<Index>(constraints.size())}, velocity_before);
+      forget_impulses();
+      return respond(*response);
+    }
+    if (start) start(constraints.subspan(first, last - first), answer_.impulse.data() + row);
+  }
+  problem_.group();
+}
+
+/// Rows of some constraints, but for W.
+void IslandProblem::write_rows(Range some, const double* velocity_before) {
+  if (some.empty()) return;
+  const std::span<const Constraint> constraints = constraints_;
+  constexpr std::size_t ahead = 12;  // constraints
+  const bool factored = problem_.is_factored();
+  auto row = static_cast<std::size_t>(first_row_[some.begin]);
+  for (std::size_t c = some.begin; c < some.end; ++c) {
+    fetch_contact_ahead(constraints, c + ahead);
     if (factored && is_planar_contact(constraints[c])) {
       write_planar_contact(constraints[c], velocity_before, static_cast<int>(row),
                            {&directions_[row], &problem_.sets()[row], &before_[row], &restitution_[row],
@@ -153,14 +184,12 @@ void IslandProblem::build_any(const double* velocity_before) {
                             constraints[c].surface_velocity_after[static_cast<std::size_t>(i)];
     }
   }
-  if (!factored) problem_.group();  // factors are still to be written
 }
 
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
-    if (delassus_.build_factors(directions_, response, problem_)) {
-      return problem_.group();
-    }
+    const auto rows = static_cast<Index>(problem_.rows());
+    if (delassus_.build_factors(directions_, {0, rows}, response, problem_)) return problem_.group();
     demand_room(constraints_.size(), problem_.rows());
     make_dense(scratch_.sets, problem_);
   }
@@ -241,12 +270,6 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
   }
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;
-}
-
-void IslandProblem::start_from(std::span<const double> impulses) {
-  if (!problem_.is_factored()) return;
-  std::copy(impulses.begin(), impulses.end(), answer_.impulse.begin());
-  answer_.response.clear();
 }
 
 void IslandProblem::set_impulses(std::span<const double> impulses) {

@@ -14,6 +14,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 
 #include <cstddef>
 #include <limits>
@@ -48,9 +49,16 @@ struct IslandOptions {
 class CAROM_API IslandProblem {
 public:
   explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
+  /// Writes impulses from which sweeps start, by row, of some constraints one behind the other.
+  using SweepStart = FunctionRef<void(std::span<const Constraint> constraints, double* impulses)>;
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
-  /// forgotten; respond() is next. Both throw SolverError for more constraints than W in full has room for.
-  void build(std::span<const Constraint> constraints, const double* velocity_before);
+  /// forgotten; respond() is next, unless a response is given. Both throw SolverError for more constraints
+  /// than W in full has room for.
+  /// \param response makes W at once: of a large island for some constraints at a time, while these are in a
+  /// near cache, which does not hold all \param start asked for all constraints of an island whose W is left
+  /// in factors at once; nothing: sweeps start from zero
+  void build(std::span<const Constraint> constraints, const double* velocity_before,
+             BodyResponse* response = nullptr, SweepStart start = {});
   /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for
   /// set_velocity().
   void respond(BodyResponse& response);
@@ -69,9 +77,6 @@ public:
   /// Solves; the answer before, if there is one since build(), is where solvers start from. Where no solver
   /// has an answer and plastic jams are allowed, all e are 0 from here to the next build().
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
-  /// Impulses from which sweeps over a large island start, by row: those of the same constraints before, zero
-  /// for new ones. Of no effect on a small one, whose start is its answer before. After respond().
-  void start_from(std::span<const double> impulses);
   /// Replaces the answer, and its modes, by another solution of the problem.
   void set_impulses(std::span<const double> impulses);
   /// Sets all impulses to zero.
@@ -108,7 +113,8 @@ public:
   }
 
 private:
-  void build_any(const double* velocity_before);
+  void build_any(const double* velocity_before, BodyResponse* response, SweepStart start);
+  void write_rows(Range constraints, const double* velocity_before);
 
   // Solver of impacts by another law.
   struct ImpactChoice {

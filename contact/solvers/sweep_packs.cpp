@@ -5,6 +5,7 @@
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/single_contact.h>
+#include <carom/core/numerics/fetch_ahead.h>
 
 #include <algorithm>
 #include <bit>
@@ -202,10 +203,15 @@ bool SweepPacks::has_places(const ContactProblem& problem) const {
 
 /// Writes numbers where the same groups were. False if another one is regular now.
 bool SweepPacks::fill_places(const ContactProblem& problem, std::span<const double> impulse) {
+  constexpr std::size_t ahead = 8;  // groups
   odd_.clear();
   load_scale_ = 0.0;
   for (std::size_t g = 0; g < places_.size(); ++g) {
     const Place& place = places_[g];
+    const std::size_t later = g + ahead;
+    if (later < places_.size() && places_[later].lane == 0 && places_[later].pack >= 0) {
+      fetch_ahead(std::span(packs_), static_cast<std::size_t>(places_[later].pack));
+    }
     const Group group = read(problem, g, impulse);
     if (is_regular(group) != (place.pack >= 0)) return false;
     if (place.pack < 0) {

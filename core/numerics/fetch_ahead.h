@@ -11,14 +11,17 @@
 namespace carom {
 
 /// Asks for the memory of an element of a list that no near cache holds as a whole. Changes nothing.
+/// \param begin,end bytes of the element that are needed
 template <class T>
-inline void fetch_ahead([[maybe_unused]] std::span<T> list, [[maybe_unused]] std::size_t place) {
+inline void fetch_ahead([[maybe_unused]] std::span<T> list, [[maybe_unused]] std::size_t place,
+                        [[maybe_unused]] std::size_t begin = 0,
+                        [[maybe_unused]] std::size_t end = sizeof(T)) {
 #if defined(__GNUC__)
   constexpr std::size_t near = std::size_t{1} << 18, line = 64;  // bytes
   if (list.size_bytes() < near || place >= list.size()) return;
   const auto* const memory = reinterpret_cast<const std::byte*>(list.data() + place);
 #pragma GCC unroll 8
-  for (std::size_t i = 0; i < sizeof(T); i += line) __builtin_prefetch(memory + i);
+  for (std::size_t i = begin; i < end; i += line) __builtin_prefetch(memory + i);
 #endif
 }
 

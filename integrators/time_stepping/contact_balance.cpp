@@ -2,7 +2,7 @@
 
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
-#include <carom/core/numerics/fetch_ahead.h>
+#include <carom/contact/fetch_contact.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::size_t ahead = 4;  // contacts
+constexpr std::size_t ahead = 8;  // contacts
 
 /// Constraint::speed() of the rows of a constraint.
 std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
@@ -28,25 +28,115 @@ std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocit
   return all;
 }
 
-/// Names a contact, and how its problem was solved. \param serial of its first body
-void name_contact(const Assembly& assembly, const IslandProblem& problem, std::size_t contact, Index serial,
-                  ContactRecord& entry) {
-  const Constraint& at = problem.constraints()[contact];
-  const ContactReport& report = problem.report();
-  const Layout& layout = *assembly.layout();
-  entry.key = at.key;
-  entry.body = {serial, layout.token()};
-  if (at.type == ConstraintType::contact && at.bodies == 2) entry.other = layout.id(at.blocks[1].body);
-  if (at.key.b.owner == FeatureKey::Owner::obstacle) {
-    entry.obstacle = {at.key.b.serial, assembly.system().token()};
+/// Work of the contacts and limits of a problem so far, and whether one of them is an impact.
+struct BookedWork {
+  ImpulseWork sum;
+  bool impact = false;
+};
+
+/// Books the contacts and limits of one problem: what they share is looked up once.
+class ContactBooking {
+public:
+  /// \param after velocities at the end as contact sees them \param time when that is [s]
+  ContactBooking(const Assembly& assembly, const IslandProblem& problem, const double* after, double time,
+                 const StepInput& in, double capture_speed, StepResult& result)
+      : bodies_(assembly.layout()->bodies()),
+        token_(assembly.layout()->token()),
+        token_of_system_(assembly.system().token()),
+        problem_(problem),
+        constraints_(problem.constraints()),
+        modes_(problem.modes()),
+        before_(problem.before().data()),
+        impulses_(problem.impulses().data()),
+        after_(after),
+        q_(in.start.q.data()),
+        time_(time),
+        within_step_(time < in.end_time),
+        is_swept_(problem.problem().is_factored()),
+        capture_speed_(capture_speed),
+        result_(result) {}
+
+  /// \param contact number of its constraint \param first its first row
+  void book(std::size_t contact, std::size_t first, BookedWork& work) const {
+    const Constraint& at = constraints_[contact];
+    const BodySlot body = bodies_[at.body()];
+    if (is_swept_) fetch_contact_ahead(constraints_, contact + ahead);
+    std::vector<ContactRecord>& records = result_.report.contacts;
+    fetch_ahead(std::span(records.data(), records.capacity()), records.size() + ahead);
+    ContactRecord& entry = records.emplace_back();
+    name(at, contact, body.serial, entry);
+    // Else an impact within the step, or contact up to it.
+    if (!within_step_) result_.contact_modes.emplace_back(at.key, entry.mode);
+    find_point_of_contact(at, q_ + body.q, entry.point, entry.normal);
+    entry.impact = before_[first] < -capture_speed_;
+    work.impact = work.impact || entry.impact;
+    result_.tally.impacts += entry.impact ? 1 : 0;
+    result_.tally.deepest_gap = std::min(result_.tally.deepest_gap, at.gap);
+    book_rows(at, before_ + first, impulses_ + first, work.sum, entry);
   }
-  entry.directions = at.rows;
-  entry.gap = at.gap;
-  entry.mode = problem.modes()[contact];
-  entry.outcome = report.outcome;
-  entry.residual = report.residual;
-  entry.solver = report.solver;
-  entry.restitution_factor = problem.restitution_factor();
+
+private:
+  /// Which contact it is, and how its problem was solved. \param serial of its first body
+  void name(const Constraint& at, std::size_t contact, Index serial, ContactRecord& entry) const {
+    entry.key = at.key;
+    entry.body = {serial, token_};
+    if (at.type == ConstraintType::contact && at.bodies == 2) {
+      entry.other = {bodies_[at.blocks[1].body].serial, token_};
+    }
+    if (at.key.b.owner == FeatureKey::Owner::obstacle) entry.obstacle = {at.key.b.serial, token_of_system_};
+    entry.directions = at.rows;
+    entry.gap = at.gap;
+    entry.mode = modes_[contact];
+    const ContactReport& report = problem_.report();
+    entry.outcome = report.outcome;
+    entry.residual = report.residual;
+    entry.solver = report.solver;
+    entry.restitution_factor = problem_.restitution_factor();
+    entry.time = time_;
+  }
+
+  /// Works of its rows. \param before,impulses by row
+  void book_rows(const Constraint& at, const double* before, const double* impulses, ImpulseWork& sum,
+                 ContactRecord& entry) const {
+    const std::array<double, 3> with = velocities_after(at, after_);
+    ImpulseWork works = sum;
+    double all = 0.0, on_surface = 0.0;
+    const auto book_row = [&](std::size_t i) {  // a loop over two or three costs more than they do
+      const double impulse = impulses[i], gamma = before[i];
+      const double work = works.add(impulse, gamma, with[i]);
+      all += work;
+      on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
+      entry.velocity_before[i] = gamma;
+      entry.velocity_after[i] = with[i];
+      entry.impulse[i] = impulse;
+      entry.work[i] = work;
+      return work;
+    };
+    EnergyFlows& flows = result_.flows;
+    flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
+    double& tangential = flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
+    if (at.rows > 1) tangential -= book_row(1);
+    if (at.rows > 2) tangential -= book_row(2);
+    sum = works;
+    entry.contact_work += all;
+    if (on_surface != 0.0) flows[EnergyFlow::external] += on_surface;
+  }
+
+  const BodySlots& bodies_;
+  Index token_, token_of_system_;
+  const IslandProblem& problem_;
+  std::span<const Constraint> constraints_;
+  std::span<const ContactMode> modes_;
+  const double *before_, *impulses_, *after_, *q_;
+  double time_;
+  bool within_step_, is_swept_;
+  double capture_speed_;
+  StepResult& result_;
+};
+
+/// Keeps the impulses of a constraint, from which the next step starts. \param impulses by row
+void keep_impulses(const Constraint& at, const double* impulses, ContactHistory& out) {
+  out.add(at.key, {impulses[0], at.rows > 1 ? impulses[1] : 0.0});
 }
 
 /// Marks where the residual of a problem is taken, unless that is at friction in a joint.
@@ -77,18 +167,21 @@ void ContactTally::add(const ContactTally& other) {
 
 double StepBalance::book_contacts(const IslandProblem& problem, const double* after, double time,
                                   const StepInput& in, const StepTrial& trial) {
-  ImpulseWork work;
-  bool impact = false;
+  BookedWork work;
   const std::size_t first = result_.report.contacts.size();
   const bool is_swept = problem.problem().is_factored();
-  for (std::size_t contact = 0; contact < problem.constraints().size(); ++contact) {
-    if (is_swept) keep_impulses(problem, contact);
-    if (problem.constraints()[contact].type == ConstraintType::rolling) {
-      book_rolling(problem, contact, after, work);
-    } else if (problem.constraints()[contact].has_dry_friction()) {
-      book_joint_friction(problem, contact, after, trial, work);
+  const ContactBooking booking(*assembly_, problem, after, time, in, capture_speed_, result_);
+  const std::span<const Constraint> constraints = problem.constraints();
+  for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
+    const Constraint& at = constraints[contact];
+    const auto row = static_cast<std::size_t>(problem.first_row(contact));
+    if (is_swept) keep_impulses(at, problem.impulses().data() + row, result_.contacts);
+    if (at.type == ConstraintType::rolling) {
+      book_rolling(problem, contact, after, work.sum);
+    } else if (at.has_dry_friction()) {
+      book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
-      book_contact(problem, contact, after, time, in, work, impact);
+      booking.book(contact, row, work);
     }
   }
   tally(problem, static_cast<int>(result_.report.contacts.size() - first));
@@ -96,8 +189,8 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     mark_worst(problem, std::span(result_.report.contacts).subspan(first));
   }
   if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
-  if (!(work.gain > 0.0)) return 0.0;
-  const double gain = book_gain(problem, work, impact, trial);
+  if (!(work.sum.gain > 0.0)) return 0.0;
+  const double gain = book_gain(problem, work.sum, work.impact, trial);
   if (gain > 0.0) {
     for (std::size_t i = first; i < result_.report.contacts.size(); ++i)
       result_.report.contacts[i].energy_gain = gain;
@@ -131,49 +224,6 @@ double StepBalance::book_impact(const IslandProblem& problem, const double* afte
   return gain;
 }
 
-void StepBalance::book_contact(const IslandProblem& problem, std::size_t contact, const double* after,
-                               double time, const StepInput& in, ImpulseWork& sum, bool& impact) {
-  const Constraint& at = problem.constraints()[contact];
-  const auto first = static_cast<std::size_t>(problem.first_row(contact));
-  const double *const before = problem.before().data() + first, *const impulses =
-                                                                    problem.impulses().data() + first;
-  const BodySlot body = assembly_->layout()->bodies()[at.body()];
-  fetch_ahead(problem.constraints(), contact + ahead);
-  std::vector<ContactRecord>& records = result_.report.contacts;
-  fetch_ahead(std::span(records.data(), records.capacity()), records.size() + ahead);
-  ContactRecord& entry = records.emplace_back();
-  name_contact(*assembly_, problem, contact, body.serial, entry);
-  // Else an impact within the step, or contact up to it.
-  if (!(time < in.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
-  entry.time = time;
-  find_point_of_contact(at, in.start.q.data() + body.q, entry.point, entry.normal);
-  entry.impact = before[0] < -capture_speed_;
-  impact = impact || entry.impact;
-  result_.tally.impacts += entry.impact ? 1 : 0;
-  result_.tally.deepest_gap = std::min(result_.tally.deepest_gap, at.gap);
-  const std::array<double, 3> with = velocities_after(at, after);
-  ImpulseWork works = sum;
-  double all = 0.0, on_surface = 0.0;
-  const auto book_row = [&](std::size_t i) {  // row by row: a loop over two or three costs more than they do
-    const double impulse = impulses[i], gamma = before[i];
-    const double work = works.add(impulse, gamma, with[i]);
-    all += work;
-    on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
-    entry.velocity_before[i] = gamma;
-    entry.velocity_after[i] = with[i];
-    entry.impulse[i] = impulse;
-    entry.work[i] = work;
-    return work;
-  };
-  result_.flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
-  double& tangential = result_.flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
-  if (at.rows > 1) tangential -= book_row(1);
-  if (at.rows > 2) tangential -= book_row(2);
-  sum = works;
-  entry.contact_work += all;
-  if (on_surface != 0.0) result_.flows[EnergyFlow::external] += on_surface;
-}
-
 /// Rolling resistance, in the record of the contact before it.
 void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
                                ImpulseWork& sum) {
@@ -200,7 +250,10 @@ double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& w
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the surfaces.
     const double *b = problem.problem().vector().data(), *impulse = problem.impulses().data();
-    for (const Constraint& contact : problem.constraints()) {
+    const std::span<const Constraint> contacts = problem.constraints();
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      const Constraint& contact = contacts[c];
+      fetch_contact_ahead(contacts, c + ahead);
       const std::array<double, 3> speeds = speeds_of_rows(contact, trial.end.v.data());
       for (std::size_t i = 0; i < static_cast<std::size_t>(contact.rows); ++i) {
         sum.scale += std::abs(*impulse++) * (std::abs(*b++) + speeds[i]);
@@ -230,15 +283,6 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
       {JointId{at.key.a.serial, assembly_->system().token()}, reaction, result_.report.time});
   const ContactMode mode = problem.modes()[contact];
   result_.joint_friction_modes.emplace_back(at.key, mode == ContactMode::open ? ContactMode::stick : mode);
-}
-
-/// Impulses of a constraint, from which the next step starts.
-void StepBalance::keep_impulses(const IslandProblem& problem, std::size_t constraint) {
-  const Constraint& at = problem.constraints()[constraint];
-  const auto row = static_cast<std::size_t>(problem.first_row(constraint));
-  std::array<double, 2> impulse{problem.impulses()[row], 0.0};
-  if (at.rows > 1) impulse[1] = problem.impulses()[row + 1];
-  result_.contacts.add(at.key, impulse);
 }
 
 }  // namespace carom

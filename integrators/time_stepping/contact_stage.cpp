@@ -9,6 +9,27 @@ namespace carom {
 
 namespace {
 
+/// The impulses of the step before, by key, are where sweeps start.
+class LastImpulses {
+public:
+  LastImpulses(const ContactHistory& before, double step) : before_(before), longer_(step / before.step) {}
+  /// \param impulses out, by row of the constraints
+  void operator()(std::span<const Constraint> constraints, double* impulses) {
+    for (const Constraint& constraint : constraints) {
+      const Index known = before_.contacts.find(constraint.key, next_);
+      if (known != none) next_ = known + 1;
+      for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
+        *impulses++ = known == none ? 0.0 : longer_ * before_.impulses[known][row];
+      }
+    }
+  }
+
+private:
+  const ContactHistory& before_;
+  double longer_;
+  Index next_ = 0;  // most contacts are those of the step before, in the same order
+};
+
 /// Impulses against the velocities of free bodies, which are known. False if there are none.
 bool solve_against_free(IslandProblem& problem, SolverChain& chain, StepTrial& trial) {
   problem.set_free_velocity(trial.free.data());
@@ -46,11 +67,10 @@ void ContactStage::begin(const StepIsland& island) {
   in_use_ = 0;
 }
 
-IslandProblem& ContactStage::add_problem(const StepInput& in, std::span<Constraint> constraints) {
+/// One more problem, to be stated.
+IslandProblem& ContactStage::next_problem() {
   while (first_ + in_use_ >= problems_.size()) problems_.emplace_back(of_problems_);
-  IslandProblem& problem = problems_[first_ + in_use_++];
-  problem.build(constraints, in.start.v.data());
-  return problem;
+  return problems_[first_ + in_use_++];
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
@@ -60,7 +80,7 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
   if (island.constraints.empty()) return;
   trial.expect_impulses();
   if (together) {
-    add_problem(in, island.constraints);
+    next_problem().build(island.constraints, in.start.v.data());
   } else {
     static_cast<void>(part_problems(in, island, [](IslandProblem&) { return true; }));
   }
@@ -76,10 +96,12 @@ void ContactStage::state_problems(const StepInput& in, const StepIsland& island,
 template <class F>
 const IslandProblem* ContactStage::part_problems(const StepInput& in, const StepIsland& island, F&& solved) {
   const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
+  const ContactHistory& before = in.companion.contacts;
+  LastImpulses last(before, in.step);
+  const IslandProblem::SweepStart start = before.empty() ? IslandProblem::SweepStart() : last;
   const auto take = [&](std::span<Constraint> constraints) -> const IslandProblem* {
-    IslandProblem& problem = add_problem(in, constraints);
-    problem.respond(masses_);
-    if (problem.problem().is_factored()) start_sweeps(in, problem);
+    IslandProblem& problem = next_problem();
+    problem.build(constraints, in.start.v.data(), &masses_, start);
     return solved(problem) ? nullptr : &problem;
   };
   if (island.constraints.size() == 1 || (island.joined && one_body_each_)) return take(island.constraints);
@@ -105,24 +127,6 @@ void ContactStage::list_struck(std::span<const Constraint> constraints) {
   if (in_order) return;
   put_struck_in_order();
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
-}
-
-/// The impulses of the step before, by key, are where sweeps start.
-void ContactStage::start_sweeps(const StepInput& in, IslandProblem& problem) {
-  const ContactHistory& before = in.companion.contacts;
-  if (before.impulses.empty()) return;
-  const double longer = in.step / before.step;
-  start_.resize(problem.before().size());
-  double* start = start_.data();
-  Index next = 0;  // most contacts are those of the step before, in the same order
-  for (const Constraint& constraint : problem.constraints()) {
-    const Index known = before.contacts.find(constraint.key, next);
-    if (known != none) next = known + 1;
-    for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-      *start++ = known == none ? 0.0 : longer * before.impulses[known][row];
-    }
-  }
-  problem.start_from(start_);
 }
 
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,

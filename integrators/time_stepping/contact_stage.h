@@ -72,8 +72,7 @@ private:
     const double* end;
   };
   void begin(const StepIsland& island);
-  IslandProblem& add_problem(const StepInput& in, std::span<Constraint> constraints);
-  void start_sweeps(const StepInput& in, IslandProblem& problem);
+  IslandProblem& next_problem();
   template <class F>
   [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
   void list_struck(std::span<const Constraint> constraints);
@@ -100,7 +99,6 @@ private:
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any
   std::vector<Index> struck_;          // ascending
   std::vector<char> is_struck_;
-  std::vector<double> start_;        // impulses by row, of one problem
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 };
 

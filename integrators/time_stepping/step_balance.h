@@ -92,15 +92,12 @@ public:
   [[nodiscard]] StepResult& finish(const StepInput& in);
 
 private:
-  void book_contact(const IslandProblem& problem, std::size_t contact, const double* after, double time,
-                    const StepInput& in, ImpulseWork& sum, bool& impact);
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
   void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
   double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
                    const StepTrial& trial);
   void tally(const IslandProblem& problem, int contacts);
-  void keep_impulses(const IslandProblem& problem, std::size_t constraint);
 
   const Assembly* assembly_;
   double capture_speed_;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace {
@@ -133,13 +134,48 @@ TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
   EXPECT_GT(island.report().iterations, 0);
   const std::vector<double> answer(island.impulses().begin(), island.impulses().end());
   IslandProblem next(in_factors);
-  next.build(list, before_.data());
-  next.respond(masses_);
-  next.start_from(answer);
+  std::vector<const Constraint*> asked;
+  const auto start = [&](std::span<const Constraint> some, double* impulses) {
+    for (const Constraint& one : some) {
+      asked.push_back(&one);
+      const auto first =
+          static_cast<std::size_t>(island.first_row(static_cast<std::size_t>(&one - &list[0])));
+      for (std::size_t i = 0; i < static_cast<std::size_t>(one.rows); ++i) *impulses++ = answer[first + i];
+    }
+  };
+  next.build(list, before_.data(), &masses_, start);
+  ASSERT_EQ(asked.size(), list.size());
+  for (std::size_t c = 0; c < list.size(); ++c) EXPECT_EQ(asked[c], &list[c]);
   next.set_free_velocity(free_.data());
   ASSERT_TRUE(next.solve(chain_).usable());
   EXPECT_EQ(next.report().iterations, 0);
   EXPECT_TRUE(std::equal(answer.begin(), answer.end(), next.impulses().begin()));
+}
+
+TEST_F(FactoredIsland, HasTheSameNumbersStatedInOneGo) {
+  for (const int count : {12, 64, 80, 81}) {
+    const std::vector<Constraint> list = constraints(count, 5);
+    IslandProblem apart(in_factors), at_once(in_factors);
+    apart.build(list, before_.data());
+    apart.respond(masses_);
+    apart.set_free_velocity(free_.data());
+    at_once.build(list, before_.data(), &masses_);
+    at_once.set_free_velocity(free_.data());
+    const ContactProblem &one = apart.problem(), &other = at_once.problem();
+    ASSERT_TRUE(other.is_factored());
+    ASSERT_EQ(other.rows(), one.rows());
+    EXPECT_EQ(other.factors().inverse_mass, one.factors().inverse_mass);
+    EXPECT_TRUE(std::equal(one.vector().begin(), one.vector().end(), other.vector().begin()));
+    EXPECT_TRUE(std::equal(apart.before().begin(), apart.before().end(), at_once.before().begin()));
+    for (std::size_t row = 0; row < one.vector().size(); ++row) {
+      EXPECT_EQ(other.factors().rows[row].slot, one.factors().rows[row].slot);
+      EXPECT_EQ(other.factors().rows[row].h, one.factors().rows[row].h);
+      EXPECT_EQ(other.sets()[row].kind, one.sets()[row].kind);
+      EXPECT_EQ(other.sets()[row].bound, one.sets()[row].bound);
+      EXPECT_EQ(other.sets()[row].coefficient, one.sets()[row].coefficient);
+      EXPECT_EQ(other.diagonal(static_cast<int>(row)), one.diagonal(static_cast<int>(row)));
+    }
+  }
 }
 
 TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
@@ -181,6 +217,11 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
   for (std::size_t i = 0; i < dense.matrix().size(); ++i) {
     EXPECT_NEAR(island.problem().matrix()[i], dense.matrix()[i], 1e-14);
   }
+  IslandProblem at_once(in_factors);
+  at_once.build(list, before_.data(), &together);
+  ASSERT_FALSE(at_once.problem().is_factored());
+  const std::span<const double> matrix = island.problem().matrix();
+  EXPECT_TRUE(std::equal(matrix.begin(), matrix.end(), at_once.problem().matrix().begin()));
 }
 
 }  // namespace
