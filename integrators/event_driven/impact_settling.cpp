@@ -36,9 +36,8 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     listed.friction_bound = 0.0;
     const double sliding = contact.sliding_speed(at.velocities());
     listed.friction = sliding <= capture ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
-    if (at.before_at[i] == none) continue;
-    any = any || -at.approach(i) > noise;
-    any = any || (sliding > noise && sliding <= capture && at.before[at.before_at[i]].sticks());
+    any = any || (at.before_at[i] != none && -at.approach(i) > noise);
+    any = any || (contact.rows > 1 && sliding > noise && sliding <= capture);
   }
   return any && pile;
 }
@@ -66,6 +65,15 @@ bool ImpactSettling::solve_ahead(EventInstant& at, SolverChain& chain) {
   return problem_.solve(chain).usable();
 }
 
+/// True if sliding stops until then, or turns back: it passes through zero, from where the accelerations
+/// decide.
+bool ImpactSettling::comes_to_rest(std::size_t c, const EventInstant& at) const {
+  const double slip = touching_[c].tangential_velocity(at.velocities());
+  const ContactMode turned = slip > 0.0 ? ContactMode::slip_negative : ContactMode::slip_positive;
+  const ContactMode mode = problem_.modes()[c];
+  return mode == ContactMode::stick || mode == turned;
+}
+
 /// Lists the contacts that are pressed then. False if they need not be stopped.
 bool ImpactSettling::list_held(const EventInstant& at) {
   const double capture = at.motion.model().options->capture_speed, noise = at.scales.speed_noise;
@@ -74,11 +82,12 @@ bool ImpactSettling::list_held(const EventInstant& at) {
   for (std::size_t c = 0; c < touching_.size(); ++c) {
     const Constraint& contact = touching_[c];
     const Index place = places_[c];
-    if (contact.has_dry_friction() || at.before_at[place] == none) continue;
+    // A contact that was open before bounces as ever.
+    const bool bounces = at.before_at[place] == none && -at.approach(place) > noise;
+    if (contact.has_dry_friction() || bounces) continue;
     if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
-    const bool sticks = contact.rows > 1 && problem_.modes()[c] == ContactMode::stick &&
-                        at.before[at.before_at[place]].sticks() && sliding <= capture;
+    const bool sticks = contact.rows > 1 && sliding <= capture && comes_to_rest(c, at);
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();
     held.mode = sticks ? ContactMode::stick : ContactMode::slip_positive;

@@ -1,11 +1,13 @@
 #pragma once
 
 /// \file
-/// Closed contacts through an impact of their neighbours: those that it parts, or makes slide, slower than
-/// the capture speed although loads hold them stay as they were. It is what the capture of slow impacts is to
-/// the contact that bounces (docs/method.md, section 7, *Accumulation of impacts*): in a pile every impact
-/// shakes all that touches, and each contact that bounces lower than the neglected height would end its
-/// bounce, and each short slide, by an event of its own.
+/// Contacts of a pile through an impact of their neighbours, and where no forces keep them (Painleve): closed
+/// ones that part slower than the capture speed although loads press them stay closed, and what slides slower
+/// stops at once if forces of contact stop it soon. It is what the capture of slow impacts is to the contact
+/// that bounces (docs/method.md, section 7, *Accumulation of impacts*): in a pile every impact shakes all
+/// that touches, and each contact that bounces lower than the neglected height would end its bounce, and each
+/// short slide, by an event of its own. Sliding of 1e-12 m/s, the rest of a larger motion, would give
+/// friction a direction that jams.
 
 #include <carom/contact/active_contact.h>
 #include <carom/contact/island_problem.h>
@@ -23,15 +25,16 @@ namespace carom {
 class CAROM_API ImpactSettling {
 public:
   /// Closes contacts of an island that were closed before the event and part slower than the capture speed,
-  /// and stops those that stuck and slide slower, where forces of contact do so within the time in which what
-  /// parts at that speed comes back. Books the energy as that of accumulations. True if velocities changed;
-  /// the instant is up to date then, and contacts may approach each other. \param at brought to the state
-  /// after the impacts
+  /// and stops those that slide slower, where forces of contact do so, or turn them back, within the time in
+  /// which what parts at that speed comes back. Books the energy as that of accumulations. True if velocities
+  /// changed; the instant is up to date then, and contacts may approach each other. \param at brought to the
+  /// state after the impacts
   [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain);
 
 private:
   [[nodiscard]] bool list_touching(std::span<const Index> pairs, const EventInstant& at);
   [[nodiscard]] bool solve_ahead(EventInstant& at, SolverChain& chain);
+  [[nodiscard]] bool comes_to_rest(std::size_t c, const EventInstant& at) const;
   [[nodiscard]] bool list_held(const EventInstant& at);
   [[nodiscard]] bool hold_approaching(std::span<const Index> pairs, const EventInstant& at);
   [[nodiscard]] bool project(std::span<const Index> pairs, EventInstant& at);

@@ -59,6 +59,12 @@ void ImpactStage::settle(EventInstant& at) {
   }
 }
 
+bool ImpactStage::settle(std::span<const Index> pairs, EventInstant& at) {
+  if (!memory_->settling.settle(pairs, at, *chain_)) return false;
+  if (resolve(at)) at.update();
+  return true;
+}
+
 double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventInstant& at) const {
   double fastest = 0.0;
   for (const Index i : pairs) {

@@ -67,14 +67,18 @@ void ModeSelection::select(EventInstant& at) {
   stopped_ = {};
 }
 
-/// False if an impact without collision happened: then everything is to be decided anew.
+/// False if an impact without collision happened, or slow contacts were settled in its place: then everything
+/// is to be decided anew.
 bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at) {
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
   const Decision decision = decide_candidates(pairs, at);
   if (decision == Decision::impossible || decision == Decision::failed) failure_->demand_finite_loads(at.now);
   if (decision == Decision::impossible) {
-    if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) fail_unkept();
+    if (!impacts_->settle(pairs, at)) {
+      if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) fail_unkept();
+      impacts_->settle(at);
+    }
     unbounded_->clear();
     stopped_ = {};
     return false;

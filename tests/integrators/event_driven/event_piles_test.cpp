@@ -230,6 +230,16 @@ TEST(EventPilesLong, JamsOfWhatSlidesSlowlyAreFound) {
   EXPECT_EQ(runs.failed, 0);
 }
 
+// Three contacts stop together in a pile where others slide by 1e-3 m/s, and leave a fourth at 1e-12 m/s: in
+// the direction of this rounding its friction jammed, and no impact without collision was found.
+TEST(EventPilesLong, SlidingOfRoundingDoesNotJam) {
+  Runs runs;
+  run({20, true, 0.8, 0.0, 9}, 1.06, runs);
+  run({20, true, 0.8, 0.0, 15}, 1.28, runs);
+  EXPECT_GT(runs.jams, 0);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
