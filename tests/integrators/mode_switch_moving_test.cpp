@@ -5,6 +5,7 @@
 
 #include <carom/carom.h>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <algorithm>
