@@ -34,12 +34,15 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
   const std::vector<double>& lengths = motion.memory().lengths;
   EventScales scales;
+  // Of an angle the length is the radius of gyration; points of the body turn at some of these, up to 1 m.
+  constexpr double radii = 4.0, largest_arm = 1.0;
   double size = 1.0, velocity = 0.0;
   for (const auto& part : motion.model().parts()) {
     const Range q = part.ranges.q, v = part.ranges.v;
     for (Index i = v.begin; i < v.end; ++i) {
       // In the plane, and of particles, coordinates have the order of velocities.
-      size = std::max(size, std::abs(at.state.q[q.begin + i - v.begin]) * lengths[i]);
+      const double arm = std::max(lengths[i], std::min(radii * lengths[i], largest_arm));
+      size = std::max(size, std::abs(at.state.q[q.begin + i - v.begin]) * arm);
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
       scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }
