@@ -88,18 +88,21 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
     try {
       flow.advance(std::min(longest, until));
     } catch (const SolverError& error) {
-      if (!finds_unbounded_force(flow)) failure_->fail_flow(error, *motion_, y.data(), memory_->within);
+      if (!finds_unbounded_force(flow.end(), flow.state().data()))
+        failure_->fail_flow(error, *motion_, y.data(), memory_->within);
       return unbounded_at(time, y, error.what());
     }
     if (!sample_step_end(*motion_, flow.end(), flow.state().data(), memory_->is_active, scales_.force,
                          *memory_, memory_->ends.end())) {
       failure_->fail_loads(memory_->within);
     }
+    if (comes_to_pole(time, y))
+      return unbounded_at(time, y, "closed contacts come to follow from each other");
     memory_->samples.forget();
     memory_->path_samples.forget();
     landing_.time = never;
     const Event event = first(step);
-    if (makes_no_progress(step, event) && finds_unbounded_force(flow)) {
+    if (makes_no_progress(step, event) && finds_unbounded_force(flow.end(), flow.state().data())) {
       return unbounded_at(time, y, "steps have no length any more");
     }
     if (repeat_shorter(step, event, time, y)) continue;
@@ -133,9 +136,16 @@ Event EventDetector::unbounded_at(double time, std::span<const double> y, std::s
   return {time, Guard::painleve, 0};
 }
 
-bool EventDetector::finds_unbounded_force(const Flow& flow) {
-  motion_->sample(flow.end(), flow.state().data(), Forces::all, memory_->within);
+bool EventDetector::finds_unbounded_force(double time, const double* y) {
+  motion_->sample(time, y, Forces::all, memory_->within);
   return unbounded_->find(motion_->active().list(), scales_.force);
+}
+
+/// True if forces without bound come to an end within the step because closed contacts follow from each other
+/// there, to rounding: the forces that are found then are small, but keep no contact.
+bool EventDetector::comes_to_pole(double time, std::span<const double> y) {
+  return memory_->ends.end().independent < memory_->ends.start().independent &&
+         finds_unbounded_force(time, y.data());
 }
 
 Event EventDetector::first(SearchedStep& step) {
@@ -172,7 +182,8 @@ void EventDetector::pass_over(const SearchedStep& step, const Event& predicted) 
 bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located) {
   // A force at the very start: within such a step p = W_nn - s mu W_nt passes zero together with the load,
   // and the flow does not know the force in between.
-  if (predicted.guard == Guard::force && !(located.time > step.begin()) && !finds_unbounded_force(step.flow))
+  if (predicted.guard == Guard::force && !(located.time > step.begin()) &&
+      !finds_unbounded_force(step.flow.end(), step.flow.state().data()))
     return true;
   if (predicted.guard != Guard::gap) return false;
   // A gap with an outline may open and close again where the nearest feature changes.

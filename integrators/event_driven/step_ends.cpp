@@ -101,6 +101,7 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
                      double force_scale, DetectionMemory& memory, StepEnd& out) {
   MotionSample& at = memory.within;
   motion.sample(time, y, Forces::all, at);
+  out.independent = motion.active().pivots().size();
   bool finite = sample_gaps(motion, is_active, at, out) && at.has_forces;
   out.sample.time = time;
   if (motion.guards().count() != 0) {

@@ -37,6 +37,7 @@ struct StepEnd {
   GuardSample sample;                 ///< all other guards
   std::unique_ptr<PathEnd> path;      ///< where elements have guards
   std::vector<double> noises;         ///< rounding of the margins of forces [N]
+  std::size_t independent = 0;        ///< constraints of closed contacts that do not follow from others
 };
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
