@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace carom {
 
@@ -34,15 +35,16 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
   const std::vector<double>& lengths = motion.memory().lengths;
   EventScales scales;
-  // Of an angle the length is the radius of gyration; points of the body turn at some of these, up to 1 m.
-  constexpr double radii = 4.0, largest_arm = 1.0;
+  // Up to one turn an angle counts with an arm of 1 m, which has margin for most bodies; more turns count
+  // with the radius of gyration. Of other coordinates the length is 1.
+  constexpr double turn = 2.0 * std::numbers::pi;
   double size = 1.0, velocity = 0.0;
   for (const auto& part : motion.model().parts()) {
     const Range q = part.ranges.q, v = part.ranges.v;
     for (Index i = v.begin; i < v.end; ++i) {
       // In the plane, and of particles, coordinates have the order of velocities.
-      const double arm = std::max(lengths[i], std::min(radii * lengths[i], largest_arm));
-      size = std::max(size, std::abs(at.state.q[q.begin + i - v.begin]) * arm);
+      const double q_i = std::abs(at.state.q[q.begin + i - v.begin]);
+      size = std::max(size, std::min(q_i, turn) + std::max(q_i - turn, 0.0) * lengths[i]);
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
       scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }
