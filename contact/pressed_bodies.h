@@ -11,8 +11,8 @@
 
 namespace carom {
 
-/// What an error adds of a contact problem without an answer: the obstacles in it that move along the normal
-/// of a contact, and what would help; nothing where none does.
+/// Text that an error adds of a contact problem without an answer: the obstacles in it that move along the
+/// normal of a contact, and the remedies; empty where none moves so.
 [[nodiscard]] CAROM_API std::string pressed_by(const System& system, const IslandProblem& problem);
 
 }  // namespace carom

@@ -114,7 +114,8 @@ bool ImpactSolver::compress(const ContactProblem& problem, SolverChain& chain, C
   expansion_.assign(before_.size(), 0.0);
   report = chain.solve(phase_, compression_);
   find_velocities(problem, compression_, before_, compressed_);
-  // What is stopped is at rest: where contacts jam, impulses without bound would answer to its rounding.
+  // Velocities gamma that the compression stops are zero: where contacts jam, impulses without bound would
+  // answer to their rounding.
   const double slow = rounding * largest(before_);
   for (double& velocity : compressed_) {
     if (std::abs(velocity) <= slow) velocity = 0.0;

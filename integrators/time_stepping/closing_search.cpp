@@ -65,8 +65,8 @@ double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& star
 ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end, Modes acted) {
   look_.find(end.view(), near_, at_end_);
   const double* const v = end.v.data();
-  // What is in something has closed, even where it recedes again, past the middle of the other, if it came
-  // fast: slow contacts that dip by little are not worth a part.
+  // A contact with gap g < 0 has closed, even where it recedes again, past the middle of the other body, if
+  // it came fast: slow contacts that dip by little are not worth a part.
   std::erase_if(at_end_, [&](const Constraint& contact) {
     const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding;
     return !closes || !may_close(contact, acted);

@@ -161,7 +161,7 @@ int solve_random_jams(ImpactLaw law) {
 }
 
 TEST(PlasticJam, PoissonsLawHasAnAnswerOfItsOwn) {
-  // What the expansion gives back at least, e P of the compression, is in the cones of P.
+  // The least impulses of the expansion, e P of the compression, are in the cones of P.
   EXPECT_EQ(solve_random_jams(ImpactLaw::poisson), 0);
 }
 
