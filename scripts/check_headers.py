@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Compiles every header of the library alone, so that each includes what it needs.
 
-    scripts/check_headers.py [<build dir>]    build/release, which must be configured
-
 Nearly all of what that costs is Eigen. So <Eigen/Core> is compiled once, for those headers that include it, be it
 through others; the rest must do without.
 """
 
+import argparse
 import json
 import os
 import re
@@ -25,7 +24,10 @@ root = Path(__file__).resolve().parent.parent
 
 def compile_command(build):
     """The command, with what finds headers."""
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+    commands = build / "compile_commands.json"
+    if not commands.exists():
+        sys.exit(f"check_headers: no {commands}; configure that directory first")
+    for entry in json.loads(commands.read_text()):
         if f"{os.sep}carom.dir{os.sep}" in entry["command"]:
             words = shlex.split(entry["command"])
             kept = [word for i, word in enumerate(words)
@@ -42,8 +44,10 @@ def includes_eigen(header):
 
 
 def main():
-    build = Path(sys.argv[1] if len(sys.argv) > 1 else root / "build" / "release").resolve()
-    command = compile_command(build)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", nargs="?", default=root / "build" / "release", type=Path,
+                        help="a build directory that is configured, build/release if none is given")
+    command = compile_command(parser.parse_args().build.resolve())
     headers = sorted(header for folder in FOLDERS for header in (root / folder).glob("**/*.h"))
 
     with tempfile.TemporaryDirectory() as folder:
@@ -64,4 +68,5 @@ def main():
     sys.exit(1 if bad or not headers else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

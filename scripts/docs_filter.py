@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 """Writes a page as Doxygen reads it; called by Doxygen in the folder of the project.
 
-    docs_filter.py <page>
-
 Links of pages are relative to the page. Here they are made relative to the project, where Doxygen looks first. Links
 to what is not in the site, which has the pages and the public headers, become plain text. Pictures stay apart by
 their folders, where Doxygen would tell them by their names alone. What pages fold is shown, as Doxygen ends such
 elements at the first code in them.
 """
 
+import argparse
 import os
 import re
 import sys
@@ -52,6 +51,6 @@ def main(page):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    main(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("page", help="a page of docs/, or README.md")
+    main(parser.parse_args().page)

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Prints the warnings of Doxygen that count, and fails if there are any.
 
-    docs_warnings.py <file of warnings>
-
 A docstring speaks for all lines that follow it without an empty one between, and so do trailing ones: overloads,
 members of small structs. Doxygen knows only the first of them.
 """
 
+import argparse
 import re
 import sys
 from pathlib import Path
@@ -38,6 +37,6 @@ def main(warnings):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    sys.exit(main(sys.argv[1]))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("warnings", help="the file of warnings that Doxygen wrote")
+    sys.exit(main(parser.parse_args().warnings))

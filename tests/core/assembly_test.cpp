@@ -156,7 +156,7 @@ TEST(Assembly, ComponentsAreRangesThatTileEveryArray) {
   }
 }
 
-TEST(Assembly, BodiesOfAnComponentComeKindByKind) {
+TEST(Assembly, BodiesOfAComponentComeKindByKind) {
   System system;
   const BodyId a = add_particle(system, 1), b = add_plate(system, 2), c = add_particle(system, 3);
   const BodyId d = add_plate(system, 4), e = add_particle(system, 5);
@@ -235,7 +235,7 @@ TEST(Assembly, LoadsAreTheSameAsOfEachSpringByItself) {
   }
 }
 
-TEST(Assembly, EvaluatingAnComponentTouchesNoOther) {
+TEST(Assembly, EvaluatingAComponentTouchesNoOther) {
   System system;
   add_plate(system, 1);
   add_plate(system, 2);

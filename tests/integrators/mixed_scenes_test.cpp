@@ -71,8 +71,7 @@ bool is_pressed(const MixedScene& scene, const SolverError& error) {
 /// forces).
 bool is_driven_through_dead_centre(const MixedScene& scene, const SolverError& error) {
   constexpr double early = 1e-5, late = 1e-7;  // before the end [s]
-  const std::string text = error.what();
-  const double end = std::stod(text.substr(text.find("t = ") + 4));
+  const double end = error.failure().time + error.failure().step;
   Simulation simulation(scene.system(), EventDriven{});
   const auto fastest = [&](double before) {
     simulation.run_until(end - before);

@@ -31,14 +31,19 @@ System piled() {
   return system;
 }
 
-TEST(ContactLook, FindsWhatTheDetectorFinds) {
-  const carom_test::PlacedModel model(piled());
-  const Detector detector(model.assembly);
+class ContactLookTest : public testing::Test {
+protected:
+  const carom_test::PlacedModel model{piled()};
+  const Detector detector{model.assembly};
+  ContactLook look{model.assembly, detector};
+  std::vector<Constraint> found;
+};
+
+TEST_F(ContactLookTest, FindsWhatTheDetectorFinds) {
   GroundPlaces places;
   detector.place(0.0, places);
   BodyContactSearch search;
-  ContactLook look(model.assembly, detector);
-  std::vector<Constraint> found, expected{Constraint{}};
+  std::vector<Constraint> expected{Constraint{}};
   look.find(model.state.view(), 1.0, expected);  // what was there before is left out
   look.find(model.state.view(), 0.0, found);
   EXPECT_LT(found.size(), expected.size());
@@ -52,11 +57,7 @@ TEST(ContactLook, FindsWhatTheDetectorFinds) {
 }
 
 // A key names the pair whose contact it is the key of: a vertex of a body or of the ground, and an outline.
-TEST(ContactLook, KeysNameTheirPairs) {
-  const carom_test::PlacedModel model(piled());
-  const Detector detector(model.assembly);
-  ContactLook look(model.assembly, detector);
-  std::vector<Constraint> found;
+TEST_F(ContactLookTest, KeysNameTheirPairs) {
   look.find(model.state.view(), 0.0, found);
   int of_bodies = 0, of_ground_vertices = 0, of_ground_outlines = 0, without_outlines = 0;
   for (const Constraint& contact : found) {
@@ -81,11 +82,7 @@ TEST(ContactLook, KeysNameTheirPairs) {
   EXPECT_GT(without_outlines, 0);
 }
 
-TEST(ContactLook, KeysOfWhatIsNotThereNameNothing) {
-  const carom_test::PlacedModel model(piled());
-  const Detector detector(model.assembly);
-  ContactLook look(model.assembly, detector);
-  std::vector<Constraint> found;
+TEST_F(ContactLookTest, KeysOfWhatIsNotThereNameNothing) {
   look.find(model.state.view(), 0.0, found);
   for (const Constraint& contact : found) {
     ConstraintKey other = contact.key;
