@@ -141,15 +141,9 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
     list_struck(island.constraints);
   }
   trial.expect_impulses();
-  const double* const loads = in.companion.loads.total.data();
-  if (all_are_struck) {
-    free_bodies(in, {loads, loads}, island, trial);
-    return part_problems(in, island, [&](IslandProblem& problem) {
-      return solve_against_free(problem, chains_.front(), trial);
-    });
-  }
+  free_struck(in, in.companion.loads.total.data(), trial);
   return part_problems(in, island, [&](IslandProblem& problem) {
-    return solve(in, {loads, loads}, problem, chains_.front(), trial);
+    return solve_against_free(problem, chains_.front(), trial);
   });
 }
 
@@ -253,19 +247,22 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
   }
 }
 
-/// Likewise of all bodies of an island whose components are bodies, many at a time.
-void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
-                               StepTrial& trial) const {
+/// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one another.
+void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
-  for (const Range components : island.batches) {
-    const Range bodies = assembly_->bodies_of(components);
-    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-      const std::size_t end = first + static_cast<std::size_t>(slots.size()) * kind.v_size();
-      for (std::size_t k = first; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
-      kind.apply_inverse_mass(slots, dv + first, free + first);
-      for (std::size_t k = first; k < end; ++k) {
-        free[k] += static_cast<double>(in.companion.rounding[k]) + in.start.v[k];
+  const double* const start = in.start.v.data();
+  const float* const rounding = in.companion.rounding.data();
+  for (std::size_t first = 0, last = 0; first < struck_.size(); first = last) {
+    const Index begin = struck_[first];
+    while (last < struck_.size() && struck_[last] - begin == last - first) ++last;
+    const Range bodies{begin, begin + static_cast<Index>(last - first)};
+    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      const std::size_t end = v + static_cast<std::size_t>(slots.size()) * kind.v_size();
+      for (std::size_t k = v; k < end; ++k) dv[k] = half * (loads[k] + loads[k]);
+      kind.apply_inverse_mass(slots, dv + v, free + v);
+      for (std::size_t k = v; k < end; ++k) {
+        free[k] += static_cast<double>(rounding[k]) + start[k];
         dv[k] = 0.0;
       }
     });

@@ -82,8 +82,7 @@ private:
   template <std::size_t N>
   void free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
                  StepTrial& trial) const;
-  void free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
-                   StepTrial& trial) const;
+  void free_struck(const StepInput& in, const double* loads, StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 
