@@ -230,16 +230,15 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
 /// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
 /// known when this is compiled
 template <std::size_t N>
-void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body,
                              StepTrial& trial) const {
-  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(block.columns);
+  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(body.v_size);
   const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + block.v, *const free = trial.free.data() + block.v;
-  const double *const load0 = loads.start + block.v, *const load1 = loads.end + block.v;
-  const double* const start = in.start.v.data() + block.v;
-  const float* const rounding = in.companion.rounding.data() + block.v;
+  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
+  const double *const load0 = loads.start + body.v, *const load1 = loads.end + body.v;
+  const double* const start = in.start.v.data() + body.v;
+  const float* const rounding = in.companion.rounding.data() + body.v;
   for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
-  const BodySlot body = assembly_->layout()->bodies()[block.body];
   assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
   for (std::size_t k = 0; k < size; ++k) {
     free[k] += static_cast<double>(rounding[k]) + start[k];
@@ -247,7 +246,15 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
   }
 }
 
-/// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one another.
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const {
+  constexpr Index of_planar_body = 3;
+  const BodySlot slot = assembly_->layout()->bodies()[body];
+  if (slot.v_size == of_planar_body) return free_body<of_planar_body>(in, loads, slot, trial);
+  free_body<0>(in, loads, slot, trial);
+}
+
+/// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one
+/// another.
 void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
@@ -256,6 +263,10 @@ void ContactStage::free_struck(const StepInput& in, const double* loads, StepTri
   for (std::size_t first = 0, last = 0; first < struck_.size(); first = last) {
     const Index begin = struck_[first];
     while (last < struck_.size() && struck_[last] - begin == last - first) ++last;
+    if (last - first == 1) {
+      free_body(in, {loads, loads}, begin, trial);
+      continue;
+    }
     const Range bodies{begin, begin + static_cast<Index>(last - first)};
     assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
       const std::size_t end = v + static_cast<std::size_t>(slots.size()) * kind.v_size();
@@ -272,19 +283,12 @@ void ContactStage::free_struck(const StepInput& in, const double* loads, StepTri
 /// Bodies answer for themselves. False if there are no impulses.
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
-  constexpr int of_planar_body = 3;
-  const auto free = [&](const Constraint::Block& block) {
-    if (block.columns == of_planar_body) {
-      free_body<of_planar_body>(in, loads, block, trial);
-    } else {
-      free_body<0>(in, loads, block, trial);
-    }
-  };
   const std::span<const Constraint> constraints = problem.constraints();
   if (constraints.size() == 1 && constraints.front().bodies == 1) {
-    free(constraints.front().blocks.front());
+    free_body(in, loads, constraints.front().body(), trial);
   } else {
-    problem.map().for_bodies(free);
+    problem.map().for_bodies(
+        [&](const Constraint::Block& block) { free_body(in, loads, block.body, trial); });
   }
   return solve_against_free(problem, chain, trial);
 }

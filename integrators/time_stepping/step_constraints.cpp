@@ -118,9 +118,8 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
                            Parting parting) {
-  rules_.parting = parting;
+  begin(in, parting);
   rules_.by_part = false;
-  remember(in, in.last_step);
   if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
   constraints_.clear();
   // Where nothing touched in the step before there is hardly anything to be found.
