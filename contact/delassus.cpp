@@ -64,7 +64,7 @@ int Delassus::build_of_one_body(const BodyResponse& response) {
 
 bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions,
                                     const BodyResponse& response, double* matrix) {
-  if (!are_of_one_contact(directions)) return false;
+  if (directions.size() != 2 || !are_of_one_contact(directions)) return false;
   const Constraint& at = *directions.front().constraint;
   const BodyMasses masses = response.alone(at.body());
   if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return false;

@@ -115,6 +115,10 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
 
 /// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
+  if (constraints.size() == 1 && constraints.front().bodies == 1) {
+    struck_.push_back(constraints.front().body());
+    return;
+  }
   bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
@@ -165,6 +169,7 @@ void ContactStage::put_struck_in_order() {
 
 std::span<const Index> ContactStage::struck(Range bodies) const {
   if (struck_.empty()) return {};
+  if (struck_.front() >= bodies.begin && struck_.back() < bodies.end) return struck_;
   const auto first = std::lower_bound(struck_.begin(), struck_.end(), bodies.begin);
   return {first, std::lower_bound(first, struck_.end(), bodies.end)};
 }
@@ -256,6 +261,7 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, Index b
 /// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one
 /// another.
 void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
+  if (struck_.size() == 1) return free_body(in, {loads, loads}, struck_.front(), trial);
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
   const double* const start = in.start.v.data();

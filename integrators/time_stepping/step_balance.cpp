@@ -132,7 +132,7 @@ StepResult& StepBalance::finish(const StepInput& in) {
   flows[EnergyFlow::coupling_discretisation] +=
       discretisation_loss(result_.stored.potential() + energy_position_projection_,
                           in.companion.ledger.potential(), coupling_work_.value());
-  result_.report.contacts.resize(result_.recorded);
+  if (result_.recorded < result_.report.contacts.size()) result_.report.contacts.resize(result_.recorded);
   if (!result_.contacts.empty()) result_.contacts.contacts.finish();
   return result_;
 }

@@ -160,6 +160,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   Index last = none;
   const std::span<const Index> order = islands_.find(batches, joined_);
   constraints_.resize(order.size());
+  const bool sticks = detector_.has_static_friction();
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Index source = sources_[order[k]];
     Constraint& out = constraints_[k];
@@ -178,7 +179,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     } else {
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
-    take_sticking({&out, 1});
+    if (sticks) take_sticking({&out, 1});
   }
   islands_.take(constraints_);
   return true;
