@@ -23,12 +23,19 @@ bool are_of_one_contact(std::span<const ImpulseDirection> rows) {
          is_row(1);
 }
 
-/// Their responses, as one_body::answer_alone() does without its loops: in the pairs in which they are read.
-void answer_contact(const Constraint& at, const BodyMasses& masses, double* x) {
-  const double *const h = at.jacobian.data(), mass = *masses.mass, inertia = *masses.inertia;
-  store_pair(x, Pair{h[0], h[1]} / both(mass));
-  store_pair(x + 2, Pair{h[2], h[3]} / Pair{inertia, mass});
-  store_pair(x + 4, Pair{h[4], h[5]} / Pair{mass, inertia});
+/// Their responses and W, as one_body::answer_alone() and multiply_symmetric() without loops, and without a
+/// way through memory between the two.
+void answer_contact(const Constraint& at, const BodyMasses& masses, double* x, double* matrix) {
+  const double *const n = at.jacobian.data(), *const t = n + one_body::of_planar_body;
+  const double mass = *masses.mass, inertia = *masses.inertia;
+  const Pair r01 = Pair{n[0], n[1]} / both(mass), r23 = Pair{n[2], t[0]} / Pair{inertia, mass},
+             r45 = Pair{t[1], t[2]} / Pair{mass, inertia};
+  store_pair(x, r01);
+  store_pair(x + 2, r23);
+  store_pair(x + 4, r45);
+  const double mixed = 0.0 + t[0] * r01[0] + t[1] * r01[1] + t[2] * r23[0];
+  store_pair(matrix, Pair{0.0 + n[0] * r01[0] + n[1] * r01[1] + n[2] * r23[0], mixed});
+  store_pair(matrix + 2, Pair{mixed, 0.0 + t[0] * r23[1] + t[1] * r45[0] + t[2] * r45[1]});
 }
 
 }  // namespace
@@ -38,14 +45,6 @@ void answer_contact(const Constraint& at, const BodyMasses& masses, double* x) {
 int Delassus::build_of_one_body(const BodyResponse& response) {
   if (directions_.empty()) return 0;
   const Constraint::Block& block = directions_.front().constraint->blocks[0];
-  if (are_of_one_contact(directions_)) {
-    const BodyMasses masses = response.alone(block.body);
-    if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return 0;
-    common_ = {block.v, block.v + static_cast<Index>(block.columns)};
-    responses_.resize(2 * one_body::of_planar_body);
-    answer_contact(*directions_.front().constraint, masses, responses_.data());
-    return block.columns;
-  }
   const Constraint* last = nullptr;
   for (const ImpulseDirection& direction : directions_) {
     if (std::exchange(last, direction.constraint) == direction.constraint) continue;
@@ -61,6 +60,22 @@ int Delassus::build_of_one_body(const BodyResponse& response) {
     one_body::answer_alone<3>(directions_, masses.mass, masses.inertia, responses_.data());
   }
   return block.columns;
+}
+
+bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions,
+                                    const BodyResponse& response, double* matrix) {
+  if (directions.size() != 2 || !are_of_one_contact(directions)) return false;
+  const Constraint& at = *directions.front().constraint;
+  const BodyMasses masses = response.alone(at.body());
+  if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return false;
+  directions_ = directions;
+  factored_ = false;
+  loads_.clear();
+  velocities_of_one_ = static_cast<int>(one_body::of_planar_body);
+  common_ = {at.blocks[0].v, at.blocks[0].v + static_cast<Index>(one_body::of_planar_body)};
+  responses_.resize(2 * one_body::of_planar_body);
+  answer_contact(at, masses, responses_.data(), matrix);
+  return true;
 }
 
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {

@@ -24,9 +24,11 @@ void ContactSweeps::make_velocities() {
   std::fill(velocity_.begin(), velocity_.end(), SlotVelocity{});
   pack_kernel::push(packs_.packs(), velocity_.data());
   for (const OddGroup& odd : packs_.odd()) push(odd, odd.p, velocity_.data());
+  made_anew_ = true;
 }
 
 SweepChange ContactSweeps::sweep() {
+  made_anew_ = false;
   SweepChange change = pack_kernel::sweep(packs_.packs(), velocity_.data());
   for (OddGroup& odd : packs_.odd()) {
     solve(odd, velocity_.data());
@@ -51,6 +53,7 @@ void ContactSweeps::restart() {
 }
 
 void ContactSweeps::step(double beta) {
+  made_anew_ = false;
   const Lanes factor{beta, beta, beta, beta};
   for (ContactPack& pack : packs_.packs()) {
     const Lanes n = factor * pack.d_n, t = factor * pack.d_t;
@@ -76,7 +79,7 @@ void ContactSweeps::step(double beta) {
 }
 
 double ContactSweeps::judge() {
-  make_velocities();
+  if (!made_anew_) make_velocities();
   double error = 0.0, size = 0.0;
   pack_kernel::judge(packs_.packs(), velocity_.data(), error, size);
   for (const OddGroup& odd : packs_.odd()) carom::judge(odd, velocity_.data(), error, size);

@@ -46,6 +46,7 @@ private:
   SweepPacks packs_;
   std::vector<SlotVelocity> velocity_, before_, direction_;  // u, u before the sweep, M^-1 H^T d
   double scale_ = 0.0;
+  bool made_anew_ = false;  // velocities are those of the impulses, without rounding of sweeps
 };
 
 }  // namespace carom

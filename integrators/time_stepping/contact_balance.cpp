@@ -34,65 +34,66 @@ struct BookedWork {
   bool impact = false;
 };
 
-/// Books the contacts and limits of one problem: what they share is looked up once.
+/// Books the contacts and limits of one problem. Most problems have one: nothing is made ready for others.
 class ContactBooking {
 public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   ContactBooking(const Assembly& assembly, const IslandProblem& problem, const double* after, double time,
-                 const StepInput& in, double capture_speed, StepResult& result)
-      : bodies_(assembly.layout()->bodies()),
-        token_(assembly.layout()->token()),
-        token_of_system_(assembly.system().token()),
-        problem_(problem),
-        constraints_(problem.constraints()),
-        modes_(problem.modes()),
-        before_(problem.before().data()),
-        impulses_(problem.impulses().data()),
-        after_(after),
-        q_(in.start.q.data()),
-        time_(time),
-        within_step_(time < in.end_time),
-        is_swept_(problem.problem().is_factored()),
-        capture_speed_(capture_speed),
-        result_(result) {}
+                 const StepInput& in, StepResult& result)
+      : assembly_(assembly), problem_(problem), after_(after), time_(time), in_(in), result_(result) {}
 
   /// \param contact number of its constraint \param first its first row
-  void book(std::size_t contact, std::size_t first, BookedWork& work) const {
-    const Constraint& at = constraints_[contact];
-    const BodySlot body = bodies_[at.body()];
-    if (is_swept_) fetch_contact_ahead(constraints_, contact + ahead);
-    std::vector<ContactRecord>& records = result_.report.contacts;
-    fetch_ahead(std::span(records.data(), records.capacity()), records.size() + ahead);
-    ContactRecord& entry = records.emplace_back();
-    name(at, contact, body.serial, entry);
+  void book(std::size_t contact, std::size_t first, double capture_speed, BookedWork& work) const {
+    const std::span<const Constraint> constraints = problem_.constraints();
+    const Constraint& at = constraints[contact];
+    if (problem_.problem().is_factored()) {
+      fetch_contact_ahead(constraints, contact + ahead);
+      result_.fetch_records(ahead);
+    }
+    const double* const before = problem_.before().data() + first;
+    const bool impact = before[0] < -capture_speed;
+    work.impact = work.impact || impact;
+    ContactTally& tally = result_.tally;
+    tally.impacts += impact ? 1 : 0;
+    tally.deepest_gap = std::min(tally.deepest_gap, at.gap);
+    ContactRecord& entry = result_.next_record();
+    entry.mode = problem_.modes()[contact];
     // Else an impact within the step, or contact up to it.
-    if (!within_step_) result_.contact_modes.emplace_back(at.key, entry.mode);
-    find_point_of_contact(at, q_ + body.q, entry.point, entry.normal);
-    entry.impact = before_[first] < -capture_speed_;
-    work.impact = work.impact || entry.impact;
-    result_.tally.impacts += entry.impact ? 1 : 0;
-    result_.tally.deepest_gap = std::min(result_.tally.deepest_gap, at.gap);
-    book_rows(at, before_ + first, impulses_ + first, work.sum, entry);
+    if (!(time_ < in_.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
+    entry.impact = impact;
+    write_place(at, entry);
+    write_answer(entry);
+    book_rows(at, before, problem_.impulses().data() + first, work.sum, entry);
   }
 
 private:
-  /// Which contact it is, and how its problem was solved. \param serial of its first body
-  void name(const Constraint& at, std::size_t contact, Index serial, ContactRecord& entry) const {
+  /// Which contact it is, and where.
+  void write_place(const Constraint& at, ContactRecord& entry) const {
+    const Layout& layout = *assembly_.layout();
+    const BodySlot body = layout.bodies()[at.body()];
+    const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
+    const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
     entry.key = at.key;
-    entry.body = {serial, token_};
-    if (at.type == ConstraintType::contact && at.bodies == 2) {
-      entry.other = {bodies_[at.blocks[1].body].serial, token_};
-    }
-    if (at.key.b.owner == FeatureKey::Owner::obstacle) entry.obstacle = {at.key.b.serial, token_of_system_};
+    entry.body = {body.serial, layout.token()};
+    entry.obstacle = of_ground ? ObstacleId{at.key.b.serial, assembly_.system().token()} : ObstacleId{};
+    entry.other = of_bodies ? BodyId{layout.bodies()[at.blocks[1].body].serial, layout.token()} : BodyId{};
     entry.directions = at.rows;
     entry.gap = at.gap;
-    entry.mode = modes_[contact];
+    entry.point = entry.normal = {};
+    find_point_of_contact(at, in_.start.q.data() + body.q, entry.point, entry.normal);
+  }
+
+  /// When it acted, and how its problem was solved. The rest of the note is of whole impacts, and of rows
+  /// that come behind.
+  void write_answer(ContactRecord& entry) const {
     const ContactReport& report = problem_.report();
+    entry.time = time_;
     entry.outcome = report.outcome;
     entry.residual = report.residual;
     entry.solver = report.solver;
     entry.restitution_factor = problem_.restitution_factor();
-    entry.time = time_;
+    entry.energy_gain = entry.rolling_moment = 0.0;
+    entry.cut_sequence = entry.worst = false;
   }
 
   /// Works of its rows. \param before,impulses by row
@@ -112,25 +113,24 @@ private:
       entry.work[i] = work;
       return work;
     };
+    const auto leave_out = [&](std::size_t i) {
+      entry.velocity_before[i] = entry.velocity_after[i] = entry.impulse[i] = entry.work[i] = 0.0;
+    };
     EnergyFlows& flows = result_.flows;
     flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
     double& tangential = flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
-    if (at.rows > 1) tangential -= book_row(1);
-    if (at.rows > 2) tangential -= book_row(2);
+    at.rows > 1 ? void(tangential -= book_row(1)) : leave_out(1);
+    at.rows > 2 ? void(tangential -= book_row(2)) : leave_out(2);
     sum = works;
-    entry.contact_work += all;
+    entry.contact_work = all;
     if (on_surface != 0.0) flows[EnergyFlow::external] += on_surface;
   }
 
-  const BodySlots& bodies_;
-  Index token_, token_of_system_;
+  const Assembly& assembly_;
   const IslandProblem& problem_;
-  std::span<const Constraint> constraints_;
-  std::span<const ContactMode> modes_;
-  const double *before_, *impulses_, *after_, *q_;
+  const double* after_;
   double time_;
-  bool within_step_, is_swept_;
-  double capture_speed_;
+  const StepInput& in_;
   StepResult& result_;
 };
 
@@ -168,9 +168,9 @@ void ContactTally::add(const ContactTally& other) {
 double StepBalance::book_contacts(const IslandProblem& problem, const double* after, double time,
                                   const StepInput& in, const StepTrial& trial) {
   BookedWork work;
-  const std::size_t first = result_.report.contacts.size();
+  const std::size_t first = result_.recorded;
   const bool is_swept = problem.problem().is_factored();
-  const ContactBooking booking(*assembly_, problem, after, time, in, capture_speed_, result_);
+  const ContactBooking booking(*assembly_, problem, after, time, in, result_);
   const std::span<const Constraint> constraints = problem.constraints();
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
@@ -181,19 +181,18 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     } else if (at.has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
-      booking.book(contact, row, work);
+      booking.book(contact, row, capture_speed_, work);
     }
   }
-  tally(problem, static_cast<int>(result_.report.contacts.size() - first));
+  tally(problem, static_cast<int>(result_.recorded - first));
   if (problem.report().outcome == Outcome::accepted_at_cap) {
-    mark_worst(problem, std::span(result_.report.contacts).subspan(first));
+    mark_worst(problem, result_.records().subspan(first));
   }
   if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
   if (!(work.sum.gain > 0.0)) return 0.0;
   const double gain = book_gain(problem, work.sum, work.impact, trial);
   if (gain > 0.0) {
-    for (std::size_t i = first; i < result_.report.contacts.size(); ++i)
-      result_.report.contacts[i].energy_gain = gain;
+    for (ContactRecord& entry : result_.records().subspan(first)) entry.energy_gain = gain;
   }
   return gain;
 }
@@ -210,12 +209,11 @@ void StepBalance::tally(const IslandProblem& problem, int contacts) {
 
 double StepBalance::book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
                                 const StepInput& in, const StepTrial& trial) {
-  const std::size_t first = result_.report.contacts.size();
+  const std::size_t first = result_.recorded;
   const double gain = book_contacts(problem, after, in.start.time, in, trial);
   if (note.cut_sequence) ++result_.cut_sequences;
   if (note.restitution_factor < problem.restitution_factor()) ++result_.scaled_impacts;
-  for (std::size_t i = first; i < result_.report.contacts.size(); ++i) {
-    ContactRecord& entry = result_.report.contacts[i];
+  for (ContactRecord& entry : result_.records().subspan(first)) {
     if (!entry.impact) ++result_.tally.impacts;
     entry.impact = true;
     entry.restitution_factor = note.restitution_factor;
@@ -231,7 +229,7 @@ void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact
   const auto row = static_cast<std::size_t>(problem.first_row(contact));
   const double moment = problem.impulses()[row];
   const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
-  ContactRecord& entry = result_.report.contacts.back();
+  ContactRecord& entry = result_.records().back();
   entry.rolling_moment = moment;
   entry.contact_work += work;
   result_.flows[EnergyFlow::rolling] -= work;

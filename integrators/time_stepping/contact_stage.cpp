@@ -115,6 +115,10 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
 
 /// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
+  if (constraints.size() == 1 && constraints.front().bodies == 1) {
+    struck_.push_back(constraints.front().body());
+    return;
+  }
   bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {
@@ -141,15 +145,9 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
     list_struck(island.constraints);
   }
   trial.expect_impulses();
-  const double* const loads = in.companion.loads.total.data();
-  if (all_are_struck) {
-    free_bodies(in, {loads, loads}, island, trial);
-    return part_problems(in, island, [&](IslandProblem& problem) {
-      return solve_against_free(problem, chains_.front(), trial);
-    });
-  }
+  free_struck(in, in.companion.loads.total.data(), trial);
   return part_problems(in, island, [&](IslandProblem& problem) {
-    return solve(in, {loads, loads}, problem, chains_.front(), trial);
+    return solve_against_free(problem, chains_.front(), trial);
   });
 }
 
@@ -171,6 +169,7 @@ void ContactStage::put_struck_in_order() {
 
 std::span<const Index> ContactStage::struck(Range bodies) const {
   if (struck_.empty()) return {};
+  if (struck_.front() >= bodies.begin && struck_.back() < bodies.end) return struck_;
   const auto first = std::lower_bound(struck_.begin(), struck_.end(), bodies.begin);
   return {first, std::lower_bound(first, struck_.end(), bodies.end)};
 }
@@ -236,16 +235,15 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
 /// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
 /// known when this is compiled
 template <std::size_t N>
-void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body,
                              StepTrial& trial) const {
-  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(block.columns);
+  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(body.v_size);
   const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + block.v, *const free = trial.free.data() + block.v;
-  const double *const load0 = loads.start + block.v, *const load1 = loads.end + block.v;
-  const double* const start = in.start.v.data() + block.v;
-  const float* const rounding = in.companion.rounding.data() + block.v;
+  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
+  const double *const load0 = loads.start + body.v, *const load1 = loads.end + body.v;
+  const double* const start = in.start.v.data() + body.v;
+  const float* const rounding = in.companion.rounding.data() + body.v;
   for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
-  const BodySlot body = assembly_->layout()->bodies()[block.body];
   assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
   for (std::size_t k = 0; k < size; ++k) {
     free[k] += static_cast<double>(rounding[k]) + start[k];
@@ -253,19 +251,35 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const C
   }
 }
 
-/// Likewise of all bodies of an island whose components are bodies, many at a time.
-void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
-                               StepTrial& trial) const {
+void ContactStage::free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const {
+  constexpr Index of_planar_body = 3;
+  const BodySlot slot = assembly_->layout()->bodies()[body];
+  if (slot.v_size == of_planar_body) return free_body<of_planar_body>(in, loads, slot, trial);
+  free_body<0>(in, loads, slot, trial);
+}
+
+/// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one
+/// another.
+void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
+  if (struck_.size() == 1) return free_body(in, {loads, loads}, struck_.front(), trial);
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
-  for (const Range components : island.batches) {
-    const Range bodies = assembly_->bodies_of(components);
-    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {
-      const std::size_t end = first + static_cast<std::size_t>(slots.size()) * kind.v_size();
-      for (std::size_t k = first; k < end; ++k) dv[k] = half * (loads.start[k] + loads.end[k]);
-      kind.apply_inverse_mass(slots, dv + first, free + first);
-      for (std::size_t k = first; k < end; ++k) {
-        free[k] += static_cast<double>(in.companion.rounding[k]) + in.start.v[k];
+  const double* const start = in.start.v.data();
+  const float* const rounding = in.companion.rounding.data();
+  for (std::size_t first = 0, last = 0; first < struck_.size(); first = last) {
+    const Index begin = struck_[first];
+    while (last < struck_.size() && struck_[last] - begin == last - first) ++last;
+    if (last - first == 1) {
+      free_body(in, {loads, loads}, begin, trial);
+      continue;
+    }
+    const Range bodies{begin, begin + static_cast<Index>(last - first)};
+    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      const std::size_t end = v + static_cast<std::size_t>(slots.size()) * kind.v_size();
+      for (std::size_t k = v; k < end; ++k) dv[k] = half * (loads[k] + loads[k]);
+      kind.apply_inverse_mass(slots, dv + v, free + v);
+      for (std::size_t k = v; k < end; ++k) {
+        free[k] += static_cast<double>(rounding[k]) + start[k];
         dv[k] = 0.0;
       }
     });
@@ -275,19 +289,12 @@ void ContactStage::free_bodies(const StepInput& in, const EndLoads& loads, const
 /// Bodies answer for themselves. False if there are no impulses.
 bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                          SolverChain& chain, StepTrial& trial) {
-  constexpr int of_planar_body = 3;
-  const auto free = [&](const Constraint::Block& block) {
-    if (block.columns == of_planar_body) {
-      free_body<of_planar_body>(in, loads, block, trial);
-    } else {
-      free_body<0>(in, loads, block, trial);
-    }
-  };
   const std::span<const Constraint> constraints = problem.constraints();
   if (constraints.size() == 1 && constraints.front().bodies == 1) {
-    free(constraints.front().blocks.front());
+    free_body(in, loads, constraints.front().body(), trial);
   } else {
-    problem.map().for_bodies(free);
+    problem.map().for_bodies(
+        [&](const Constraint::Block& block) { free_body(in, loads, block.body, trial); });
   }
   return solve_against_free(problem, chain, trial);
 }

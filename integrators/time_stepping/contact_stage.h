@@ -80,10 +80,9 @@ private:
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
   template <std::size_t N>
-  void free_body(const StepInput& in, const EndLoads& loads, const Constraint::Block& block,
-                 StepTrial& trial) const;
-  void free_bodies(const StepInput& in, const EndLoads& loads, const StepIsland& island,
-                   StepTrial& trial) const;
+  void free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body, StepTrial& trial) const;
+  void free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const;
+  void free_struck(const StepInput& in, const double* loads, StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 

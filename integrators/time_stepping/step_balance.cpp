@@ -18,7 +18,7 @@ void StepBalance::begin(const StepInput& in) {
   result_.cut_sequences = result_.scaled_impacts = result_.plastic_jams = 0;
   StepReport& report = result_.report;
   static_cast<StepNumbers&>(report) = {};
-  report.contacts.clear();
+  result_.recorded = 0;
   report.joint_impulses.clear();
   report.time = in.end_time;
   report.step = in.step;
@@ -104,8 +104,7 @@ void StepBalance::add(const StepResult& impacts) {
   result_.plastic_jams += impacts.plastic_jams;
   result_.report.energy_gain += impacts.report.energy_gain;
   result_.report.lasting_gain += impacts.report.lasting_gain;
-  result_.report.contacts.insert(result_.report.contacts.end(), impacts.report.contacts.begin(),
-                                 impacts.report.contacts.end());
+  for (const ContactRecord& entry : impacts.records()) result_.next_record() = entry;
 }
 
 void StepBalance::book_turning(double work) {
@@ -133,6 +132,7 @@ StepResult& StepBalance::finish(const StepInput& in) {
   flows[EnergyFlow::coupling_discretisation] +=
       discretisation_loss(result_.stored.potential() + energy_position_projection_,
                           in.companion.ledger.potential(), coupling_work_.value());
+  if (result_.recorded < result_.report.contacts.size()) result_.report.contacts.resize(result_.recorded);
   if (!result_.contacts.empty()) result_.contacts.contacts.finish();
   return result_;
 }

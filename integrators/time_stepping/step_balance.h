@@ -9,6 +9,7 @@
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/compensated_sum.h>
+#include <carom/core/numerics/fetch_ahead.h>
 #include <carom/integrators/run/contact_history.h>
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/step_report.h>
@@ -19,6 +20,7 @@
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,6 +52,22 @@ struct StepResult {
   std::vector<std::pair<ConstraintKey, ContactMode>>
       contact_modes;  ///< of contacts up to the end of the step
   std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
+  /// Records of the step so far, the first in the report. Those behind them are of an earlier step, and leave
+  /// it when this one is finished: to clear a record costs as much as to write it.
+  std::size_t recorded = 0;
+
+  /// Those of the step.
+  [[nodiscard]] std::span<ContactRecord> records() { return std::span(report.contacts).first(recorded); }
+  [[nodiscard]] std::span<const ContactRecord> records() const {
+    return std::span(report.contacts).first(recorded);
+  }
+  /// One more, every field of which is to be written.
+  [[nodiscard]] ContactRecord& next_record() {
+    if (recorded == report.contacts.size()) report.contacts.emplace_back();
+    return report.contacts[recorded++];
+  }
+  /// Asks for the memory of one that comes soon.
+  void fetch_records(std::size_t ahead) const { fetch_ahead(std::span(report.contacts), recorded + ahead); }
 };
 
 /// Adds up a step, component by component. Keeps memory.

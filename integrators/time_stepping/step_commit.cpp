@@ -30,7 +30,9 @@ void take_contacts(StepResult& result, Companion& companion) {
 void hand_over(StepReport& made, StepReport& report) {
   static_cast<StepNumbers&>(report) = made;
   report.contacts.swap(made.contacts);
-  report.joint_impulses.swap(made.joint_impulses);
+  if (!report.joint_impulses.empty() || !made.joint_impulses.empty()) {
+    report.joint_impulses.swap(made.joint_impulses);
+  }
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ inline void take_end(const StepInput& in, bool mean, StepTrial& trial, State& st
   const double step = in.step, end_time = in.end_time;
   std::swap(state.q, trial.end.q);
   std::swap(state.v, trial.end.v);
-  std::swap(state.z, trial.end.z);
+  if (!state.z.empty()) std::swap(state.z, trial.end.z);
   state.time = end_time;
   companion.loads.valid = true;
   companion.loads.mean = mean;

@@ -118,9 +118,8 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
                            Parting parting) {
-  rules_.parting = parting;
+  begin(in, parting);
   rules_.by_part = false;
-  remember(in, in.last_step);
   if (detector_.bodies_touch() && find_joining(in, batches, trial)) return;
   constraints_.clear();
   // Where nothing touched in the step before there is hardly anything to be found.
@@ -161,6 +160,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   Index last = none;
   const std::span<const Index> order = islands_.find(batches, joined_);
   constraints_.resize(order.size());
+  const bool sticks = detector_.has_static_friction();
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Index source = sources_[order[k]];
     Constraint& out = constraints_[k];
@@ -179,7 +179,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     } else {
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
-    take_sticking({&out, 1});
+    if (sticks) take_sticking({&out, 1});
   }
   islands_.take(constraints_);
   return true;

@@ -52,7 +52,12 @@ public:
   [[nodiscard]] bool finds_in_parts(const StepIsland& island) const {
     return island.batches.size() == 1 && goes_in_parts(island.batches.front());
   }
-  /// Finds the contacts of some components of such an island. Valid until the next call.
+  /// Begins a step whose contacts are all found part by part, without islands.
+  void begin(const StepInput& in, Parting parting = Parting::acts) {
+    rules_.parting = parting;
+    remember(in, in.last_step);
+  }
+  /// Finds the contacts of some components, after begin(), or of such an island. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
   /// Finds the constraints of an island of one component as they were at the start, for another iteration.

@@ -258,6 +258,17 @@ void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
   throw SolverError(message, std::move(failure));
 }
 
+void StepErrors::fail_account(Range components) const {
+  for (Index component = components.begin; component < components.end; ++component) {
+    StoredEnergies stored;
+    evaluate_positions(in_.assembly, component, trial_.end.view(), trial_.at_end);
+    add_stored_energies(in_.assembly, component, trial_.end.view(), trial_.at_end, stored);
+    if (std::isfinite(stored.total())) continue;
+    StepErrors(in_, component, detector_, options_, trial_).fail_account();
+  }
+  fail_account();
+}
+
 void StepErrors::fail_account() const {
   demand_finite_loads(trial_.end.view());
   const ElementId cause =

@@ -48,8 +48,8 @@ public:
   [[noreturn]] void fail_joined(std::span<const Constraint> constraints) const;
   /// A contact problem as a failure tells it: its parts by name, its residual, a copy of it.
   [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
-  /// An energy is not finite.
-  [[noreturn]] void fail_account() const;
+  /// An energy is not finite: in the first of some components of which one is not.
+  [[noreturn]] void fail_account(Range components) const;
   /// The internal variables of an element cannot be advanced.
   [[noreturn]] void fail_internal(ElementId element) const;
   /// The matrix of Newton's method is singular.
@@ -64,6 +64,7 @@ public:
 private:
   void demand_finite_loads(const StateView& at) const;
   void find_cause(bool implicit) const;
+  [[noreturn]] void fail_account() const;
   [[nodiscard]] SolverFailure failure() const;
   [[nodiscard]] const System& system() const { return in_.assembly.system(); }
 

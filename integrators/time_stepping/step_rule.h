@@ -69,10 +69,11 @@ public:
     const double* const loads = in.companion.loads.total.data();
     move(in, bodies, loads, loads, with_impulses, trial);
   }
-  /// Likewise of bodies that nothing touches, whose place and masses are known.
-  void fly(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses, StepTrial& trial) const {
+  /// Likewise of bodies whose place and masses are known.
+  void move_constant(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses,
+                     bool with_impulses, StepTrial& trial) const {
     const double* const loads = in.companion.loads.total.data();
-    move(in, bodies, masses, {loads, loads}, false, trial);
+    move(in, bodies, masses, {loads, loads}, with_impulses, trial);
   }
   /// Change that another move would make, by the loads that the guess led to: velocities by M^-1 times their
   /// change, coordinates by h/2 times that, which is less than h times it.

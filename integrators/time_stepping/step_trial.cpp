@@ -116,9 +116,4 @@ void StepTrial::place_midpoint(const StepInput& in, Index component) {
   for (Index i = v_range.begin; i < v_range.end; ++i) midpoint.v[i] = 0.5 * (in.start.v[i] + end.v[i]);
 }
 
-void StepTrial::expect_impulses() {
-  dv_impulses.resize(end.v.size());
-  free.resize(end.v.size());
-}
-
 }  // namespace carom

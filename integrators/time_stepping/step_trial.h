@@ -105,7 +105,11 @@ struct CAROM_API StepTrial {
     return f(StepContext{start, there, middle, in.step});
   }
   /// Room for velocities without contact, once anything touches.
-  void expect_impulses();
+  void expect_impulses() {
+    if (dv_impulses.size() == end.v.size()) return;
+    dv_impulses.resize(end.v.size());
+    free.resize(end.v.size());
+  }
 
   StepNeeds needs;                           ///< of the model
   State end;                                 ///< q_{j+1}, v_{j+1}, z_{j+1} of the last sweep

@@ -3,6 +3,7 @@
 // cause. From here: the iteration is island_iteration.cpp, the law of contact and impact
 // contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those that it calls.
 
+#include <carom/integrators/time_stepping/located_account.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   if (impacts_ == nullptr && turning_ == nullptr && !parts_.located.on() && !options.project_gaps) {
     parts_.constraints.allow_parts(SweepSchedule::piece_size);
-    if (FreeFlight::fits(parts_)) flight_.emplace(parts_);
+    if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
   }
   memory_.joints = &parts_.joints;
   memory_.guesses = parts_.schedule.any_iterated();
@@ -36,7 +37,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   if (!known) evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
-    if (flight_ && flight_->step(in, state, companion, report)) return;
+    if (uncoupled_ && uncoupled_->fly(in, state, companion, report)) return;
     struck_ = impacts_ != nullptr && strike(in);
   } catch (const SolverError& error) {
     throw with_file(with_place(error, in), parts_.options);
@@ -71,7 +72,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     parts_.trial.begin(in);
   }
   try {
-    StepResult& result = make_step(in);
+    StepResult& result = uncoupled_ ? make_uncoupled_step(in) : make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
     parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
@@ -109,6 +110,35 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
     advance_all(in);
   }
   return balance_.finish(in);  // works of what acted, records
+}
+
+/// The same stages of bodies that nothing couples, over ground at rest. Contacts of some are found, solved
+/// and booked while they and their problems, which are large, are at hand.
+StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
+  StepTrial& trial = parts_.trial;
+  balance_.begin(in);
+  capped_.begin();
+  parts_.constraints.begin(in);
+  StepIsland part;
+  for (LooseBatch& batch : uncoupled_->batches()) {
+    trial.account.swept = false;
+    for (const LooseBodies& piece : batch.pieces) {
+      part.constraints = parts_.constraints.find_part(in, piece.components, trial);
+      const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, trial);
+      if (failed != nullptr) fail_contact(*failed, in);
+      uncoupled_->move(in, piece);
+      for (const IslandProblem& problem : parts_.contacts.problems()) {
+        book_contact_problem(problem, trial.end.v.data(), in.end_time, in);
+      }
+    }
+    trial.account.swept = true;
+    uncoupled_->account(in, batch);
+    const Range components = batch.all.components;
+    if (!balance_.book_couplings(in, components.begin, trial)) fail_account(in, components);
+  }
+  balance_.report().sweeps = 1;
+  balance_.report().iteration = uncoupled_->iteration();
+  return balance_.finish(in);
 }
 
 void TimeStepper::advance_all(const StepInput& in) {
@@ -202,11 +232,15 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   for (const Range components : island.batches) {
     parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
     parts_.trial.account.swept = true;
-    if (parts_.located.on()) locate_under_constant_loads(components, island, in);
-    if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
+    if (parts_.located.on()) locate_under_constant_loads(components, island, in, parts_);
+    if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
   }
   book_contacts(island, in);
   if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
+}
+
+void TimeStepper::fail_account(const StepInput& in, Range components) {
+  parts_.errors(in, components.begin).fail_account(components);
 }
 
 void TimeStepper::fail_contact(const IslandProblem& problem, const StepInput& in) {
@@ -233,48 +267,7 @@ void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput
     book_contacts(part, in);
   };
   parts_.schedule.run(stages, react, book);
-  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);
-}
-
-/// Bodies that are hit within the step, under constant loads: they are moved again, and booked anew.
-void TimeStepper::locate_under_constant_loads(Range components, const StepIsland& island,
-                                              const StepInput& in) {
-  LocatedImpacts& located = parts_.located;
-  StepTrial& trial = parts_.trial;
-  const GroundPlaces& places = parts_.constraints.places_at_end();
-  if (!located.take_up(in, components, island.constraints, places, trial)) return;
-  const double* const total = in.companion.loads.total.data();
-  const Range bodies = in.assembly.bodies_of(components);
-  StoredEnergies before, after;
-  for (LocatedMotion& motion : located.motions()) {
-    const Range body{motion.body(), motion.body() + 1};
-    if (body.begin < bodies.begin || body.begin >= bodies.end) continue;
-    BlockWorks &works = trial.account.works.front(), then, now;
-    parts_.rule.works_constant(in, body, motion.velocities(in), trial, then);
-    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, before);
-    located.advance(in, parts_.rule, {total, total}, body, trial);
-    if (motion.failed() != nullptr) {
-      parts_.errors(in, in.assembly.component_of(body.begin)).fail_contact(*motion.failed());
-    }
-    parts_.rule.works_constant(in, body, motion.velocities(in), trial, now);
-    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, after);
-    works.kinetic += now.kinetic - then.kinetic;
-    works.total += motion.work(in, {total, total}) - then.total;
-  }
-  for (std::size_t i = 0; i < stored_energy_count; ++i) {
-    trial.account.potentials.values[i] += after.values[i] - before.values[i];
-  }
-}
-
-/// Names the cause in the first component of which an energy is not finite.
-void TimeStepper::fail_account(Range components, const StepInput& in) {
-  for (Index component = components.begin; component < components.end; ++component) {
-    StoredEnergies stored;
-    evaluate_positions(in.assembly, component, parts_.trial.end.view(), parts_.trial.at_end);
-    add_stored_energies(in.assembly, component, parts_.trial.end.view(), parts_.trial.at_end, stored);
-    if (!std::isfinite(stored.total())) parts_.errors(in, component).fail_account();
-  }
-  parts_.errors(in, components.begin).fail_account();
+  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
 }
 
 /// Books the island, and moves its bodies out of ground shapes where that is asked for.
@@ -285,7 +278,7 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
     if (!parts_.located.empty()) {
       parts_.located.correct_works(in, parts_.rule, at.bodies(), parts_.trial);
     }
-    if (!balance_.book_couplings(in, component, parts_.trial)) fail_account({component, component + 1}, in);
+    if (!balance_.book_couplings(in, component, parts_.trial)) fail_account(in, {component, component + 1});
     if (JointStage* const joints = parts_.joints.of(component)) {
       balance_.book_joints(in, component, *joints, parts_.problem(), parts_.trial);
     }

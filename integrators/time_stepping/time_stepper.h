@@ -25,12 +25,12 @@
 #include <carom/integrators/time_stepping/capped_problem.h>
 #include <carom/integrators/time_stepping/contact_turning.h>
 #include <carom/integrators/time_stepping/coupling_watch.h>
-#include <carom/integrators/time_stepping/free_flight.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_impacts.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 #include <carom/integrators/time_stepping/step_projection.h>
+#include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include <memory>
 #include <optional>
@@ -59,6 +59,7 @@ public:
 
 private:
   [[nodiscard]] StepResult& make_step(const StepInput& in);
+  [[nodiscard]] StepResult& make_uncoupled_step(const StepInput& in);
   void step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
   [[nodiscard]] bool strike(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);
@@ -69,8 +70,7 @@ private:
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
   void advance_part_by_part(const StepIsland& island, const StepInput& in);
   [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
-  void locate_under_constant_loads(Range components, const StepIsland& island, const StepInput& in);
-  [[noreturn]] void fail_account(Range components, const StepInput& in);
+  [[noreturn]] void fail_account(const StepInput& in, Range components);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,
@@ -90,7 +90,7 @@ private:
   StepProjection projection_;
   CouplingWatch couplings_;
   CappedProblem capped_;
-  std::optional<FreeFlight> flight_;  // none where no step is one
+  std::optional<UncoupledStep> uncoupled_;  // none where no step is one
 };
 
 }  // namespace carom

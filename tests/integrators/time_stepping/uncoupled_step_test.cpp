@@ -1,8 +1,9 @@
-// Steps in which few bodies fly take a short path: with the same bits, reports and errors as any other step.
+// Steps of few bodies that nothing couples take a short path: with the same bits, reports and errors as any
+// other step.
 
 #include <carom/carom.h>
 #include <carom/integrators/run/companion.h>
-#include <carom/integrators/time_stepping/free_flight.h>
+#include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include "tests/allocation_counter.h"
 
@@ -42,10 +43,10 @@ System scene(Path path, double gravity = 9.81) {
 
 bool fits(const System& system, const TimeStepping& mode) {
   const Assembly assembly(system);
-  return FreeFlight::fits(StepParts(assembly, mode));
+  return UncoupledStep::fits(StepParts(assembly, mode));
 }
 
-TEST(FreeFlight, FitsFewUncoupledBodiesUnderConstantLoads) {
+TEST(UncoupledStep, FitsFewUncoupledBodiesUnderConstantLoads) {
   EXPECT_TRUE(fits(scene(Path::short_one), {.step = 1e-3}));
   EXPECT_FALSE(fits(scene(Path::usual), {.step = 1e-3}));
   EXPECT_FALSE(fits(scene(Path::short_one), {.step = 1e-3, .force_rule = ForceRule::energy_momentum}));
@@ -80,9 +81,9 @@ void expect_same(const Statistics& a, const Statistics& b) {
   EXPECT_EQ(a.impacts, b.impacts);
 }
 
-class FreeFlightBits : public testing::TestWithParam<Iteration> {};
+class UncoupledStepBits : public testing::TestWithParam<Iteration> {};
 
-TEST_P(FreeFlightBits, AreThoseOfTheUsualPath) {
+TEST_P(UncoupledStepBits, AreThoseOfTheUsualPath) {
   const TimeStepping mode{.step = 1e-3, .iteration = GetParam()};
   Simulation a(scene(Path::short_one), mode), b(scene(Path::usual), mode);
   int free = 0, touching = 0;
@@ -109,10 +110,10 @@ TEST_P(FreeFlightBits, AreThoseOfTheUsualPath) {
   EXPECT_GT(touching, 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Iterations, FreeFlightBits,
+INSTANTIATE_TEST_SUITE_P(Iterations, UncoupledStepBits,
                          testing::Values(Iteration::automatic, Iteration::fixed_point, Iteration::anderson));
 
-TEST(FreeFlight, AnEnergyThatIsNotFiniteIsTheErrorOfAnyStep) {
+TEST(UncoupledStep, AnEnergyThatIsNotFiniteIsTheErrorOfAnyStep) {
   const auto failure = [](Path path) -> std::string {
     // Upwards: nothing touches. The square of g h overflows.
     Simulation simulation(scene(path, -1e150), TimeStepping{.step = 1e6});
@@ -131,7 +132,7 @@ TEST(FreeFlight, AnEnergyThatIsNotFiniteIsTheErrorOfAnyStep) {
   EXPECT_EQ(failure(Path::short_one), failure(Path::usual));
 }
 
-TEST(FreeFlight, StepsAllocateNothing) {
+TEST(UncoupledStep, StepsAllocateNothing) {
   Simulation simulation(scene(Path::short_one), TimeStepping{.step = 1e-4});
   simulation.step();
   const std::int64_t before = carom_test::allocations();

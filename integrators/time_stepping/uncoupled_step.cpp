@@ -1,8 +1,9 @@
-// Problem: steps in which bodies fly, without anything that only contact, couplings, joints need.
+// Problem: steps of bodies that nothing couples, without anything that only couplings, joints or moving
+// ground need.
 
 #include <carom/core/numerics/compensated_sum.h>
-#include <carom/integrators/time_stepping/free_flight.h>
 #include <carom/integrators/time_stepping/step_commit.h>
+#include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,20 +24,30 @@ bool starts_free(const StepInput& in, const Detector& detector, std::span<const 
   return true;
 }
 
+/// Works of the loads of a batch, and energies at the end of the step.
+void take_account(const StepInput& in, const StepRule& rule, LooseBatch& batch, const StepTrial& trial,
+                  BlockWorks& works, StoredEnergies& potentials) {
+  const LooseBodies& all = batch.all;
+  works.kinetic = all.place.kind->kinetic_energy(all.place.slots, trial.end.v.data() + all.place.v);
+  works.total = rule.work_constant(in, batch.v, trial);
+  works.dissipative = works.external = 0.0;
+  batch.end.state = trial.end.view();
+  for (const LooseBatch::Potential& of : batch.potentials) {
+    potentials[of.form] += of.kind->potential(batch.end, of.elements);
+  }
+}
+
 /// Moves all bodies. Returns the work of their loads [J]. \param stored energies at the end, to be added to
-double fly(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> batches, StepTrial& trial,
-           StoredEnergies& stored) {
+double fly_all(const StepInput& in, const StepRule& rule, std::span<LooseBatch> batches, StepTrial& trial,
+               StoredEnergies& stored) {
   CompensatedSum work;
-  for (FlyingBodies& batch : batches) {
-    rule.fly(in, batch.place, batch.masses, trial);
-    const double* const v = trial.end.v.data() + batch.place.v;
-    stored[StoredEnergy::kinetic] += batch.place.kind->kinetic_energy(batch.place.slots, v);
-    work.add(rule.work_constant(in, batch.v, trial));
-    batch.end.state = trial.end.view();
+  for (LooseBatch& batch : batches) {
+    BlockWorks works;
     StoredEnergies potentials;
-    for (const FlyingBodies::Potential& of : batch.potentials) {
-      potentials[of.form] += of.kind->potential(batch.end, of.elements);
-    }
+    rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
+    take_account(in, rule, batch, trial, works, potentials);
+    stored[StoredEnergy::kinetic] += works.kinetic;
+    work.add(works.total);
     for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += potentials.values[i];
   }
   return work.value();
@@ -44,7 +55,7 @@ double fly(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> ba
 
 }  // namespace
 
-bool FreeFlight::fits(const StepParts& parts) {
+bool UncoupledStep::fits(const StepParts& parts) {
   const auto is_small = [&](Range batch) {
     const Range bodies = parts.assembly->bodies_of(batch);
     const BodySlots& slots = parts.assembly->layout()->bodies();
@@ -56,7 +67,7 @@ bool FreeFlight::fits(const StepParts& parts) {
          std::all_of(batches.begin(), batches.end(), is_small);
 }
 
-FreeFlight::FreeFlight(StepParts& parts)
+UncoupledStep::UncoupledStep(StepParts& parts)
     : parts_(&parts), rows_(parts.constraints.detector().ground().centre_rows()) {
   for (const Range batch : parts.schedule.batches()) {
     // As in every step: components that are taken in one loop are swept.
@@ -66,19 +77,27 @@ FreeFlight::FreeFlight(StepParts& parts)
   }
 }
 
-void FreeFlight::add_batch(Range components) {
+void UncoupledStep::add_batch(Range components) {
   const Assembly& assembly = *parts_->assembly;
   const Index component = components.begin;
   const Range bodies = assembly.bodies_of(components);
   const auto& all = assembly.components();
   const StepTrial& trial = parts_->trial;
   const Range together = components.size() > 1 ? bodies : Range{};
-  FlyingBodies batch{.end = {assembly, trial.end.view(), trial.at_end, component, together},
-                     .v = {all[component].v.begin, all[components.end - 1].v.end}};
-  assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
-    batch.place = {&kind, slots, q, v};
-    batch.masses = kind.masses(slots.begin);
-  });
+  const auto loose = [&](Range some) {
+    LooseBodies found{some, assembly.bodies_of(some)};
+    assembly.for_bodies(found.bodies, [&](const BodyKind& kind, Range slots, Index q, Index v, Index) {
+      found.place = {&kind, slots, q, v};
+      found.masses = kind.masses(slots.begin);
+    });
+    return found;
+  };
+  LooseBatch batch{.end = {assembly, trial.end.view(), trial.at_end, component, together},
+                   .v = {all[component].v.begin, all[components.end - 1].v.end},
+                   .all = loose(components)};
+  for (Index first = component; first < components.end; first += SweepSchedule::piece_size) {
+    batch.pieces.push_back(loose({first, std::min(first + SweepSchedule::piece_size, components.end)}));
+  }
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& elements = *assembly.force_kinds()[kind];
     const Range range = assembly.elements(component, kind);
@@ -87,12 +106,26 @@ void FreeFlight::add_batch(Range components) {
   batches_.push_back(std::move(batch));
 }
 
-bool FreeFlight::step(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+void UncoupledStep::move(const StepInput& in, const LooseBodies& bodies) const {
+  const std::span<const Index> struck = parts_->contacts.struck(bodies.bodies);
+  const bool all = struck.size() == bodies.bodies.size();
+  parts_->rule.move_constant(in, bodies.place, bodies.masses, all, parts_->trial);
+  if (all) return;
+  for (const Index body : struck) parts_->rule.move_constant(in, {body, body + 1}, true, parts_->trial);
+}
+
+void UncoupledStep::account(const StepInput& in, LooseBatch& batch) const {
+  TrialAccount& account = parts_->trial.account;
+  account.start(1);
+  take_account(in, parts_->rule, batch, parts_->trial, account.works.front(), account.potentials);
+}
+
+bool UncoupledStep::fly(const StepInput& in, State& state, Companion& companion, StepReport& report) {
   if (!starts_free(in, parts_->constraints.detector(), rows_)) return false;
   StepTrial& trial = parts_->trial;
   trial.end.time = in.end_time;
   StoredEnergies stored;
-  const double work = fly(in, parts_->rule, batches_, trial, stored);
+  const double work = fly_all(in, parts_->rule, batches_, trial, stored);
   if (!std::isfinite(stored.total())) return false;
   flows_[EnergyFlow::coupling_discretisation] =
       discretisation_loss(stored.potential(), companion.ledger.potential(), work);
