@@ -13,22 +13,23 @@ namespace carom {
 
 namespace {
 
-/// True if nothing has touched in the step before and surely nothing does at the start of this one.
-bool starts_free(const StepInput& in, const Detector& detector, std::span<const CentreRow> rows) {
-  if (!in.companion.modes.empty() || !in.companion.contacts.empty()) return false;
-  const double* const q = in.start.q.data();
-  for (const CentreRow& row : rows) {
-    if (detector.ground().may_touch(row, q)) return false;
-  }
-  return true;
+/// True if surely nothing touches where bodies are.
+bool is_free(const State& state, const Detector& detector, std::span<const CentreRow> rows) {
+  const double* const q = state.q.data();
+  return std::none_of(rows.begin(), rows.end(),
+                      [&](const CentreRow& row) { return detector.ground().may_touch(row, q); });
 }
 
-/// Moves all bodies. Returns the work of their loads [J]. \param stored energies at the end, to be added to
-double fly(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> batches, StepTrial& trial,
-           StoredEnergies& stored) {
+/// True if nothing has touched in the step before and surely nothing does at the start of this one.
+bool starts_free(const StepInput& in, const Detector& detector, std::span<const CentreRow> rows) {
+  return in.companion.modes.empty() && in.companion.contacts.empty() && is_free(in.start, detector, rows);
+}
+
+/// Work of the loads of all bodies, which have moved [J]. \param stored energies at the end, to be added to
+double work_of(const StepInput& in, const StepRule& rule, std::span<FlyingBodies> batches,
+               const StepTrial& trial, StoredEnergies& stored) {
   CompensatedSum work;
   for (FlyingBodies& batch : batches) {
-    rule.fly(in, batch.place, batch.masses, trial);
     const double* const v = trial.end.v.data() + batch.place.v;
     stored[StoredEnergy::kinetic] += batch.place.kind->kinetic_energy(batch.place.slots, v);
     work.add(rule.work_constant(in, batch.v, trial));
@@ -52,7 +53,7 @@ bool FreeFlight::fits(const StepParts& parts) {
            slots[bodies.begin].kind == slots[bodies.end - 1].kind && (batch.size() > 1 || bodies.size() == 1);
   };
   const auto& batches = parts.schedule.batches();
-  return !parts.schedule.any_iterated() && only_centres_touch(parts.constraints.detector()) &&
+  return !parts.schedule.any_iterated() && centres_tell(parts.constraints.detector()) &&
          std::all_of(batches.begin(), batches.end(), is_small);
 }
 
@@ -87,13 +88,17 @@ void FreeFlight::add_batch(Range components) {
   batches_.push_back(std::move(batch));
 }
 
-bool FreeFlight::step(const StepInput& in, State& state, Companion& companion, StepReport& report) {
-  if (!starts_free(in, parts_->constraints.detector(), rows_)) return false;
+Flight FreeFlight::step(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+  if (!starts_free(in, parts_->constraints.detector(), rows_)) return Flight::none;
   StepTrial& trial = parts_->trial;
   trial.end.time = in.end_time;
+  for (const FlyingBodies& batch : batches_) parts_->rule.fly(in, batch.place, batch.masses, trial);
+  // What touches at the end hits within the step.
+  if (parts_->located.on() && !is_free(trial.end, parts_->constraints.detector(), rows_))
+    return Flight::moved;
   StoredEnergies stored;
-  const double work = fly(in, parts_->rule, batches_, trial, stored);
-  if (!std::isfinite(stored.total())) return false;
+  const double work = work_of(in, parts_->rule, batches_, trial, stored);
+  if (!std::isfinite(stored.total())) return Flight::moved;
   flows_[EnergyFlow::coupling_discretisation] =
       discretisation_loss(stored.potential(), companion.ledger.potential(), work);
   companion.ledger.book(flows_, stored);
@@ -109,7 +114,7 @@ bool FreeFlight::step(const StepInput& in, State& state, Companion& companion, S
   report.joint_impulses.clear();
   report.capped_problem.clear();
   count_step(numbers, companion.statistics);
-  return true;
+  return Flight::made;
 }
 
 }  // namespace carom

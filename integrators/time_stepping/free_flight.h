@@ -13,6 +13,7 @@
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace carom {
@@ -32,6 +33,10 @@ struct FlyingBodies {
   std::vector<Potential> potentials = {};
 };
 
+/// How far FreeFlight comes with a step: something may touch at its start; its bodies have moved as if
+/// nothing touched, which is not all there is to be done; it is made.
+enum class Flight : std::uint8_t { none, moved, made };
+
 /// A schedule around the stages of a step: whatever follows from model and options is looked up once.
 class CAROM_API FreeFlight {
 public:
@@ -41,9 +46,9 @@ public:
   /// \param parts must outlive it, and fit
   explicit FreeFlight(StepParts& parts);
 
-  /// Makes the step if nothing has touched in the step before and surely nothing does now. Else it returns
-  /// false, as it does where the account is not finite, and has changed nothing but the trial.
-  [[nodiscard]] bool step(const StepInput& in, State& state, Companion& companion, StepReport& report);
+  /// Makes the step if nothing has touched in the step before and surely nothing does now; where impacts are
+  /// located, nor at its end. Else it changes nothing but the trial, as where the account is not finite.
+  [[nodiscard]] Flight step(const StepInput& in, State& state, Companion& companion, StepReport& report);
 
 private:
   void add_batch(Range components);

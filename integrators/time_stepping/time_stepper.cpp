@@ -22,8 +22,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
   if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
-  if (impacts_ == nullptr && turning_ == nullptr && !parts_.located.on() && !options.project_gaps) {
-    parts_.constraints.allow_parts(SweepSchedule::piece_size);
+  if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
+    if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (FreeFlight::fits(parts_)) flight_.emplace(parts_);
   }
   memory_.joints = &parts_.joints;
@@ -36,7 +36,8 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   if (!known) evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
-    if (flight_ && flight_->step(in, state, companion, report)) return;
+    flown_ = flight_ ? flight_->step(in, state, companion, report) : Flight::none;
+    if (flown_ == Flight::made) return;
     struck_ = impacts_ != nullptr && strike(in);
   } catch (const SolverError& error) {
     throw with_file(with_place(error, in), parts_.options);
@@ -200,7 +201,8 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial);
   if (failed != nullptr) fail_contact(*failed, in);
   for (const Range components : island.batches) {
-    parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
+    parts_.schedule.run(
+        ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial, flown_ == Flight::moved});
     parts_.trial.account.swept = true;
     if (parts_.located.on()) locate_under_constant_loads(components, island, in);
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(components, in);

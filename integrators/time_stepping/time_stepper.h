@@ -91,6 +91,7 @@ private:
   CouplingWatch couplings_;
   CappedProblem capped_;
   std::optional<FreeFlight> flight_;  // none where no step is one
+  Flight flown_ = Flight::none;       // of the step at hand
 };
 
 }  // namespace carom
