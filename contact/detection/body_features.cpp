@@ -26,9 +26,6 @@ bool join(CentreRun& run, const CentreRun& next) {
 BodyFeatures::BodyFeatures(const Assembly& assembly) {
   collect_points(assembly);
   collect_centres(assembly);
-  std::size_t centred = 0;
-  for (const CentreRun& run : centres_) centred += run.points == none ? 0 : run.bodies.size();
-  beside_centres_ = centred < points_.size();
   of_component_.reserve(assembly.components().size());
   OfComponents own{};
   for (const Component& component : assembly.components()) {
@@ -119,6 +116,12 @@ FeatureKey BodyFeatures::first_of(Index material, const Layout& layout) const {
       centre != centres_.end() && (point == points_.end() || centre->bodies.begin <= point->body);
   return is_centre ? FeatureKey{FeatureKey::Owner::body, layout.id(centre->bodies.begin).serial, 0}
                    : point->key;
+}
+
+bool BodyFeatures::is_beside_centres(const BodyFeature& point) const {
+  const auto before = [](const CentreRun& run, Index body) { return run.bodies.end <= body; };
+  const auto run = std::lower_bound(centres_.begin(), centres_.end(), point.body, before);
+  return run == centres_.end() || point.body < run->bodies.begin || run->points == none;
 }
 
 bool BodyFeatures::any_off_centre() const { return !std::all_of(points_.begin(), points_.end(), is_centred); }

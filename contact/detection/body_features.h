@@ -73,8 +73,8 @@ public:
   [[nodiscard]] const std::vector<FeatureMaterial>& materials() const { return materials_; }
   /// The first feature of a material.
   [[nodiscard]] FeatureKey first_of(Index material, const Layout& layout) const;
-  /// True if there are points that do not belong to centres().
-  [[nodiscard]] bool any_beside_centres() const { return beside_centres_; }
+  /// True of one of the points() that does not belong to centres().
+  [[nodiscard]] bool is_beside_centres(const BodyFeature& point) const;
   /// True if a point stands off the centre of mass.
   [[nodiscard]] bool any_off_centre() const;
 
@@ -87,7 +87,6 @@ private:
   std::vector<BodyFeature> points_;
   std::vector<FeatureMaterial> materials_;
   std::vector<OfComponents> of_component_;  // empty where nothing was collected
-  bool beside_centres_ = false;
 };
 
 }  // namespace carom

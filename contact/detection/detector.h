@@ -127,10 +127,10 @@ private:
   if (pair.other != none) return detector.bodies().law(pair).resists_rolling();
   return (pair.is_of_pieces() ? detector.pieces().law(pair) : detector.ground().law(pair)).resists_rolling();
 }
-/// True if all that can touch are centres of bodies, or rounded points around them, and ground at rest.
-[[nodiscard]] inline bool only_centres_touch(const Detector& detector) {
+/// True if all that can touch are bodies and ground at rest, and GroundContacts::centre_rows() tell what may.
+[[nodiscard]] inline bool centres_tell(const Detector& detector) {
   return detector.bodies().empty() && detector.pieces().empty() && detector.joints().empty() &&
-         !detector.has_moving_ground() && detector.ground().only_centres();
+         !detector.has_moving_ground() && detector.ground().centres_tell();
 }
 /// True if the shape on ground of a pair moves.
 [[nodiscard]] inline bool moves(const Detector& detector, const ContactPair& pair) {

@@ -20,7 +20,7 @@
 
 namespace carom {
 
-/// Centres of neighbouring bodies, with rounded points around them or none, and a shape that they may touch.
+/// Centres of neighbouring bodies, and a shape that they, or points around them, may touch.
 struct CentreRow {
   Index shape = 0;     ///< number of the shape
   Index q = 0;         ///< first coordinate of the first body
@@ -49,10 +49,10 @@ public:
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
-  /// True if bodies touch with their centres, or with rounded points around them, alone.
-  [[nodiscard]] bool only_centres() const { return !features_.any_beside_centres(); }
-  /// All rows of centres. Made at each call.
+  /// All rows of centres: together they have all bodies that touch. Made at each call.
   [[nodiscard]] std::vector<CentreRow> centre_rows() const;
+  /// True if these tell what may touch: all shapes that are touched off the centres are flat.
+  [[nodiscard]] bool centres_tell() const;
   /// False if surely no contact of a row, whose shape is at rest, has a gap <= 0. \param q all coordinates
   [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const {
     return shapes_.any_within(row.shape, nullptr, {q + row.q, row.stride, row.count}, row.reach);

@@ -35,6 +35,11 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              options.impacts == ImpactTimes::located || turning_opens(detector_)},
       islands_(assembly) {}
 
+void StepConstraints::allow_rounding(double step) {
+  rules_.margin = rounding;
+  rules_.slowest = rounding / step;
+}
+
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
   if (places_after_.time() == in.start.time) std::swap(places_, places_after_);
@@ -59,7 +64,7 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
 
 ContactQuery StepConstraints::query(const StepInput& in, const StepTrial& trial) const {
   const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
-  return {in.start.view(), trial.at_start, places_, &places_after_, 0.0, lasting};
+  return {in.start.view(), trial.at_start, places_, &places_after_, rules_.margin, lasting};
 }
 
 /// Contacts that stuck in the last step have their static friction.
@@ -71,12 +76,13 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
   }
 }
 
-/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing.
+/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; and
+/// one that stays closed to rounding over a step, for it would close in it again and again.
 bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
   if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
   const double* const v = in.start.v.data();
-  return constraint.velocity(0, v) > noise * constraint.speed(0, v);
+  return constraint.velocity(0, v) > std::max(noise * constraint.speed(0, v), rules_.slowest);
 }
 
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,

@@ -41,6 +41,9 @@ public:
 
   /// Lets batches of more bodies than `size` go part by part: nothing asks for all their contacts at once.
   void allow_parts(Index size) { rules_.part_size = size; }
+  /// Takes contacts that are closed to rounding for closed ones. \param step that rounding of velocities may
+  /// open them in [s]
+  void allow_rounding(double step);
 
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
   /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
@@ -86,6 +89,8 @@ private:
     Parting parting = Parting::acts;  // in the last find()
     bool by_part = false;             // large batches go part by part, likewise
     Index part_size = none;           // allow_parts()
+    double margin = 0.0;              // gaps that count as closed [m]
+    double slowest = 0.0;             // contacts that part more slowly do not part [m/s]
   } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened

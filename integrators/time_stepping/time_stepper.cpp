@@ -22,9 +22,12 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       couplings_(assembly),
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
-  if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
-  if (impacts_ == nullptr && turning_ == nullptr && !parts_.located.on() && !options.project_gaps) {
-    parts_.constraints.allow_parts(SweepSchedule::piece_size);
+  if (parts_.ends_at_closings()) {
+    turning_ = std::make_unique<ContactTurning>(assembly, detector());
+    parts_.constraints.allow_rounding(options.step);
+  }
+  if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
+    if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
   }
   memory_.joints = &parts_.joints;
@@ -37,7 +40,8 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   if (!known) evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
-    if (uncoupled_ && uncoupled_->fly(in, state, companion, report)) return;
+    flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
+    if (flown_ == Flight::made) return;
     struck_ = impacts_ != nullptr && strike(in);
   } catch (const SolverError& error) {
     throw with_file(with_place(error, in), parts_.options);
@@ -72,7 +76,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     parts_.trial.begin(in);
   }
   try {
-    StepResult& result = uncoupled_ ? make_uncoupled_step(in) : make_step(in);
+    StepResult& result = uncoupled_ && !parts_.located.on() ? make_uncoupled_step(in) : make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
     parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
@@ -118,6 +122,7 @@ StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
   StepTrial& trial = parts_.trial;
   balance_.begin(in);
   capped_.begin();
+  if (trial.needs.start_rotations) evaluate_positions(in.assembly, in.start.view(), trial.at_start);
   parts_.constraints.begin(in);
   StepIsland part;
   for (LooseBatch& batch : uncoupled_->batches()) {
@@ -230,7 +235,8 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial);
   if (failed != nullptr) fail_contact(*failed, in);
   for (const Range components : island.batches) {
-    parts_.schedule.run(ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial});
+    parts_.schedule.run(
+        ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial, flown_ == Flight::moved});
     parts_.trial.account.swept = true;
     if (parts_.located.on()) locate_under_constant_loads(components, island, in, parts_);
     if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);

@@ -91,6 +91,7 @@ private:
   CouplingWatch couplings_;
   CappedProblem capped_;
   std::optional<UncoupledStep> uncoupled_;  // none where no step is one
+  Flight flown_ = Flight::not_free;         // of the step at hand
 };
 
 }  // namespace carom

@@ -14,14 +14,16 @@ namespace carom {
 
 namespace {
 
+/// True if surely nothing touches where bodies are.
+bool is_free(const State& state, const Detector& detector, std::span<const CentreRow> rows) {
+  const double* const q = state.q.data();
+  return std::none_of(rows.begin(), rows.end(),
+                      [&](const CentreRow& row) { return detector.ground().may_touch(row, q); });
+}
+
 /// True if nothing has touched in the step before and surely nothing does at the start of this one.
 bool starts_free(const StepInput& in, const Detector& detector, std::span<const CentreRow> rows) {
-  if (!in.companion.modes.empty() || !in.companion.contacts.empty()) return false;
-  const double* const q = in.start.q.data();
-  for (const CentreRow& row : rows) {
-    if (detector.ground().may_touch(row, q)) return false;
-  }
-  return true;
+  return in.companion.modes.empty() && in.companion.contacts.empty() && is_free(in.start, detector, rows);
 }
 
 /// Works of the loads of a batch, and energies at the end of the step.
@@ -37,14 +39,13 @@ void take_account(const StepInput& in, const StepRule& rule, LooseBatch& batch, 
   }
 }
 
-/// Moves all bodies. Returns the work of their loads [J]. \param stored energies at the end, to be added to
-double fly_all(const StepInput& in, const StepRule& rule, std::span<LooseBatch> batches, StepTrial& trial,
-               StoredEnergies& stored) {
+/// Work of the loads of all bodies, which have moved [J]. \param stored energies at the end, to be added to
+double work_of(const StepInput& in, const StepRule& rule, std::span<LooseBatch> batches,
+               const StepTrial& trial, StoredEnergies& stored) {
   CompensatedSum work;
   for (LooseBatch& batch : batches) {
     BlockWorks works;
     StoredEnergies potentials;
-    rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
     take_account(in, rule, batch, trial, works, potentials);
     stored[StoredEnergy::kinetic] += works.kinetic;
     work.add(works.total);
@@ -63,7 +64,7 @@ bool UncoupledStep::fits(const StepParts& parts) {
            slots[bodies.begin].kind == slots[bodies.end - 1].kind && (batch.size() > 1 || bodies.size() == 1);
   };
   const auto& batches = parts.schedule.batches();
-  return !parts.schedule.any_iterated() && only_centres_touch(parts.constraints.detector()) &&
+  return !parts.schedule.any_iterated() && centres_tell(parts.constraints.detector()) &&
          std::all_of(batches.begin(), batches.end(), is_small);
 }
 
@@ -120,13 +121,18 @@ void UncoupledStep::account(const StepInput& in, LooseBatch& batch) const {
   take_account(in, parts_->rule, batch, parts_->trial, account.works.front(), account.potentials);
 }
 
-bool UncoupledStep::fly(const StepInput& in, State& state, Companion& companion, StepReport& report) {
-  if (!starts_free(in, parts_->constraints.detector(), rows_)) return false;
+Flight UncoupledStep::fly(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+  if (!starts_free(in, parts_->constraints.detector(), rows_)) return Flight::not_free;
   StepTrial& trial = parts_->trial;
   trial.end.time = in.end_time;
+  for (const LooseBatch& batch : batches_)
+    parts_->rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
+  // What touches at the end hits within the step.
+  if (parts_->located.on() && !is_free(trial.end, parts_->constraints.detector(), rows_))
+    return Flight::moved;
   StoredEnergies stored;
-  const double work = fly_all(in, parts_->rule, batches_, trial, stored);
-  if (!std::isfinite(stored.total())) return false;
+  const double work = work_of(in, parts_->rule, batches_, trial, stored);
+  if (!std::isfinite(stored.total())) return Flight::moved;
   flows_[EnergyFlow::coupling_discretisation] =
       discretisation_loss(stored.potential(), companion.ledger.potential(), work);
   companion.ledger.book(flows_, stored);
@@ -142,7 +148,7 @@ bool UncoupledStep::fly(const StepInput& in, State& state, Companion& companion,
   report.joint_impulses.clear();
   report.capped_problem.clear();
   count_step(numbers, companion.statistics);
-  return true;
+  return Flight::made;
 }
 
 }  // namespace carom

@@ -14,6 +14,7 @@
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_parts.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,10 @@ struct LooseBatch {
   std::vector<Potential> potentials = {};
 };
 
+/// How far a flight comes with a step: something may touch at its start; its bodies have moved as if
+/// nothing touched, which is not all there is to be done; it is made.
+enum class Flight : std::uint8_t { not_free, moved, made };
+
 /// A schedule around the stages of a step: whatever follows from model and options is looked up once.
 class CAROM_API UncoupledStep {
 public:
@@ -51,9 +56,9 @@ public:
   /// \param parts must outlive it, and fit
   explicit UncoupledStep(StepParts& parts);
 
-  /// Makes the step if nothing has touched in the step before and surely nothing does now. Else it returns
-  /// false, as it does where the account is not finite, and has changed nothing but the trial.
-  [[nodiscard]] bool fly(const StepInput& in, State& state, Companion& companion, StepReport& report);
+  /// Makes the step if nothing has touched in the step before and surely nothing does now; where impacts are
+  /// located, nor at its end. Else it changes nothing but the trial, as where the account is not finite.
+  [[nodiscard]] Flight fly(const StepInput& in, State& state, Companion& companion, StepReport& report);
 
   /// The batches, of a step in which some may touch.
   [[nodiscard]] std::span<LooseBatch> batches() { return batches_; }

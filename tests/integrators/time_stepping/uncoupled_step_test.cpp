@@ -6,11 +6,13 @@
 #include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include "tests/allocation_counter.h"
+#include "tests/round_hill.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 
 namespace {
 
@@ -19,8 +21,8 @@ using namespace carom::planar;
 
 enum class Path { short_one, usual };
 
-/// Two discs and a particle in flight over a floor, on which one disc and the particle fall. Steps take the
-/// usual path where ground moves, though far below.
+/// Two discs, a bar and a particle in flight over a floor, on which a disc, the bar and the particle fall.
+/// Steps take the usual path where ground moves, though far below.
 System scene(Path path, double gravity = 9.81) {
   System system;
   const Surface surface{.friction = 0.3, .normal_restitution = 0.5, .tangential_restitution = 0.2};
@@ -31,6 +33,9 @@ System scene(Path path, double gravity = 9.81) {
         .mass = disc(2.0, 0.1), .position = {3.0 * height, height}, .velocity = {1.0, 0.5}, .spin = 7.0});
     system.add(Disc{.body = body, .radius = 0.1});
   }
+  const BodyId bar =
+      system.add(RigidBody{.mass = box(1.5, 0.3, 0.02), .position = {2.0, 0.3}, .angle = 0.4, .spin = -3.0});
+  system.add(Segment{.body = bar, .from = {-0.15, 0.01}, .to = {0.15, 0.0}});
   system.add(Particle{.mass = 0.7, .position = {-1.0, 0.05}, .velocity = {0.2, 0.0}});
   if (path == Path::usual) {
     const auto still = [](double) { return 0.0; };
@@ -53,6 +58,19 @@ TEST(UncoupledStep, FitsFewUncoupledBodiesUnderConstantLoads) {
   System coupled = scene(Path::short_one);
   coupled.add(SpringDamper{.from = {ground}, .to = {coupled.bodies().back()}, .stiffness = 1.0});
   EXPECT_FALSE(fits(coupled, {.step = 1e-3}));
+}
+
+// A circle around a body says nothing of ground that is not flat: what is called a distance may grow faster
+// than one.
+TEST(UncoupledStep, FitsBodiesBesideTheirCentresOverFlatGroundAlone) {
+  System system;
+  const Surface surface{.friction = 0.3, .normal_restitution = 0.5};
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, surface);
+  const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 2.0}});
+  system.add(Disc{.body = body, .radius = 0.05, .centre = {0.1, 0.0}});
+  EXPECT_TRUE(fits(system, {.step = 1e-3}));
+  system.add(carom_test::RoundHill{.centre = {0.0, -5.0}}, surface);
+  EXPECT_FALSE(fits(system, {.step = 1e-3}));
 }
 
 void expect_same(const StepReport& a, const StepReport& b) {
@@ -81,10 +99,11 @@ void expect_same(const Statistics& a, const Statistics& b) {
   EXPECT_EQ(a.impacts, b.impacts);
 }
 
-class UncoupledStepBits : public testing::TestWithParam<Iteration> {};
+class UncoupledStepBits : public testing::TestWithParam<std::tuple<Iteration, ImpactTimes>> {};
 
 TEST_P(UncoupledStepBits, AreThoseOfTheUsualPath) {
-  const TimeStepping mode{.step = 1e-3, .iteration = GetParam()};
+  const auto [iteration, impacts] = GetParam();
+  const TimeStepping mode{.step = 1e-3, .impacts = impacts, .iteration = iteration};
   Simulation a(scene(Path::short_one), mode), b(scene(Path::usual), mode);
   int free = 0, touching = 0;
   // Falls of some 0.1 s, impacts, flights between them, in the end lasting contact.
@@ -111,7 +130,9 @@ TEST_P(UncoupledStepBits, AreThoseOfTheUsualPath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Iterations, UncoupledStepBits,
-                         testing::Values(Iteration::automatic, Iteration::fixed_point, Iteration::anderson));
+                         testing::Combine(testing::Values(Iteration::automatic, Iteration::fixed_point,
+                                                          Iteration::anderson),
+                                          testing::Values(ImpactTimes::at_step_start, ImpactTimes::located)));
 
 TEST(UncoupledStep, AnEnergyThatIsNotFiniteIsTheErrorOfAnyStep) {
   const auto failure = [](Path path) -> std::string {
