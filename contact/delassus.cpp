@@ -12,19 +12,8 @@ namespace carom {
 
 namespace {
 
-/// True of the rows of one planar contact of one body that turns, as they are: most problems are that.
-bool are_of_one_contact(std::span<const ImpulseDirection> rows) {
-  if (rows.size() != 2 || rows[0].constraint != rows[1].constraint) return false;
-  const Constraint& at = *rows[0].constraint;
-  const auto is_row = [&](std::size_t row) {
-    return rows[row].row == static_cast<int>(row) && rows[row].ratio == 0.0 && rows[row].lever == 0.0;
-  };
-  return at.bodies == 1 && at.blocks[0].columns == static_cast<int>(one_body::of_planar_body) && is_row(0) &&
-         is_row(1);
-}
-
-/// Their responses and W, as one_body::answer_alone() and multiply_symmetric() without loops, and without a
-/// way through memory between the two.
+/// Responses and W of a planar contact of one body that turns, as one_body::answer_alone() and
+/// multiply_symmetric() without loops, and without a way through memory between the two.
 void answer_contact(const Constraint& at, const BodyMasses& masses, double* x, double* matrix) {
   const double *const n = at.jacobian.data(), *const t = n + one_body::of_planar_body;
   const double mass = *masses.mass, inertia = *masses.inertia;
@@ -64,8 +53,8 @@ int Delassus::build_of_one_body(const BodyResponse& response) {
 
 bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions,
                                     const BodyResponse& response, double* matrix) {
-  if (directions.size() != 2 || !are_of_one_contact(directions)) return false;
   const Constraint& at = *directions.front().constraint;
+  if (at.bodies != 1 || at.blocks[0].columns != static_cast<int>(one_body::of_planar_body)) return false;
   const BodyMasses masses = response.alone(at.body());
   if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return false;
   directions_ = directions;

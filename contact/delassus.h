@@ -34,7 +34,8 @@ public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
   void build(std::span<const ImpulseDirection> directions, BodyResponse& response);
   /// Likewise of one planar contact of one body that turns and answers for itself, the usual impact, with W
-  /// at once; else false, and nothing is made. \param matrix out: W, as write_symmetric() gives it
+  /// at once; else false, and nothing is made. \param directions both rows of one constraint, as they are
+  /// \param matrix out: W, as write_symmetric() gives it
   [[nodiscard]] bool build_of_one_contact(std::span<const ImpulseDirection> directions,
                                           const BodyResponse& response, double* matrix);
 

@@ -193,7 +193,8 @@ void IslandProblem::respond(BodyResponse& response) {
     demand_room(constraints_.size(), problem_.rows());
     make_dense(scratch_.sets, problem_);
   }
-  if (delassus_.build_of_one_contact(directions_, response, problem_.matrix().data())) return;
+  const bool one = constraints_.size() == 1 && directions_.size() == 2;
+  if (one && delassus_.build_of_one_contact(directions_, response, problem_.matrix().data())) return;
   delassus_.build(directions_, response);
   delassus_.write_symmetric(problem_.matrix().data());
 }

@@ -26,13 +26,18 @@ bool turning_opens(const Detector& detector) {
   return curved || detector.needs_rotations() || detector.bodies_touch() || detector.has_moving_ground();
 }
 
+/// True if all contacts are those that GroundContacts finds, as they are.
+bool is_plain(const Detector& detector) {
+  return only_centres_touch(detector) && !detector.has_static_friction() && !resists_rolling(detector);
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
       rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0,
              options.impacts == ImpactTimes::located,
-             options.impacts == ImpactTimes::located || turning_opens(detector_)},
+             options.impacts == ImpactTimes::located || turning_opens(detector_), is_plain(detector_)},
       islands_(assembly) {}
 
 void StepConstraints::allow_rounding(double step) {
@@ -140,7 +145,11 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
 std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
                                                  const StepTrial& trial) {
   single_.clear();
-  find_in(in, components, trial, single_);
+  if (rules_.plain && rules_.parting == Parting::acts) {
+    detector_.ground().find(components, query(in, trial), single_);
+  } else {
+    find_in(in, components, trial, single_);
+  }
   return single_;
 }
 

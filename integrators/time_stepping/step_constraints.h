@@ -86,6 +86,7 @@ private:
     double slack;                     // opening of lasting contacts that is none [m]
     bool drifts;                      // contacts of two bodies need their drifts
     bool turning;                     // contacts may be opened by turning, or by slack
+    bool plain;                       // nothing touches but ground at rest, with laws of sliding alone
     Parting parting = Parting::acts;  // in the last find()
     bool by_part = false;             // large batches go part by part, likewise
     Index part_size = none;           // allow_parts()
