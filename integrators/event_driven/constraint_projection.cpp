@@ -40,13 +40,11 @@ bool leaves_joints(const JointConstraints& joints, Range q, const MotionSample& 
 
 }  // namespace
 
-ConstraintProjection project_onto_constraints(SmoothMotion& motion, const MotionSample& at,
-                                              std::span<double> y) {
+bool find_corrections(SmoothMotion& motion, const MotionSample& at) {
   assert(motion.joints().is_at(at));
-  ConstraintProjection result;
   ActiveSet& active = motion.active();
   const GroupJoints& joints = motion.joints().rows();
-  if (active.list().empty() && joints.empty()) return result;
+  if (active.list().empty() && joints.empty()) return false;
   MotionMemory& memory = motion.memory();
   const GroupModel& model = motion.model();
   const Assembly& assembly = *model.assembly;
@@ -65,9 +63,18 @@ ConstraintProjection project_onto_constraints(SmoothMotion& motion, const Motion
     part.joints->project(JointLevel::velocity, of_velocity.data());
     for (Index i = all.v.begin; i < all.v.end; ++i) of_velocity[i] -= at.state.v[i];
   }
-  result.changed = active.corrections(assembly, at.state.v.data(), of_position.data(), of_velocity.data()) ||
-                   !joints.empty();
+  return active.corrections(assembly, at.state.v.data(), of_position.data(), of_velocity.data()) ||
+         !joints.empty();
+}
+
+ConstraintProjection project_onto_constraints(SmoothMotion& motion, const MotionSample& at,
+                                              std::span<double> y) {
+  ConstraintProjection result;
+  result.changed = find_corrections(motion, at);
   if (!result.changed) return result;
+  MotionMemory& memory = motion.memory();
+  const GroupModel& model = motion.model();
+  const std::vector<double>&of_position = memory.of_position, &of_velocity = memory.of_velocity;
   // The potential changes by minus the work of its forces, to first order: the rest is the square of
   // rounding.
   for (const auto& part : model.parts()) {

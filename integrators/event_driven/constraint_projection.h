@@ -23,6 +23,10 @@ struct ConstraintProjection {
   double shift = 0.0;  ///< largest displacement [m]
 };
 
+/// Finds the smallest changes that take a sample onto the constraints: MotionMemory::of_position and
+/// of_velocity. False where there is nothing to change. \param at the sample that the motion made last
+[[nodiscard]] CAROM_API bool find_corrections(SmoothMotion& motion, const MotionSample& at);
+
 /// Projects y. \param at the sample of y that the motion made last; it is out of date if y was changed
 CAROM_API ConstraintProjection project_onto_constraints(SmoothMotion& motion, const MotionSample& at,
                                                         std::span<double> y);

@@ -160,6 +160,7 @@ Event EventDetector::first(SearchedStep& step) {
     if (predicted.guard == Guard::nothing) return predicted;
     const Event located = locate_event(step, predicted, landing_);
     if (located.guard != Guard::restart) return first_of(step, predicted, located);
+    if (lowers_level(step, predicted)) continue;
     if (!is_false_alarm(step, predicted, located)) return located;
     pass_over(step, predicted);
   }
@@ -185,15 +186,21 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
   if (predicted.guard == Guard::force && !(located.time > step.begin()) &&
       !finds_unbounded_force(step.flow.end(), step.flow.state().data()))
     return true;
-  if (predicted.guard != Guard::gap) return false;
   // A gap with an outline may open and close again where the nearest feature changes.
-  if (!(located.time > step.begin())) return true;
-  if (motion_->model().bound_of(predicted.which) != none) return false;
-  // A gap that opens: in steps of low order there would be one after each restart.
-  const StepPolynomial::End &start = step.ends.start().gaps[predicted.which],
-                            &end = step.ends.end().gaps[predicted.which];
-  return start.first >= 0.0 && end.first >= 0.0 &&
-         end.value >= step.ends.gap_level(predicted.which) - motion_->model().options->gap_tolerance;
+  return predicted.guard == Guard::gap && !(located.time > step.begin());
+}
+
+/// True of a gap that does not close although its value falls: within steps of low order values and rates
+/// contradict each other by up to the tolerance. The step is searched once more for what is deeper than that.
+bool EventDetector::lowers_level(const SearchedStep& step, const Event& predicted) {
+  constexpr double growth = 4.0;
+  if (predicted.guard != Guard::gap) return false;
+  if (step.ends.start().gaps[predicted.which].first < -scales_.speed_noise) return false;
+  double& drift = memory_->ends.end().gaps[predicted.which].drift;
+  const double deepest = motion_->model().options->gap_tolerance;
+  if (drift >= deepest) return false;
+  drift = std::min(growth * std::max(drift, scales_.gap_noise), deepest);
+  return true;
 }
 
 /// Gaps that move are predicted to rounding, other guards to a part of a step, and so are gaps that hardly

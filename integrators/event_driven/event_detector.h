@@ -52,6 +52,7 @@ private:
   void list_active();
   [[nodiscard]] Event first(SearchedStep& step);
   void pass_over(const SearchedStep& step, const Event& predicted);
+  [[nodiscard]] bool lowers_level(const SearchedStep& step, const Event& predicted);
   [[nodiscard]] bool is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] Event first_of(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] bool finds_unbounded_force(double time, const double* y);

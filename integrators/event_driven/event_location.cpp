@@ -137,9 +137,10 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     step.flow.land(time, y);
     step.motion.sample(time, y.data(), Forces::all, step.memory.within);
     const Remainder rest = remainder_of(step, step.memory.within, predicted, step.memory.located);
-    // Between the ends of steps of low order a gap may seem to fall while its rate says that it opens.
-    const bool opens = predicted.guard == Guard::gap && rest.rate >= 0.0 &&
-                       step.ends.start().gaps[predicted.which].first >= 0.0;
+    // Between the ends of steps of low order a gap may seem to fall while its rate says that it does not.
+    const bool opens =
+        predicted.guard == Guard::gap &&
+        std::min(rest.rate, step.ends.start().gaps[predicted.which].first) >= -step.scales.speed_noise;
     if ((std::abs(rest.value) <= rest.noise && !opens) || at.low == at.high) {
       landing.time = time;
       landing.y.assign(y.begin(), y.end());

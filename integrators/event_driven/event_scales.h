@@ -23,6 +23,12 @@ struct EventScales {
   [[nodiscard]] double noise_of(const SmoothMotion& motion, const Constraint& contact) const;
 };
 
+/// Rounding of gaps between places. \param size of their coordinates [m]
+[[nodiscard]] CAROM_API double gap_noise_of(double size);
+/// Velocities that count as zero [m/s]. \param velocity of the motion [m/s] \param absolute_tolerance of the
+/// mode
+[[nodiscard]] CAROM_API double speed_noise_of(double velocity, double absolute_tolerance);
+
 /// Scales at a state. \param contacts of all pairs there
 [[nodiscard]] CAROM_API EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                                                  std::span<const Constraint> contacts);

@@ -16,7 +16,7 @@ GroupMeetings::GroupMeetings(const Assembly& assembly, const Detector& detector,
       memory_(&memory),
       groups_(&groups),
       flights_(assembly, detector),
-      search_(assembly, detector, groups, flights_),
+      search_(assembly, detector, groups, flights_, options),
       now_(assembly),
       end_(assembly),
       joined_(assembly.layout()) {}

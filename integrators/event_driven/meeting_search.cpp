@@ -1,6 +1,7 @@
 // Problem: no meeting of two groups is missed, although each has its own steps.
 
 #include <carom/core/numerics/never.h>
+#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/joinable_group.h>
 #include <carom/integrators/event_driven/meeting_search.h>
 
@@ -119,12 +120,11 @@ void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
 
 /// Rounding of gaps, not above that of the group of both.
 double MeetingSearch::noise(const Bodies& bodies) const {
-  constexpr double gap_rounding = 256.0 * std::numeric_limits<double>::epsilon();
-  double size = 1.0;
+  double size = 0.0;
   for (const BodyFlight* flight : {&bodies.a, &bodies.b}) {
     size = std::max(size, flight->place.cwiseAbs().maxCoeff());
   }
-  return gap_rounding * size;
+  return gap_noise_of(size);
 }
 
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
@@ -157,12 +157,16 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
 }
 
 /// The first closing between two looks, located. Where a closing that was predicted is none, the motion after
-/// it is searched anew. A step may be wrong far behind its own event, and what is interpolated in front of it
-/// too: where that is not the motion that is landed on, the search is made in landings.
+/// it is searched anew. A gap that opens where its value falls does not close: within steps of low order
+/// values and rates contradict each other by the tolerance, and it is searched for what is deeper than that.
+/// A step may be wrong far behind its own event, and what is interpolated in front of it too: where that is
+/// not the motion that is landed on, the search is made in landings.
 double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
                               const GapLook& from, const GapLook& to, const Depth& at_depth) {
   constexpr int most_landings = 60, deepest = 20;
+  constexpr double growth = 4.0;  // of what the level is lowered by
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
   constexpr double interpolated = 1e-8;  // errors of looks up to this are those of tolerances [m]
   if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
   GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, at_),
@@ -181,6 +185,12 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
       return located(bodies, gap, rule, begin, end, {at_depth.halvings, true});
     }
     const double rest = at.value - rule.level;
+    if (std::min(at.first, from.gap.first) >= -slow && std::abs(rest) <= 0.25 * rule.noise &&
+        at_depth.drift < options_->gap_tolerance) {
+      const double drift = std::min(growth * std::max(at_depth.drift, rule.noise), options_->gap_tolerance);
+      rule.level -= drift - at_depth.drift;
+      return located(bodies, gap, rule, from, to, {at_depth.halvings, at_depth.landed, drift});
+    }
     if (std::abs(rest) <= 0.25 * rule.noise && !(at.first >= 0.0 && time == from.time)) return time;
     if (rest > 0.0 && at.first >= 0.0) break;
     (rest > 0.0 ? low : high) = time;
@@ -194,7 +204,7 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
   const double between = progress ? time : 0.5 * (from.time + to.time);
   if (!(between > from.time && between < to.time)) return never;
   const GapLook middle{between, true, gap_in(gap, looks.sample(between))};
-  const Depth deeper{at_depth.halvings + 1, at_depth.landed};
+  const Depth deeper{at_depth.halvings + 1, at_depth.landed, at_depth.drift};
   if (!progress) {
     const double first = located(bodies, gap, rule, from, middle, deeper);
     if (first < never) return first;

@@ -42,11 +42,12 @@ class CAROM_API MeetingSearch {
 public:
   /// All must outlive it.
   MeetingSearch(const Assembly& assembly, const Detector& detector, GroupSet& groups,
-                const BodyFlights& flights)
+                const BodyFlights& flights, const EventDriven& options)
       : assembly_(&assembly),
         detector_(&detector),
         groups_(&groups),
         flights_(&flights),
+        options_(&options),
         begins_(assembly),
         ends_(assembly),
         at_(assembly) {}
@@ -67,6 +68,7 @@ private:
   struct Depth {
     int halvings = 0;
     bool landed = false;  ///< in motion as accurate as steps
+    double drift = 0.0;   ///< for gaps that fall deeper than by this [m]
   };
   template <class F>
   void for_neighbours(ClockGroup& group, F&& f);
@@ -80,6 +82,7 @@ private:
   const Detector* detector_;
   GroupSet* groups_;
   const BodyFlights* flights_;
+  const EventDriven* options_;
   GroupSamples begins_, ends_;      // of the times searched
   MotionSample at_;                 // of two groups
   std::vector<ContactPair> pairs_;  // of two bodies

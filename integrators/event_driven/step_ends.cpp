@@ -1,6 +1,7 @@
 // Problem: read off a state all that may end a smooth phase, with its rounding.
 
 #include <carom/integrators/event_driven/body_gaps.h>
+#include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
@@ -40,9 +41,32 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
   return sample_body_gaps(motion, is_active, at, out) && finite;
 }
 
+/// Finds what the projection at the end of a step will raise gaps by that the flow has let fall below zero.
+/// Two corners, or two round ends, that touch each other have several gaps that are the same: one of them is
+/// closed and carries the force, and would seem to be hit by the others with each step of low order.
+void find_drifts(SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
+                 StepEnd& out) {
+  const GroupModel& model = motion.model();
+  if (motion.active().list().empty() && motion.joints().rows().empty()) return;
+  bool known = false;
+  Constraint contact;
+  for (std::size_t i = 0; i < out.gaps.size(); ++i) {
+    if (is_active[i] != 0 || !(out.gaps[i].value < 0.0)) continue;
+    const Index bound = model.bound_of(i);
+    if (bound != none && !out.body_gaps[bound].known) continue;
+    if (!known && !find_corrections(motion, at)) return;
+    known = true;
+    motion.contact(i, at, contact);
+    const double raised = contact.times(0, motion.memory().of_position.data());
+    out.gaps[i].drift = std::clamp(raised, 0.0, model.options->gap_tolerance);
+  }
+}
+
 }  // namespace
 
-double StepEnds::gap_level(std::size_t pair) const { return std::min(0.0, start().gaps[pair].value); }
+double StepEnds::gap_level(std::size_t pair) const {
+  return std::min(0.0, start().gaps[pair].value) - end().gaps[pair].drift;
+}
 
 double StepEnds::slip_level(std::size_t contact) const {
   return std::min(0.0, start().sample.slips[contact].value);
@@ -126,6 +150,7 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
     }
     out.noises.push_back(force_rounding * std::max(size, force_scale) + no_force);
   }
+  if (finite) find_drifts(motion, is_active, at, out);
   return finite;
 }
 

@@ -21,6 +21,9 @@ namespace carom {
 /// A gap at an end of a step.
 struct GapEnd : StepPolynomial::End {
   double curvature_bound = 0.0;  ///< of the sixth derivative of the gap by turning [m/s^6]
+  /// By how much the gap may fall without closing [m]: by what the projection onto the constraints takes
+  /// back, and in a step of low order by its error.
+  double drift = 0.0;
 };
 
 /// Facts known beside of the gap of two bodies, or of a body with an outline.
@@ -41,7 +44,8 @@ struct StepEnd {
 };
 
 /// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
-/// what has just passed does not pass once more.
+/// what has just passed does not pass once more; for a gap, less its drift: what follows from closed contacts
+/// does not close beside them.
 class CAROM_API StepEnds {
 public:
   /// The ends.
