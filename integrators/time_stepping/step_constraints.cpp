@@ -28,7 +28,7 @@ bool turning_opens(const Detector& detector) {
 
 /// True if all contacts are those that GroundContacts finds, as they are.
 bool is_plain(const Detector& detector) {
-  return only_centres_touch(detector) && !detector.has_static_friction() && !resists_rolling(detector);
+  return centres_tell(detector) && !detector.has_static_friction() && !resists_rolling(detector);
 }
 
 }  // namespace
