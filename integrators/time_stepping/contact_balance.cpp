@@ -119,8 +119,16 @@ private:
     EnergyFlows& flows = result_.flows;
     flows[entry.impact ? EnergyFlow::impact_normal : EnergyFlow::contact_normal] -= book_row(0);
     double& tangential = flows[entry.impact ? EnergyFlow::impact_tangential : EnergyFlow::sliding];
-    at.rows > 1 ? void(tangential -= book_row(1)) : leave_out(1);
-    at.rows > 2 ? void(tangential -= book_row(2)) : leave_out(2);
+    if (at.rows > 1) {
+      tangential -= book_row(1);
+    } else {
+      leave_out(1);
+    }
+    if (at.rows > 2) {
+      tangential -= book_row(2);
+    } else {
+      leave_out(2);
+    }
     sum = works;
     entry.contact_work = all;
     if (on_surface != 0.0) flows[EnergyFlow::external] += on_surface;
