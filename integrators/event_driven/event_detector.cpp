@@ -123,6 +123,12 @@ bool EventDetector::repeat_shorter(SearchedStep& step, const Event& event, doubl
     step.flow.start(time, y, nearer * (event.time - time));
     return true;
   }
+  // A false alarm at the start of a step, as beside a force that is nothing over nothing: a new start from
+  // there would have the same, without end. Shorter steps sample what made it.
+  if (makes_no_progress(step, event)) {
+    step.flow.start(time, y, nearer * (step.end() - step.begin()));
+    return true;
+  }
   if (event.guard != Guard::missed_loads && !lands_off_path(step, event, landing_)) return false;
   step.flow.start(time, y, shorter * (event.time - time));
   return true;
