@@ -89,7 +89,7 @@ void FreeFlight::add_batch(Range components) {
 }
 
 Flight FreeFlight::step(const StepInput& in, State& state, Companion& companion, StepReport& report) {
-  if (!starts_free(in, parts_->constraints.detector(), rows_)) return Flight::none;
+  if (!starts_free(in, parts_->constraints.detector(), rows_)) return Flight::refused;
   StepTrial& trial = parts_->trial;
   trial.end.time = in.end_time;
   for (const FlyingBodies& batch : batches_) parts_->rule.fly(in, batch.place, batch.masses, trial);

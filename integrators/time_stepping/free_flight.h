@@ -35,7 +35,7 @@ struct FlyingBodies {
 
 /// How far FreeFlight comes with a step: something may touch at its start; its bodies have moved as if
 /// nothing touched, which is not all there is to be done; it is made.
-enum class Flight : std::uint8_t { none, moved, made };
+enum class Flight : std::uint8_t { refused, moved, made };
 
 /// A schedule around the stages of a step: whatever follows from model and options is looked up once.
 class CAROM_API FreeFlight {

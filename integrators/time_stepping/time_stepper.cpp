@@ -39,7 +39,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   if (!known) evaluate_start(state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
-    flown_ = flight_ ? flight_->step(in, state, companion, report) : Flight::none;
+    flown_ = flight_ ? flight_->step(in, state, companion, report) : Flight::refused;
     if (flown_ == Flight::made) return;
     struck_ = impacts_ != nullptr && strike(in);
   } catch (const SolverError& error) {

@@ -91,7 +91,7 @@ private:
   CouplingWatch couplings_;
   CappedProblem capped_;
   std::optional<FreeFlight> flight_;  // none where no step is one
-  Flight flown_ = Flight::none;       // of the step at hand
+  Flight flown_ = Flight::refused;    // of the step at hand
 };
 
 }  // namespace carom
