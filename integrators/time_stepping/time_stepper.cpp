@@ -21,10 +21,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       couplings_(assembly),
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
-  if (parts_.ends_at_closings()) {
-    turning_ = std::make_unique<ContactTurning>(assembly, detector());
-    parts_.constraints.allow_rounding(options.step);
-  }
+  if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
     if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (FreeFlight::fits(parts_)) flight_.emplace(parts_);
@@ -246,8 +243,7 @@ void TimeStepper::locate_under_constant_loads(Range components, const StepIsland
                                               const StepInput& in) {
   LocatedImpacts& located = parts_.located;
   StepTrial& trial = parts_.trial;
-  const GroundPlaces& places = parts_.constraints.places_at_end();
-  if (!located.take_up(in, components, island.constraints, places, trial)) return;
+  if (!located.take_up(in, components, island.constraints, parts_.constraints.places_at_end(), trial)) return;
   const double* const total = in.companion.loads.total.data();
   const Range bodies = in.assembly.bodies_of(components);
   StoredEnergies before, after;
