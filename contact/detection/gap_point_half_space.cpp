@@ -1,7 +1,4 @@
 #include <carom/contact/detection/gap_point_half_space.h>
-#include <carom/core/numerics/pair.h>
-
-#include <cstddef>
 
 namespace carom {
 
@@ -15,21 +12,17 @@ Gap gap_point_half_space(const double* point, const Vec<D>& origin, const Vec<D>
   return gap;
 }
 
-// All points are looked at, without a branch, two by two.
+// All points are looked at, without a branch, so that the loop runs in vectors.
 template <int D>
 bool any_point_in_half_space(const PointRow& row, const Vec<D>& origin, const Vec<D>& normal, double margin) {
-  using Found = decltype(Pair{} <= Pair{});
-  Found found{};
+  bool any = false;
   const double* point = row.points;
-  const auto look = [&](const double* a, const double* b) {
-    Pair distance{};
-    for (int d = 0; d < D; ++d) distance += both(normal[d]) * (Pair{a[d], b[d]} - both(origin[d]));
-    found |= distance <= both(margin);
-  };
-  Index i = 0;
-  for (; i + 1 < row.count; i += 2, point += std::size_t{2} * row.stride) look(point, point + row.stride);
-  if (i < row.count) look(point, point);
-  return (found[0] | found[1]) != 0;
+  for (Index i = 0; i < row.count; ++i, point += row.stride) {
+    double distance = 0.0;
+    for (int d = 0; d < D; ++d) distance += normal[d] * (point[d] - origin[d]);
+    any |= distance <= margin;
+  }
+  return any;
 }
 
 template Gap gap_point_half_space<2>(const double*, const Vec<2>&, const Vec<2>&);

@@ -32,7 +32,9 @@ struct StepParts {
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),
         joints(model),
-        joined(model, joints) {}
+        joined(model, joints) {
+    if (ends_at_closings()) constraints.allow_rounding(options.step);
+  }
 
   /// Stages of a component.
   [[nodiscard]] SweepStages stages(const StepInput& in, Index component) {

@@ -22,10 +22,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       couplings_(assembly),
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
-  if (parts_.ends_at_closings()) {
-    turning_ = std::make_unique<ContactTurning>(assembly, detector());
-    parts_.constraints.allow_rounding(options.step);
-  }
+  if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
   if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
     if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
