@@ -72,17 +72,14 @@ void ModeSelection::select(EventInstant& at) {
 bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at) {
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
-  const Decision decision = decide_candidates(pairs, at);
+  Decision decision = decide_candidates(pairs, at);
   if (decision == Decision::impossible || decision == Decision::failed) failure_->demand_finite_loads(at.now);
-  if (decision == Decision::impossible) {
-    if (!impacts_->settle(pairs, at)) {
-      if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) fail_unkept();
-      impacts_->settle(at);
-    }
+  if (decision == Decision::impossible && strike(pairs, at)) {
     unbounded_->clear();
     stopped_ = {};
     return false;
   }
+  if (decision == Decision::impossible) decision = decide_by_limit(at);
   if (decision == Decision::failed) {
     failure_->fail("the contact problem of the accelerations is not solved", names_of_candidates(),
                    &memory_->decision.problem());
@@ -90,6 +87,25 @@ bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at
   if (decision == Decision::several) record_choice(at);
   close_candidates(at.motion.active());
   return true;
+}
+
+/// Settles what is slow, or solves an impact without collision. False if there is none.
+bool ModeSelection::strike(std::span<const Index> pairs, EventInstant& at) {
+  if (impacts_->settle(pairs, at)) return true;
+  if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) return false;
+  impacts_->settle(at);
+  return true;
+}
+
+/// Modes by forces that the search for an impact without collision came to. The problem of accelerations had
+/// an answer in which impulses stop what slides; of several answers this is another one. Fails where there
+/// are none.
+Decision ModeSelection::decide_by_limit(EventInstant& at) {
+  const std::span<const ForceOnCandidate> forces = memory_->impact.forces();
+  if (forces.empty() || has_unbounded_force()) fail_unkept();
+  const Decision decision = memory_->decision.decide_by(forces, at.motion, at.now, memory_->candidates);
+  if (decision == Decision::failed) fail_unkept();
+  return decision;
 }
 
 void ModeSelection::collect_candidates(std::span<const Index> pairs, const EventInstant& at) {

@@ -60,6 +60,8 @@ private:
   static void take_coming_feature(const EventInstant& at, Candidate& candidate);
   void collect_candidates(std::span<const Index> pairs, const EventInstant& at);
   [[nodiscard]] bool select_island(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] bool strike(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] Decision decide_by_limit(EventInstant& at);
   [[nodiscard]] Decision decide(EventInstant& at);
   [[nodiscard]] Decision decide_by_excess(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] Decision decide_candidates(std::span<const Index> pairs, EventInstant& at);
