@@ -106,12 +106,15 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
   if (!(pull > 0.0) || fastest == 0.0) return false;
-  for (double change = longest * fastest; change >= shorter * at.scales.speed_noise; change *= shorter) {
+  // What slides hardly faster than rounding is asked once, too.
+  double change = longest * fastest;
+  do {
     const double step = change / pull;
+    change *= shorter;
     if (!take_limit(chain, step, at)) continue;
     if (changes(at.scales.speed_noise)) return true;
     if (forces_.empty()) take_forces(candidates, 0.5 * step);
-  }
+  } while (change >= shorter * at.scales.speed_noise);
   return false;
 }
 
