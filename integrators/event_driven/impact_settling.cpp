@@ -85,8 +85,7 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
     // What does not slide is not to start by what stops others: accelerations decide about that.
-    const bool sticks =
-        contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
+    const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();
     held.mode = sticks ? ContactMode::stick : ContactMode::slip_positive;
