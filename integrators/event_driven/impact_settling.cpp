@@ -1,6 +1,5 @@
 // Problem: which of the closed contacts that an impact shakes come to rest again at once?
 
-#include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/impact_settling.h>
 
 #include <algorithm>
@@ -9,23 +8,20 @@
 namespace carom {
 
 bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain) {
-  if (!list_touching(pairs, at) || !solve_ahead(at, chain) || !list_held(at)) return false;
-  before_.assign(at.y.begin(), at.y.end());
-  if (project(pairs, at)) return true;
-  std::copy(before_.begin(), before_.end(), at.y.begin());
-  at.update();
-  return false;
+  capture_ = capture_speed(pairs, at);
+  return list_touching(pairs, at) && solve_ahead(at, chain) && list_held(at) &&
+         closing_.close(held_, pairs, at);
 }
 
 /// Lists what touches and does not fly off. False if nothing is left to settle, or no bodies touch each
 /// other: few contacts of one body are followed as they are, singular positions among them.
 bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInstant& at) {
-  const double capture = at.motion.model().options->capture_speed, noise = at.scales.speed_noise;
+  const double noise = at.scales.speed_noise;
   touching_.clear();
   places_.clear();
   bool any = false, pile = false;
   for (const Index i : pairs) {
-    if (!at.touches(i) || -at.approach(i) > capture) continue;
+    if (!at.touches(i) || -at.approach(i) > capture_) continue;
     const Constraint& contact = at.contacts[i];
     if (contact.has_dry_friction() && !at.motion.joints().depends_on_joint_force(contact)) continue;
     pile = pile || contact.bodies > 1;
@@ -35,9 +31,10 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     listed.law.rolling_restitution = 0.0;
     listed.friction_bound = 0.0;
     const double sliding = contact.sliding_speed(at.velocities());
-    listed.friction = sliding <= capture ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
+    listed.friction =
+        sliding <= capture_ ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
     any = any || (at.before_at[i] != none && -at.approach(i) > noise);
-    any = any || (contact.rows > 1 && sliding > noise && sliding <= capture);
+    any = any || (contact.rows > 1 && sliding > noise && sliding <= capture_);
   }
   return any && pile;
 }
@@ -51,7 +48,7 @@ bool ImpactSettling::solve_ahead(EventInstant& at, SolverChain& chain) {
       pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
   }
   if (!(pull > 0.0)) return false;
-  const double time = 2.0 * at.motion.model().options->capture_speed / pull;
+  const double time = 2.0 * capture_ / pull;
   for (Constraint& contact : touching_) {
     for (std::size_t row = 0; row < Constraint::max_rows; ++row)
       contact.surface_velocity_after[row] = contact.surface_velocity[row] - time * contact.drift[row];
@@ -76,7 +73,7 @@ bool ImpactSettling::comes_to_rest(std::size_t c, const EventInstant& at) const 
 
 /// Lists the contacts that are pressed then. False if they need not be stopped.
 bool ImpactSettling::list_held(const EventInstant& at) {
-  const double capture = at.motion.model().options->capture_speed, noise = at.scales.speed_noise;
+  const double noise = at.scales.speed_noise;
   held_.clear();
   bool any = false;
   for (std::size_t c = 0; c < touching_.size(); ++c) {
@@ -87,7 +84,8 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     if (contact.has_dry_friction() || bounces) continue;
     if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
-    const bool sticks = contact.rows > 1 && sliding <= capture && comes_to_rest(c, at);
+    // What does not slide is not to start by what stops others: accelerations decide about that.
+    const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();
     held.mode = sticks ? ContactMode::stick : ContactMode::slip_positive;
@@ -95,55 +93,6 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     held.place = place;
   }
   return any;
-}
-
-/// Holds what touches and approaches now, too: what stops one contact may push another. False if there is
-/// nothing.
-bool ImpactSettling::hold_approaching(std::span<const Index> pairs, const EventInstant& at) {
-  const std::size_t before = held_.size();
-  for (const Index i : pairs) {
-    const Constraint& contact = at.contacts[i];
-    if (!at.touches(i) || contact.has_dry_friction() || at.approach(i) <= at.scales.speed_noise) continue;
-    const auto same = [&](const ActiveContact& held) { return held.place == i; };
-    const auto known = held_.begin() + static_cast<std::ptrdiff_t>(before);
-    if (std::any_of(held_.begin(), known, same)) continue;  // rounding, or a turned row
-    ActiveContact& held = held_.emplace_back();
-    held.mode = ContactMode::slip_positive;
-    held.at = contact;
-    held.place = i;
-  }
-  return held_.size() > before;
-}
-
-/// Takes the velocities of the contacts held away. False if that does not succeed; the state is of no use
-/// then.
-bool ImpactSettling::project(std::span<const Index> pairs, EventInstant& at) {
-  constexpr int most_projections = 3;  // a shift turns rows
-  const double noise = at.scales.speed_noise;
-  std::vector<ActiveContact>& active = at.motion.active().list();
-  const auto is_still = [&](const ActiveContact& held) {
-    return std::abs(held.at.normal_velocity(at.velocities())) <= noise;
-  };
-  double lost = 0.0, shift = 0.0;
-  for (int i = 0; i < most_projections;) {
-    active.swap(held_);
-    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
-    active.swap(held_);
-    lost += projection.lost;
-    shift += projection.shift;
-    if (projection.changed) at.update();
-    for (ActiveContact& held : held_) held.at = at.contacts[held.place];
-    if (hold_approaching(pairs, at)) {
-      i = 0;
-    } else if (!projection.changed || std::all_of(held_.begin(), held_.end(), is_still)) {
-      at.balance.flows[EnergyFlow::accumulation] += lost;
-      at.balance.shift = std::max(at.balance.shift, shift);
-      return true;
-    } else {
-      ++i;
-    }
-  }
-  return false;
 }
 
 }  // namespace carom

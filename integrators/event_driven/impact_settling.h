@@ -15,6 +15,7 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_instant.h>
+#include <carom/integrators/event_driven/slow_contacts.h>
 
 #include <span>
 #include <vector>
@@ -36,15 +37,14 @@ private:
   [[nodiscard]] bool solve_ahead(EventInstant& at, SolverChain& chain);
   [[nodiscard]] bool comes_to_rest(std::size_t c, const EventInstant& at) const;
   [[nodiscard]] bool list_held(const EventInstant& at);
-  [[nodiscard]] bool hold_approaching(std::span<const Index> pairs, const EventInstant& at);
-  [[nodiscard]] bool project(std::span<const Index> pairs, EventInstant& at);
 
   IslandProblem problem_{{.factored_from = factored_constraints, .factored_to = most_exact_contacts}};
   std::vector<Constraint> touching_;
   std::vector<Index> places_;  // their pairs
   std::vector<double> ahead_;  // velocities
   std::vector<ActiveContact> held_;
-  std::vector<double> before_;  // state
+  double capture_ = 0.0;  // capture speed [m/s]
+  ContactClosing closing_;
 };
 
 }  // namespace carom

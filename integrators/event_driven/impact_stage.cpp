@@ -2,7 +2,6 @@
 
 #include <carom/contact/impact_restitution.h>
 #include <carom/contact/impact_rules.h>
-#include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 
 #include <algorithm>
@@ -80,7 +79,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   std::vector<Constraint>& touching = memory_->touching;
   const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
-  const bool captured = fastest <= capture_speed(at) && counts.sequence == 0;
+  const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
   memory_->note = {};
   memory_->note.cut_sequence =
       sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
@@ -103,7 +102,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   memory_->note.restitution_factor *= problem.restitution_factor();
   const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
-  if (closes_slow) close_captured(at);
+  if (closes_slow) close_captured(pairs, at);
 }
 
 bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
@@ -204,24 +203,9 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
 
-/// Speed of what touches after a fall through the rounding of gaps [m/s].
-double ImpactStage::speed_of_rounding(const EventInstant& at) const {
-  double fall = 0.0;
-  for (const Constraint& contact : memory_->touching) {
-    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
-  }
-  return std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
-}
-
-/// Impacts up to this speed close what touches [m/s]. Far from the origin bounces end in the rounding of gaps
-/// before they are as slow as the option says: each would begin a little deeper than the one before it.
-double ImpactStage::capture_speed(const EventInstant& at) const {
-  return std::max(options_->capture_speed, speed_of_rounding(at));
-}
-
 /// Adds contacts that are about to close too.
 void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant& at) {
-  const double speed_limit = capture_speed(at), limit = speed_limit * speed_limit;
+  const double speed_limit = capture_speed(pairs, at), limit = speed_limit * speed_limit;
   for (const Index i : pairs) {
     if (at.touches(i)) continue;
     const Constraint& contact = at.contacts[i];
@@ -239,57 +223,31 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
 }
 
 /// Projects the rest of the normal velocities and gaps of captured contacts away.
-void ImpactStage::close_captured(EventInstant& at) {
-  // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
-  // lifts it by, it falls again.
-  const double slow = speed_of_rounding(at);
-  memory_->before_closing.assign(at.y.begin(), at.y.end());
+void ImpactStage::close_captured(std::span<const Index> pairs, EventInstant& at) {
   // To stop one may be to move another, in almost singular positions: then it may not be stopped. And bodies
   // that slide may have to part, however slowly, where others guide them.
   for (const Closing closing : {Closing::with_sliding, Closing::all, Closing::pressed}) {
-    if (close_captured(closing, slow, at)) return;
-    std::copy(memory_->before_closing.begin(), memory_->before_closing.end(), at.y.begin());
-    at.update();
+    list_captured(closing, pairs, at);
+    if (memory_->closing.close(memory_->captured, {}, at)) return;
   }
 }
 
-/// Closes captured contacts. False if some do not close; the state is of no use then.
-/// \param slow sliding speed up to which `with_sliding` stops sliding too [m/s]
-bool ImpactStage::close_captured(Closing closing, double slow, EventInstant& at) {
-  constexpr int most_projections = 3;  // a shift turns rows
-  const double fastest = closing == Closing::pressed ? at.scales.speed_noise : capture_speed(at);
+void ImpactStage::list_captured(Closing closing, std::span<const Index> pairs, EventInstant& at) {
+  const double fastest = closing == Closing::pressed ? at.scales.speed_noise : capture_speed(pairs, at);
+  // A body that rocks and slides within the rounding of its gaps would do so for ever: what the projection
+  // lifts it by, it falls again.
+  const double slow = closing == Closing::with_sliding ? speed_of_rounding(pairs, at) : -1.0;
   std::vector<ActiveContact>& list = memory_->captured;
   list.clear();
   for (std::size_t i = 0; i < memory_->touching.size(); ++i) {
     const Constraint& contact = memory_->touching[i];
     if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > fastest) continue;
     ActiveContact& closed = list.emplace_back();
-    const bool stops = closing == Closing::with_sliding && contact.rows > 1 &&
-                       contact.sliding_speed(at.velocities()) <= slow;
+    const bool stops = contact.rows > 1 && contact.sliding_speed(at.velocities()) <= slow;
     closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;
     closed.at = contact;
     closed.place = memory_->places[i];
   }
-  const auto is_closed = [&](const ActiveContact& closed) {
-    return std::abs(closed.at.normal_velocity(at.velocities())) <= at.scales.speed_noise;
-  };
-  std::vector<ActiveContact>& active = at.motion.active().list();
-  double lost = 0.0, shift = 0.0;
-  for (int i = 0; i < most_projections; ++i) {
-    active.swap(list);
-    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
-    active.swap(list);
-    lost += projection.lost;
-    shift += projection.shift;
-    if (projection.changed) at.update();
-    for (ActiveContact& closed : list) closed.at = at.contacts[closed.place];
-    if (!projection.changed || std::all_of(list.begin(), list.end(), is_closed)) {
-      at.balance.flows[EnergyFlow::accumulation] += lost;
-      at.balance.shift = std::max(at.balance.shift, shift);
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace carom

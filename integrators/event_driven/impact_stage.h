@@ -14,6 +14,7 @@
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/event_driven/impact_settling.h>
+#include <carom/integrators/event_driven/slow_contacts.h>
 #include <carom/integrators/run/impact_note.h>
 #include <carom/integrators/run/impact_rules.h>
 
@@ -47,11 +48,11 @@ struct ImpactMemory {
   std::vector<Constraint> touching;  ///< constraints of the problem,
   std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
-  std::vector<double> before_closing;  ///< state
-  std::vector<ImpactCounts> counts;    ///< by island
+  std::vector<ImpactCounts> counts;  ///< by island
   ImpactSolver by_law;
   ImpactNote note;  ///< of the impact at hand
   ImpactSettling settling;
+  ContactClosing closing;
 };
 
 /// The impacts of one clock group.
@@ -84,14 +85,12 @@ private:
   [[nodiscard]] IslandProblem& problem_by_law();
   void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
-  [[nodiscard]] double speed_of_rounding(const EventInstant& at) const;
-  [[nodiscard]] double capture_speed(const EventInstant& at) const;
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
-  void close_captured(EventInstant& at);
+  void close_captured(std::span<const Index> pairs, EventInstant& at);
   // Contacts that a projection closes: those that part slower than the capture speed, where those that slide
   // slowly are stopped too; the same without stopping; or those only that do not part.
   enum class Closing : std::uint8_t { with_sliding, all, pressed };
-  [[nodiscard]] bool close_captured(Closing closing, double slow, EventInstant& at);
+  void list_captured(Closing closing, std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
   [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at) const;
 

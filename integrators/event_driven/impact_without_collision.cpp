@@ -33,6 +33,7 @@ bool ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
     list_touching(candidates, speed, at);
     return find_listed(chain, at) || find_limit(candidates, chain, at);
   };
+  forces_.clear();
   if (!find(NormalSpeed::removed) && !find(NormalSpeed::kept)) return false;
   const std::size_t first = at.balance.fresh.size();
   impacts.apply(EventKind::impact_without_collision, problem_, at);
@@ -105,10 +106,31 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
   if (!(pull > 0.0) || fastest == 0.0) return false;
-  for (double change = longest * fastest; change >= shorter * at.scales.speed_noise; change *= shorter) {
-    if (take_limit(chain, change / pull, at) && changes(at.scales.speed_noise)) return true;
-  }
+  // What slides hardly faster than rounding is asked once, too.
+  double change = longest * fastest;
+  do {
+    const double step = change / pull;
+    change *= shorter;
+    if (!take_limit(chain, step, at)) continue;
+    if (changes(at.scales.speed_noise)) return true;
+    if (forces_.empty()) take_forces(candidates, 0.5 * step);
+  } while (change >= shorter * at.scales.speed_noise);
   return false;
+}
+
+/// Takes the impulses of the last step for forces, unless they stop or turn what slides.
+void ImpactWithoutCollision::take_forces(std::span<const Candidate> candidates, double step) {
+  for (std::size_t c = 0; c < touching_.size(); ++c) {
+    const double slip = candidates[taking_part_[c]].slip;
+    const ContactMode mode = step_modes_[c];
+    if (slip != 0.0 && mode != ContactMode::open && mode != mode_by_sign(slip)) return;
+  }
+  forces_.assign(candidates.size(), {});
+  for (std::size_t c = 0; c < touching_.size(); ++c) {
+    const auto first = static_cast<std::size_t>(problem_.first_row(c));
+    for (std::size_t row = 0; row < static_cast<std::size_t>(touching_[c].rows); ++row)
+      forces_[taking_part_[c]][row] = step_impulses_[first + row] / step;
+  }
 }
 
 /// Impulses of a step [s] without restitution: b = gamma + step a.
@@ -130,8 +152,9 @@ bool ImpactWithoutCollision::take_limit(SolverChain& chain, double step, EventIn
   if (!solve_step(step, chain, at)) return false;
   limit_.assign(problem_.impulses().begin(), problem_.impulses().end());
   if (!solve_step(0.5 * step, chain, at)) return false;
-  for (std::size_t row = 0; row < limit_.size(); ++row)
-    limit_[row] = 2.0 * problem_.impulses()[row] - limit_[row];
+  step_impulses_.assign(problem_.impulses().begin(), problem_.impulses().end());
+  step_modes_.assign(problem_.modes().begin(), problem_.modes().end());
+  for (std::size_t row = 0; row < limit_.size(); ++row) limit_[row] = 2.0 * step_impulses_[row] - limit_[row];
   for (Constraint& contact : touching_) contact.surface_velocity_after = contact.surface_velocity;
   problem_.set_free_velocity(at.velocities());
   if (!(polish_.improve(problem_.problem(), limit_, most_improvements).value <= tolerated_residual))

@@ -32,6 +32,9 @@ public:
                              EventInstant& at);
   /// The contact problem of the impact that was looked for last.
   [[nodiscard]] const IslandProblem& problem() const { return problem_; }
+  /// Where the last search found no impact since the impulses vanish with eps while all that slides slides
+  /// on: the forces P/eps, by candidate; else nothing.
+  [[nodiscard]] std::span<const ForceOnCandidate> forces() const { return forces_; }
 
 private:
   // The normal velocities of what touches are rounding, which the certificate of P = 0 would refuse: they
@@ -45,6 +48,7 @@ private:
   [[nodiscard]] bool solve_step(double step, SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool take_limit(SolverChain& chain, double step, EventInstant& at);
   [[nodiscard]] bool changes(double speed_noise);
+  void take_forces(std::span<const Candidate> candidates, double step);
   [[nodiscard]] std::size_t most_dissipative_solution(double speed_noise) const;
 
   IslandProblem problem_;
@@ -54,7 +58,10 @@ private:
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::size_t best_ = 0;                  // of the solutions; their number if none
   std::vector<double> limit_, xi_;        // impulses and velocities of the limit
+  std::vector<double> step_impulses_;     // of the last step,
+  std::vector<ContactMode> step_modes_;   // and modes
   std::vector<double> change_;            // of velocities, in a step
+  std::vector<ForceOnCandidate> forces_;
 };
 
 }  // namespace carom

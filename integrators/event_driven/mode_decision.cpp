@@ -79,15 +79,9 @@ bool ModeDecision::bounds_follow(SmoothMotion& motion) const {
                      [&](const Constraint& contact) { return joints.depends_on_joint_force(contact); });
 }
 
-Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
-                             SolverChain& chain) {
-  list_contacts(candidates);
-  if (contacts_.empty()) {
-    take_accelerations(motion, now);
-    return Decision::made;
-  }
-  JointReactions& joints = motion.joints();
-  joints.build(problem_, contacts_, zero_.data());
+/// Builds the problem of accelerations; what slips has its friction.
+void ModeDecision::build(SmoothMotion& motion, const MotionSample& now) {
+  motion.joints().build(problem_, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slips_[taking_part_[c]].sign;
     if (sign != 0.0 && contacts_[c].type != ConstraintType::limit)
@@ -95,6 +89,16 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   }
   problem_.set_free_velocity(now.acceleration.data());
   size_ = size_without_contact(problem_);
+}
+
+Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
+                             SolverChain& chain) {
+  list_contacts(candidates);
+  if (contacts_.empty()) {
+    take_accelerations(motion, now);
+    return Decision::made;
+  }
+  build(motion, now);
   const bool follow = bounds_follow(motion);
   const bool solved =
       follow ? converge_friction_bounds(motion, now, candidates, chain) : problem_.solve(chain).usable();
@@ -124,48 +128,6 @@ bool ModeDecision::finds_several(std::span<Candidate> candidates) {
   const auto closes_more = [](const Candidate& at) { return at.stiffness < 0.0; };
   return std::any_of(candidates.begin(), candidates.end(), closes_more) &&
          solutions_.enumerate(problem_.problem()) == Outcome::several_solutions;
-}
-
-/// The limit of impacts of vanishing time eps, b = gamma + eps a and e = 0, divided by eps: its matrix is
-/// copositive, so that it has an answer where the problem of accelerations has none that solvers find. What
-/// slips has a velocity gamma/eps without bound; if impulses stop it, there are no forces.
-Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
-                                      std::span<Candidate> candidates, SolverChain& chain) {
-  constexpr double unbounded = 1e6;  // against the accelerations without contact
-  list_contacts(candidates);
-  if (contacts_.empty() || bounds_follow(motion)) return Decision::failed;
-  size_ = 0.0;
-  for (const Constraint& contact : contacts_) {
-    for (int row = 0; row < contact.rows; ++row)
-      size_ = std::max(size_, std::abs(contact.acceleration(row, now.acceleration.data())));
-  }
-  const double fast = unbounded * size_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const double sign = slips_[taking_part_[c]].sign;
-    if (contacts_[c].type == ConstraintType::limit || contacts_[c].friction == 0.0) continue;
-    contacts_[c].surface_velocity_after[static_cast<std::size_t>(contacts_[c].tangent_row())] -= sign * fast;
-  }
-  motion.joints().build(problem_, contacts_, zero_.data());
-  problem_.set_free_velocity(now.acceleration.data());
-  const bool solved = problem_.solve(chain).usable();
-  name_cause(problem_, taking_part_, slips_, candidates);
-  if (!solved) return Decision::failed;
-  take_accelerations(motion, now);
-  problem_.map().add_velocities(acceleration_.data());
-  bool stops = false, reverts = false;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    SlipDirection& slide = slips_[taking_part_[c]];
-    const Candidate& candidate = candidates[taking_part_[c]];
-    if (slide.sign == 0.0 || contacts_[c].friction == 0.0) continue;
-    if (slide.sign * candidate.at.tangential_acceleration(acceleration_.data()) > -0.5 * fast) continue;
-    (candidate.slip != 0.0 ? stops : reverts) = true;
-    if (candidate.slip == 0.0) slide = {.reverted = true};  // it has no velocity that impulses could stop
-  }
-  if (reverts) return solve_as_limit(motion, now, candidates, chain);
-  if (stops) return Decision::impossible;
-  read_modes(candidates, problem_.impulses());
-  settle_modes(motion, now, candidates);
-  return Decision::made;
 }
 
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {

@@ -8,6 +8,7 @@
 
 #include <carom/contact/active_set.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/export.h>
@@ -15,6 +16,7 @@
 #include <carom/integrators/event_driven/slip_directions.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -28,12 +30,19 @@ enum class Decision : std::uint8_t {
   failed       ///< no solver found an answer
 };
 
+/// Forces on a candidate by row [N]; 0 where it takes no part.
+using ForceOnCandidate = std::array<double, Constraint::max_rows>;
+
 /// Decides for the contacts of one island at a time. Keeps memory only.
 class CAROM_API ModeDecision {
 public:
   /// \param now sample without contacts that the motion made last; its accelerations are put back
   Decision decide(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                   SolverChain& chain);
+  /// Likewise by forces found otherwise, by candidate. `failed` if they are no answer, to the tolerance of
+  /// the certificate.
+  Decision decide_by(std::span<const ForceOnCandidate> forces, SmoothMotion& motion, MotionSample& now,
+                     std::span<Candidate> candidates);
   /// The last problem and its answer.
   [[nodiscard]] const IslandProblem& problem() const { return problem_; }
 
@@ -44,6 +53,7 @@ private:
                   SolverChain& chain);
   void list_contacts(std::span<Candidate> candidates);
   [[nodiscard]] bool bounds_follow(SmoothMotion& motion) const;
+  void build(SmoothMotion& motion, const MotionSample& now);
   Decision solve(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                  SolverChain& chain);
   Decision solve_as_limit(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
@@ -62,10 +72,12 @@ private:
 
   IslandProblem problem_;
   SolutionList solutions_;
+  NewtonPolish polish_;
   std::vector<Constraint> contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   SlipDirections slips_;
   std::vector<double> zero_, acceleration_;
+  std::vector<double> given_;          // forces by row [N]
   double size_ = 0.0;                  // of accelerations along rows, without contact [m/s^2]
   std::vector<ActiveContact> active_;  // those that stay, in the order of contacts_
   std::vector<ForceMargin> margins_;

@@ -72,24 +72,52 @@ void ModeSelection::select(EventInstant& at) {
 bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at) {
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
-  const Decision decision = decide_candidates(pairs, at);
-  if (decision == Decision::impossible || decision == Decision::failed) failure_->demand_finite_loads(at.now);
-  if (decision == Decision::impossible) {
-    if (!impacts_->settle(pairs, at)) {
-      if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) fail_unkept();
-      impacts_->settle(at);
+  Decision decision = decide_candidates(pairs, at);
+  if (decision == Decision::impossible || decision == Decision::failed) {
+    failure_->demand_finite_loads(at.now);
+    // Where forces are neither found nor excluded, the limit of an impact may find either: closed contacts in
+    // line stand within rounding of a singular position, on one side of which there are no forces and on the
+    // other ones without bound; and of many contacts not all modes are enumerated.
+    if ((decision == Decision::impossible || any_slides()) && strike(pairs, at)) {
+      unbounded_->clear();
+      stopped_ = {};
+      return false;
     }
-    unbounded_->clear();
-    stopped_ = {};
-    return false;
-  }
-  if (decision == Decision::failed) {
-    failure_->fail("the contact problem of the accelerations is not solved", names_of_candidates(),
-                   &memory_->decision.problem());
+    decision = decide_by_limit(decision, at);
   }
   if (decision == Decision::several) record_choice(at);
   close_candidates(at.motion.active());
   return true;
+}
+
+/// Settles what is slow, or solves an impact without collision. False if there is none.
+bool ModeSelection::strike(std::span<const Index> pairs, EventInstant& at) {
+  if (impacts_->settle(pairs, at)) return true;
+  if (!memory_->impact.resolve(memory_->candidates, *impacts_, *chain_, at)) return false;
+  impacts_->settle(at);
+  return true;
+}
+
+/// Modes by forces that the search for an impact without collision came to. The problem of accelerations had
+/// an answer in which impulses stop what slides; of several answers this is another one. Fails where there
+/// are none. \param decision without them
+Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
+  const std::span<const ForceOnCandidate> forces = memory_->impact.forces();
+  const bool searched = decision == Decision::impossible || any_slides();
+  if (searched && !forces.empty() && !has_unbounded_force()) {
+    const Decision by_forces = memory_->decision.decide_by(forces, at.motion, at.now, memory_->candidates);
+    if (by_forces != Decision::failed) return by_forces;
+  }
+  if (decision == Decision::impossible) fail_unkept();
+  failure_->fail("the contact problem of the accelerations is not solved", names_of_candidates(),
+                 &memory_->decision.problem());
+}
+
+/// True if a contact slides.
+bool ModeSelection::any_slides() const {
+  return std::any_of(memory_->candidates.begin(), memory_->candidates.end(), [](const Candidate& candidate) {
+    return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
+  });
 }
 
 void ModeSelection::collect_candidates(std::span<const Index> pairs, const EventInstant& at) {
@@ -150,9 +178,7 @@ Decision ModeSelection::decide(EventInstant& at) {
 
 /// Modes of the candidates collected. States before and behind p = 0 cannot be told from each other where
 /// time, or the contact problem, has no numbers in between. Then friction is taken for as much larger as it
-/// takes to be behind. Where that decides nothing, and forces are neither found nor excluded, there are none
-/// to keep what slides: closed contacts in line stand there within rounding of a singular position, on one
-/// side of which there are none and on the other ones without bound.
+/// takes to be behind.
 Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventInstant& at) {
   const bool unbounded = has_unbounded_force();
   if (!unbounded) {
@@ -161,16 +187,8 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
   }
   if (decide_by_excess(pairs, at) == Decision::impossible) return Decision::impossible;
   collect_candidates(pairs, at);
-  const std::vector<Candidate>& candidates = memory_->candidates;
   // Where larger friction leaves forces too, sliding stops at once: an impact as well.
-  if (unbounded) return Decision::impossible;
-  const bool slides = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {
-    return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
-  });
-  // Of more contacts not all modes are enumerated.
-  const bool enumerated = groups_of(candidates) <= static_cast<std::size_t>(enumeration_groups);
-  const Decision decision = decide(at);
-  return decision == Decision::failed && slides && enumerated ? Decision::impossible : decision;
+  return unbounded ? Decision::impossible : decide(at);
 }
 
 /// Fails where neither forces nor an impact without collision keep the candidates.

@@ -60,9 +60,12 @@ private:
   static void take_coming_feature(const EventInstant& at, Candidate& candidate);
   void collect_candidates(std::span<const Index> pairs, const EventInstant& at);
   [[nodiscard]] bool select_island(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] bool strike(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] Decision decide_by_limit(Decision decision, EventInstant& at);
   [[nodiscard]] Decision decide(EventInstant& at);
   [[nodiscard]] Decision decide_by_excess(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] Decision decide_candidates(std::span<const Index> pairs, EventInstant& at);
+  [[nodiscard]] bool any_slides() const;
   [[nodiscard]] bool has_unbounded_force() const;
   [[noreturn]] void fail_unkept() const;
   [[nodiscard]] std::vector<std::string> names_of_candidates() const;

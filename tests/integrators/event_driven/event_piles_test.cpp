@@ -120,6 +120,23 @@ TEST(EventPiles, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
   EXPECT_EQ(runs.failed, 0);
 }
 
+// Contacts that slow impacts had parted were closed, which made others slide that did not before: one event
+// followed the other at the same time.
+TEST(EventPiles, ClosingSlowContactsStartsNoSliding) {
+  Runs runs;
+  run({6, true, 1.2, 0.3, 77}, 0.8, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
+// Eight contacts of which two slide: no solver had an answer to the problem of accelerations, nor to that of
+// its limit at one speed of sliding for all. With the speeds that they have there is one.
+TEST(EventPiles, WhatIsNotSolvedInAccelerationsIsSolvedAsALimit) {
+  Runs runs;
+  run({8, true, 1.2, 0.0, 17}, 1.1, runs);
+  EXPECT_GT(runs.jams, 0);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 // A step of two of these boxes was wrong far behind its own event, and interpolated in front of it too: the
 // search for meetings looked at a million places.
 TEST(EventPiles, MeetingsAreSearchedInTheMotionThatIs) {
@@ -236,6 +253,24 @@ TEST(EventPilesLong, SlidingOfRoundingDoesNotJam) {
   Runs runs;
   run({20, true, 0.8, 0.0, 9}, 1.06, runs);
   run({20, true, 0.8, 0.0, 15}, 1.28, runs);
+  EXPECT_GT(runs.jams, 0);
+  EXPECT_EQ(runs.failed, 0);
+}
+
+// Of 23 contacts three slide on although the problem of accelerations has an answer, too, in which impulses
+// stop them: the search for these came to forces instead, and the run ended.
+TEST(EventPilesLong, ForcesFoundInTheSearchForAnImpactAreTaken) {
+  Runs runs;
+  run({20, true, 1.2, 0.0, 3}, 1.15, runs);
+  EXPECT_GT(runs.jams, 0);
+  EXPECT_EQ(runs.failed, 0);
+}
+
+// A contact jams that slides by 1e-11 m/s, six times what counts as zero: no step of the search for an impact
+// was long enough to be tried.
+TEST(EventPilesLong, JamsOfWhatSlidesHardlyFasterThanRoundingAreFound) {
+  Runs runs;
+  run({20, true, 1.2, 0.3, 1}, 0.96, runs);
   EXPECT_GT(runs.jams, 0);
   EXPECT_EQ(runs.failed, 0);
 }

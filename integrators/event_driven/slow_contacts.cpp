@@ -1,0 +1,80 @@
+// Problem: end what is too slow to be followed.
+
+#include <carom/integrators/event_driven/constraint_projection.h>
+#include <carom/integrators/event_driven/slow_contacts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+double speed_of_rounding(std::span<const Index> pairs, const EventInstant& at) {
+  double fall = 0.0;
+  for (const Index i : pairs) {
+    const Constraint& contact = at.contacts[i];
+    if (!at.touches(i) || contact.has_dry_friction()) continue;
+    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
+  }
+  return std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
+}
+
+double capture_speed(std::span<const Index> pairs, const EventInstant& at) {
+  return std::max(at.motion.model().options->capture_speed, speed_of_rounding(pairs, at));
+}
+
+bool ContactClosing::close(std::vector<ActiveContact>& contacts, std::span<const Index> others,
+                           EventInstant& at) {
+  before_.assign(at.y.begin(), at.y.end());
+  if (project(contacts, others, at)) return true;
+  std::copy(before_.begin(), before_.end(), at.y.begin());
+  at.update();
+  return false;
+}
+
+bool ContactClosing::add_approaching(std::vector<ActiveContact>& contacts, std::span<const Index> others,
+                                     const EventInstant& at) {
+  const std::size_t before = contacts.size();
+  for (const Index i : others) {
+    const Constraint& contact = at.contacts[i];
+    if (!at.touches(i) || contact.has_dry_friction() || at.approach(i) <= at.scales.speed_noise) continue;
+    const auto same = [&](const ActiveContact& known) { return known.place == i; };
+    const auto known = contacts.begin() + static_cast<std::ptrdiff_t>(before);
+    if (std::any_of(contacts.begin(), known, same)) continue;  // rounding, or a turned row
+    ActiveContact& added = contacts.emplace_back();
+    added.mode = ContactMode::slip_positive;
+    added.at = contact;
+    added.place = i;
+  }
+  return contacts.size() > before;
+}
+
+bool ContactClosing::project(std::vector<ActiveContact>& contacts, std::span<const Index> others,
+                             EventInstant& at) {
+  constexpr int most_projections = 3;  // a shift turns rows
+  std::vector<ActiveContact>& active = at.motion.active().list();
+  const auto is_closed = [&](const ActiveContact& contact) {
+    return std::abs(contact.at.normal_velocity(at.velocities())) <= at.scales.speed_noise;
+  };
+  double lost = 0.0, shift = 0.0;
+  for (int i = 0; i < most_projections;) {
+    active.swap(contacts);
+    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
+    active.swap(contacts);
+    lost += projection.lost;
+    shift += projection.shift;
+    if (projection.changed) at.update();
+    for (ActiveContact& contact : contacts) contact.at = at.contacts[contact.place];
+    if (add_approaching(contacts, others, at)) {
+      i = 0;
+    } else if (!projection.changed || std::all_of(contacts.begin(), contacts.end(), is_closed)) {
+      at.balance.flows[EnergyFlow::accumulation] += lost;
+      at.balance.shift = std::max(at.balance.shift, shift);
+      return true;
+    } else {
+      ++i;
+    }
+  }
+  return false;
+}
+
+}  // namespace carom
