@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/detection_memory.h>
+#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>
@@ -43,7 +44,8 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
 
 /// Finds what the projection at the end of a step will raise gaps by that the flow has let fall below zero.
 /// Two corners, or two round ends, that touch each other have several gaps that are the same: one of them is
-/// closed and carries the force, and would seem to be hit by the others with each step of low order.
+/// closed and carries the force, and would seem to be hit by the others with each step of low order. A gap
+/// that still approaches once the velocities are projected too does close, and is met where it does.
 void find_drifts(SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
                  StepEnd& out) {
   const GroupModel& model = motion.model();
@@ -57,6 +59,9 @@ void find_drifts(SmoothMotion& motion, std::span<const char> is_active, const Mo
     if (!known && !find_corrections(motion, at)) return;
     known = true;
     motion.contact(i, at, contact);
+    const double rate = out.gaps[i].first + contact.times(0, motion.memory().of_velocity.data());
+    if (rate < -speed_noise_of(contact.speed(0, at.state.v.data()), model.options->absolute_tolerance))
+      continue;
     const double raised = contact.times(0, motion.memory().of_position.data());
     out.gaps[i].drift = std::clamp(raised, 0.0, model.options->gap_tolerance);
   }
