@@ -13,6 +13,22 @@ namespace {
 // A pivot below this part of the largest one is rounding: the constraint follows from the others.
 constexpr double dependent = 1e-11;
 
+/// W_ii of bodies that answer for themselves, without friction: what a row is made of [1/kg].
+double own_response(const ImpulseDirection& direction, const BodyResponse& response) {
+  const Constraint& at = *direction.constraint;
+  const double* number = at.row(direction.row);
+  double sum = 0.0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
+    const Constraint::Block& block = at.blocks[b];
+    const BodyMasses masses = response.alone(block.body);
+    if (masses.mass == nullptr) return 0.0;
+    const int turning = masses.inertia == nullptr ? block.columns : block.columns - 1;
+    for (int k = 0; k < block.columns; ++k, ++number)
+      sum += *number * *number / (k < turning ? *masses.mass : *masses.inertia);
+  }
+  return sum;
+}
+
 }  // namespace
 
 double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
@@ -132,18 +148,46 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
     const double ratio = turned ? -contact.slip_sign() * contact.friction : 0.0;
     directions.push_back({&contact.at, row_of(row, contact.at), ratio, turned ? lever(row.contact) : 0.0});
   }
+  memory_->exponents.clear();
   if (answers_with_joints(first, last)) {
     memory_->delassus.build(directions, *response_);
-  } else {
-    MassResponse response(assembly);
-    memory_->delassus.build(directions, response);
+    return;
+  }
+  MassResponse response(assembly);
+  memory_->delassus.build(directions, response);
+  const auto is_of_two = [](const ImpulseDirection& direction) { return direction.constraint->bodies > 1; };
+  if (std::none_of(directions.begin(), directions.end(), is_of_two)) return;
+  for (const ImpulseDirection& direction : directions) {
+    const double own = own_response(direction, response);
+    if (!(own > 0.0 && std::isfinite(own))) return memory_->exponents.clear();
+    memory_->exponents.push_back(std::ilogb(own));
+  }
+}
+
+/// Scales rows of heavy bodies, which answer little, to those of light ones: a row is to be told from
+/// rounding by what it is made of itself. By powers of two, so that nothing is rounded, and coarse ones, so
+/// that rows of like masses stay as they are.
+void ActiveSet::scale_rows() {
+  constexpr int coarse = 16;  // in powers of two
+  std::vector<int>& exponents = memory_->exponents;
+  if (exponents.empty()) return;
+  const int most = *std::max_element(exponents.begin(), exponents.end());
+  const std::size_t n = exponents.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const int up = (most - exponents[i]) / coarse * coarse;
+    if (up == 0) continue;
+    memory_->unknown[i] = std::ldexp(memory_->unknown[i], up);
+    double* const row = memory_->factors.matrix() + i * n;
+    for (std::size_t j = 0; j < n; ++j) row[j] = std::ldexp(row[j], up);
   }
 }
 
 /// Solves the equations of the group for the unknowns.
 bool ActiveSet::solve() {
-  memory_->factors.reset(memory_->rows.size());
+  const std::size_t n = memory_->rows.size();
+  memory_->factors.reset(n);
   memory_->delassus.write(memory_->factors.matrix());
+  if (n > 1) scale_rows();
   return memory_->factors.solve(dependent, memory_->unknown);
 }
 

@@ -39,6 +39,7 @@ struct CAROM_API ActiveSetMemory {
   FullPivoting factors;         ///< of G B D
   std::vector<double> unknown;  ///< right side, then lambda
   std::vector<double> load;     ///< over all velocities, of bodies that joints bind
+  std::vector<int> exponents;   ///< of its rows' own responses, by powers of two; empty: not scaled
   // Of the set whose forces were found last:
   std::vector<ContactPivot> pivots;
   LeastForces least_forces;
@@ -99,6 +100,7 @@ private:
   [[nodiscard]] double lever(std::size_t contact) const;
   [[nodiscard]] static int row_of(const Row& row, const Constraint& at);
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
+  void scale_rows();
   [[nodiscard]] bool solve();
   void add_dry_friction(std::size_t first, std::size_t last, double* acceleration);
   bool react(std::size_t first, std::size_t last, double* acceleration);

@@ -306,4 +306,10 @@ void Delassus::add_response(std::span<const double> impulses, double* x, double 
   }
 }
 
+Index Delassus::reach_end() const {
+  Index end = common_.end;
+  for (const Part& part : parts_) end = std::max(end, part.v.end);
+  return end;
+}
+
 }  // namespace carom

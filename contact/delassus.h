@@ -66,6 +66,8 @@ public:
   void write(double* matrix) const;
   /// x += scale B D^T P. \param x velocities of all bodies
   void add_response(std::span<const double> impulses, double* x, double scale = 1.0) const;
+  /// Velocities that it may write, from the first one of all bodies on.
+  [[nodiscard]] Index reach_end() const;
 
 private:
   static constexpr auto no_part = static_cast<std::size_t>(-1);

@@ -2,6 +2,10 @@
 
 #include <carom/contact/impulse_map.h>
 
+#include <algorithm>
+#include <limits>
+#include <vector>
+
 namespace carom {
 
 void ImpulseMap::add_loads(double scale, double* load) const {
@@ -20,6 +24,30 @@ double ImpulseMap::surface_work(std::size_t constraint) const {
     work += impulse_work(impulse(constraint, row), at.surface_velocity[i], at.surface_velocity_after[i]);
   }
   return work;
+}
+
+/// From the velocities that a unit impulse along each normal gives the bodies of its contact.
+double ImpulseMap::mass_ratio() const {
+  if (!delassus_->slots().empty()) return 1.0;
+  std::vector<double> unit(impulses_.size(), 0.0), velocity(delassus_->reach_end());
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const Constraint& at = constraints_[c];
+    if (at.has_dry_friction()) continue;
+    std::fill(velocity.begin(), velocity.end(), 0.0);
+    unit[place(c, 0)] = 1.0;
+    delassus_->add_response(unit, velocity.data());
+    unit[place(c, 0)] = 0.0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
+      double own = 0.0;
+      for (int k = 0; k < at.blocks[b].columns; ++k)
+        own = std::max(own, std::abs(velocity[at.blocks[b].v + static_cast<Index>(k)]));
+      if (!(own > 0.0)) continue;
+      least = std::min(least, own);
+      most = std::max(most, own);
+    }
+  }
+  return most > 0.0 ? most / least : 1.0;
 }
 
 }  // namespace carom

@@ -81,6 +81,9 @@ public:
   /// Work of the impulses of a constraint on the moving ground shape that it touches, P.(w^- + w^+)/2 with
   /// the velocities w of the surface: what enters as external work [J].
   [[nodiscard]] double surface_work(std::size_t constraint) const;
+  /// By how much the bodies differ in what impulses make of their velocities: about the ratio of their
+  /// masses; 1 where W is left in factors. Allocates.
+  [[nodiscard]] double mass_ratio() const;
 
 private:
   [[nodiscard]] std::size_t place(std::size_t constraint, int row) const {

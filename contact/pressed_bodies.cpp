@@ -1,8 +1,11 @@
-// Problem: name what presses a body that has no room.
+// Problem: name what presses a body that has no room, or masses that leave it no digits.
 
 #include <carom/contact/pressed_bodies.h>
+#include <carom/core/errors.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace carom {
@@ -20,6 +23,17 @@ std::string pressed_by(const System& system, const IslandProblem& problem) {
   std::string text = "; bodies are pressed by the motion of ";
   for (const std::string& name : names) text += name + (name == names.back() ? "" : ", ");
   return text + " (allowed: motion that leaves them room, or friction on which they slide out)";
+}
+
+std::string uneven_masses(const IslandProblem& problem) {
+  constexpr double uneven = 1e8;
+  const double ratio = problem.map().mass_ratio();
+  if (!(ratio > uneven)) return {};
+  const double digits =
+      std::max(std::floor(-std::log10(std::numeric_limits<double>::epsilon() * ratio)), 0.0);
+  return "; masses differ by a factor of " + to_text(ratio) + ", which leaves " +
+         std::to_string(static_cast<int>(digits)) +
+         " digits of the motion of a light body between heavy ones (allowed: masses nearer to each other)";
 }
 
 }  // namespace carom

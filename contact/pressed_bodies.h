@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Obstacles whose motion leaves bodies no room, for errors of both modes.
+/// Causes of a contact problem without an answer, for errors of both modes: obstacles whose motion leaves
+/// bodies no room, masses that differ by more than numbers have digits for.
 
 #include <carom/contact/island_problem.h>
 #include <carom/core/export.h>
@@ -14,5 +15,8 @@ namespace carom {
 /// Text that an error adds of a contact problem without an answer: the obstacles in it that move along the
 /// normal of a contact, and the remedies; empty where none moves so.
 [[nodiscard]] CAROM_API std::string pressed_by(const System& system, const IslandProblem& problem);
+/// Likewise: by how much the masses differ, where that leaves a light body between heavy ones few digits (its
+/// acceleration is the difference of forces that are as much larger); else empty.
+[[nodiscard]] CAROM_API std::string uneven_masses(const IslandProblem& problem);
 
 }  // namespace carom

@@ -87,8 +87,8 @@ struct Constraint {
   /// law.sticking_friction() where it stuck in the step before.
   double friction = 0.0;
   Surface law;  ///< coefficients
-  /// Of a lasting contact that turning has opened: the normal velocity that would close it within the step,
-  /// with which it may still approach at its end [m/s]. Else 0.
+  /// Normal velocity with which it may approach at the end of a time step, beyond its law [m/s]: of a lasting
+  /// contact that turning has opened, and of one that couplings open and draw back. Else 0.
   double allowed_approach = 0.0;
   std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity{};  ///< of the moving ground shape where it is touched, along the rows [m/s]

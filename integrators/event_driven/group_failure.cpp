@@ -19,6 +19,7 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
   const Assembly& assembly = *model_->assembly;
   if (problem != nullptr && problem->report().outcome == Outcome::no_solution)
     message += pressed_by(assembly.system(), *problem);
+  if (problem != nullptr && !problem->report().usable()) message += uneven_masses(*problem);
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();

@@ -1,6 +1,7 @@
 // Problem: the implicit equations of a step over one island of components.
 
 #include <carom/integrators/time_stepping/island_iteration.h>
+#include <carom/integrators/time_stepping/returning_contacts.h>
 
 #include <algorithm>
 
@@ -12,8 +13,19 @@ IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
   method_.use(parts.options.iteration);
 }
 
-/// Sweeps until the next would change no more than the tolerance. Returns what is known of the loads then.
 LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge) {
+  const LoadsKnown known = iterate(island, in, judge);
+  if (parts_->located.on() || !any_returns(in, parts_->contacts.problems(), parts_->rule,
+                                           parts_->options.capture_speed, parts_->trial)) {
+    return known;
+  }
+  allow_return(in, island.constraints);
+  judge = FixedPointJudge(parts_->options.tolerance, parts_->options.max_sweeps);
+  return iterate(island, in, judge);
+}
+
+/// Sweeps until the next would change no more than the tolerance. Returns what is known of the loads then.
+LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& in, FixedPointJudge& judge) {
   using Verdict = FixedPointJudge::Verdict;
   begin(island, in);
   const Index front = island.components.front();

@@ -42,6 +42,7 @@ private:
     LoadsKnown known = LoadsKnown::total;  // of the loads that it led to
     bool converged_one_early = false;      // of two the first was enough
   };
+  [[nodiscard]] LoadsKnown iterate(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool find_impacts(const StepIsland& island, const StepInput& in);

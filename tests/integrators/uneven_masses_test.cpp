@@ -1,0 +1,101 @@
+// A light body between a heavy one and the floor, and on a heavy one: masses that differ by up to 1e13.
+
+#include <carom/carom.h>
+
+#include "tests/integrators/throws.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace carom;
+using namespace carom::planar;
+
+constexpr double gravity = 9.81, size = 0.2, gap = 0.1;
+
+struct Tower {
+  System system;
+  BodyId low{}, high{};
+};
+
+/// Two discs or two boxes above each other; the upper one falls by `gap`.
+Tower tower(double low_mass, double high_mass, bool boxes) {
+  Tower at;
+  at.system.add(Gravity{{0.0, -gravity}});
+  at.system.set_default_law(Surface{.friction = 0.5, .normal_restitution = 0.0});
+  at.system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
+  const auto add = [&](double mass, double x, double y) {
+    const BodyId body = at.system.add(
+        RigidBody{.mass = boxes ? box(mass, 2.0 * size, 2.0 * size) : disc(mass, size), .position = {x, y}});
+    if (boxes) {
+      at.system.add(
+          Polygon{.body = body, .vertices = {{-size, -size}, {size, -size}, {size, size}, {-size, size}}});
+    } else {
+      at.system.add(Disc{.body = body, .radius = size});
+    }
+    return body;
+  };
+  at.low = add(low_mass, 0.0, size);
+  at.high = add(high_mass, boxes ? 0.05 : 0.0, 3.0 * size + gap);
+  return at;
+}
+
+/// Both lie still, one on the other. \param depth as deep as steps may let a body sink, (3 - e)/2 h v
+void expect_at_rest(const Simulation& simulation, const Tower& at, double depth, double speed) {
+  const State& state = simulation.state();
+  EXPECT_NEAR(state.position(at.low)[1], size, depth);
+  EXPECT_NEAR(state.position(at.high)[1], 3.0 * size, depth);
+  EXPECT_LE(state.velocity(at.low).norm(), speed);
+  EXPECT_LE(state.velocity(at.high).norm(), speed);
+}
+
+constexpr double step = 1e-3;
+const double step_depth = 1.5 * step * std::sqrt(2.0 * gravity * gap);
+
+TEST(UnevenMasses, ALightBodyOnAHeavyOneIsStepped) {
+  for (const bool boxes : {false, true}) {
+    for (const double ratio : {1e6, 1e12, 1e13}) {
+      const Tower at = tower(ratio, 1.0, boxes);
+      Simulation simulation(at.system, TimeStepping{.step = step});
+      ASSERT_NO_THROW(simulation.run_until(0.5)) << boxes << ' ' << ratio;
+      expect_at_rest(simulation, at, step_depth, 1e-14);  // rounding of h g
+    }
+  }
+}
+
+TEST(UnevenMasses, ALightBodyOnAHeavyOneHasEvents) {
+  for (const bool boxes : {false, true}) {
+    for (const double ratio : {1e6, 1e10, 1e12, 1e13}) {
+      const Tower at = tower(ratio, 1.0, boxes);
+      Simulation simulation(at.system, EventDriven{});
+      ASSERT_NO_THROW(simulation.run_until(0.5)) << boxes << ' ' << ratio;
+      expect_at_rest(simulation, at, 1e-9, 1e-9);  // tolerances of the integrator
+    }
+  }
+}
+
+TEST(UnevenMasses, ALightBodyUnderAHeavyOneIsStepped) {
+  for (const bool boxes : {false, true}) {
+    for (const double ratio : {1e6, 1e9}) {
+      const Tower at = tower(1.0, ratio, boxes);
+      Simulation simulation(at.system, TimeStepping{.step = step});
+      ASSERT_NO_THROW(simulation.run_until(0.5)) << boxes << ' ' << ratio;
+      // The certificate, 1e-12 of the impulses of the heavy body, over the mass of the light one.
+      expect_at_rest(simulation, at, step_depth, 1e-12 * ratio * step * gravity);
+    }
+  }
+}
+
+TEST(UnevenMasses, WithoutDigitsAreNamed) {
+  for (const bool boxes : {false, true}) {
+    const Tower at = tower(1.0, 1e14, boxes);
+    Simulation steps(at.system, TimeStepping{.step = step});
+    EXPECT_THROWS(SolverError, steps.run_until(0.5), "masses differ by a factor of 1", "1 digits");
+    Simulation events(at.system, EventDriven{});
+    EXPECT_THROWS(SolverError, events.run_until(0.5), "masses differ by a factor of 1", "1 digits");
+  }
+}
+
+}  // namespace
