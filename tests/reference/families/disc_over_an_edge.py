@@ -10,7 +10,7 @@ from families.exact import G, number
 
 
 def run(radius: str, speed: str, friction: str, flight: str) -> dict[str, Any]:
-    """From 0.1 m before the edge, to `flight` after it left. phi: of the centre from the vertical, u = phi'^2.
+    """From 0.1 m before the edge, to `flight` after it left. phi: centre from the vertical, u = phi'^2.
 
     On the edge it rolls with u = u_0 + 4 g/(3 r) (1 - cos phi) until sin phi/3 = mu N/(m g), then slides:
     du/dphi - 2 mu u = 2 g/r (sin phi - mu cos phi); and leaves where N/m = g cos phi - r u = 0.
