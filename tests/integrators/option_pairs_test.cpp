@@ -211,8 +211,10 @@ TEST(OptionPairs, OfTimeSteppingRunOrAreRefused) {
               Simulation simulation(system, options);
               simulation.run_until(end);
               EXPECT_TRUE(carom_test::ledger_closes(simulation.energy()));
-              // An impact is up to a step of 1 ms late.
-              EXPECT_LT(error(simulation.state(), options.impact_rules.order), 1e-2);
+              // An impact of 2 m/s is up to a step of 1 ms late, and turns the ball. Impacts that are
+              // located, and not resolved in bounded time, leave errors of second order.
+              const bool located = options.impacts == ImpactTimes::located;
+              EXPECT_LT(error(simulation.state(), options.impact_rules.order), located ? 5e-5 : 1e-2);
             });
   carom_test::note("largest error", error.largest());
 }
