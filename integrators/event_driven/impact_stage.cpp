@@ -159,8 +159,12 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
 
 void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) const {
   const std::vector<Constraint>& touching = memory_->touching;
-  std::string what = "the contact problem of an impact is not solved (" +
-                     std::string(to_string(problem.report().outcome)) + at.motion.model().driven() + ")";
+  // Solved at each bound of friction in joints, which do not come to an end.
+  const std::string why = problem.report().usable()
+                              ? "friction in joints and the forces that bound it do not settle"
+                              : std::string(to_string(problem.report().outcome));
+  std::string what =
+      "the contact problem of an impact is not solved (" + why + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
   if (options_->impact_rules.refuse_jams && touching.size() > 1) {
     what += " (impact_rules.refuse_jams is set; use one e for surfaces between which a body jams)";

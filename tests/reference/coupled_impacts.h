@@ -27,8 +27,6 @@ struct CoupledScene {
   bool turns = false;              // a body turns
 };
 
-inline carom::Vec<2> vector_of(const Json& at) { return {at[0].get<double>(), at[1].get<double>()}; }
-
 inline carom::Surface surface_of(const Json& at, const Json& law) {
   return {.friction = at.value("friction", 0.0),
           .normal_restitution = law.at("e_n").get<double>(),

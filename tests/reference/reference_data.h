@@ -4,6 +4,8 @@
 
 #include "tests/paths.h"
 
+#include <carom/core/space.h>
+
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -20,5 +22,7 @@ inline Json reference_data(const std::string& name) {
   if (!file) throw std::runtime_error("cannot read " + path);
   return Json::parse(file);
 }
+
+inline carom::Vec<2> vector_of(const Json& at) { return {at[0].get<double>(), at[1].get<double>()}; }
 
 }  // namespace carom_test
