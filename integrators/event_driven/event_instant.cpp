@@ -47,10 +47,13 @@ void EventInstant::take_contacts_before() {
   for (Index i = 0; i < before.size(); ++i) before_at[before[i].place] = i;
 }
 
-void EventInstant::find_islands() {
-  // Projections during the event move bodies by less than this.
+double EventInstant::longest_shift() const {
   constexpr double moved = 4.0;
-  const double near = moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+  return moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+}
+
+void EventInstant::find_islands() {
+  const double near = longest_shift();
   const auto is_near = [&](std::size_t pair) {
     return before_at[pair] != none || contacts[pair].gap <= near;
   };

@@ -63,6 +63,9 @@ struct CAROM_API EventInstant {
   [[nodiscard]] bool touches(std::size_t pair) const {
     return contacts[pair].gap <= touch_gap || (before_at[pair] != none && std::isfinite(contacts[pair].gap));
   }
+  /// Distance that bodies are not moved by during the event, projections included [m]: a longer way may lead
+  /// into what is not in their island.
+  [[nodiscard]] double longest_shift() const;
   /// Speed at which a pair approaches [m/s].
   [[nodiscard]] double approach(std::size_t pair) const {
     return -contacts[pair].normal_velocity(now.state.v.data());

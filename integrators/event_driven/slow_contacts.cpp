@@ -62,6 +62,8 @@ bool ContactClosing::project(std::vector<ActiveContact>& contacts, std::span<con
     active.swap(contacts);
     lost += projection.lost;
     shift += projection.shift;
+    // Rows that are almost parallel have both gaps closed far away only.
+    if (shift > at.longest_shift()) return false;
     if (projection.changed) at.update();
     for (ActiveContact& contact : contacts) contact.at = at.contacts[contact.place];
     if (add_approaching(contacts, others, at)) {
