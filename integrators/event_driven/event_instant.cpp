@@ -14,6 +14,7 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       time(at_time),
       y(y_in),
       now(memory.now),
+      acceleration_before(memory.acceleration_before),
       contacts(memory.contacts),
       before(memory.before),
       before_at(memory.before_at),
@@ -39,6 +40,13 @@ void EventInstant::update() {
       contacts[i].gap = std::numeric_limits<double>::infinity();
     }
   }
+}
+
+void EventInstant::take_accelerations_before() {
+  motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
+    std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
+              acceleration_before.begin() + v.begin);
+  });
 }
 
 void EventInstant::take_contacts_before() {

@@ -21,9 +21,11 @@ namespace carom {
 
 /// Memory of an instant, shared by clock groups: an instant at a time uses it.
 struct CAROM_API InstantMemory {
-  explicit InstantMemory(const Assembly& assembly) : now(assembly) {}
+  explicit InstantMemory(const Assembly& assembly)
+      : now(assembly), acceleration_before(now.acceleration.size()) {}
 
   MotionSample now;
+  std::vector<double> acceleration_before;
   std::vector<Constraint> contacts;
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
@@ -37,9 +39,11 @@ struct CAROM_API EventInstant {
                EventBalance& books);
 
   SmoothMotion& motion;
-  double time;                         ///< [s]
-  std::span<double> y;                 ///< state
-  MotionSample& now;                   ///< of it, without contact
+  double time;          ///< [s]
+  std::span<double> y;  ///< state
+  MotionSample& now;    ///< of it, without contact
+  /// Accelerations with the forces of contact up to the event; those without contact at a start.
+  std::vector<double>& acceleration_before;
   std::vector<Constraint>& contacts;   ///< of all pairs in it
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
   std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
@@ -55,6 +59,8 @@ struct CAROM_API EventInstant {
   /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
   /// an edge of either, or not at all.
   void update();
+  /// Takes the accelerations of the sample for those before the event.
+  void take_accelerations_before();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
   /// Finds the islands, by the contacts as they are; they stay during the event.

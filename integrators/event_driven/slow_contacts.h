@@ -13,12 +13,14 @@
 
 namespace carom {
 
-/// Speed of what touches after a fall through the rounding of gaps [m/s]. \param pairs of an island
+/// Speed of what touches after a fall through the rounding of gaps [m/s], by its loads or by the forces of
+/// contact before the event: heavy bodies on a light one throw it back harder than its own weight does.
+/// \param pairs of an island
 [[nodiscard]] CAROM_API double speed_of_rounding(std::span<const Index> pairs, const EventInstant& at);
 
-/// Contacts up to this speed are slow [m/s]: the option `capture_speed`, or more. Far from the origin bounces
-/// end in the rounding of gaps before they are as slow as the option says: each would begin a little deeper
-/// than the one before it. \param pairs of an island
+/// Contacts up to this speed are slow [m/s]: the option `capture_speed`, or more. Far from the origin, or
+/// under heavy bodies, bounces end in the rounding of gaps before they are as slow as the option says: each
+/// would begin a little deeper than the one before it. \param pairs of an island
 [[nodiscard]] CAROM_API double capture_speed(std::span<const Index> pairs, const EventInstant& at);
 
 /// Closes contacts. Keeps memory only.
