@@ -14,6 +14,7 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       time(at_time),
       y(y_in),
       now(memory.now),
+      acceleration_before(memory.acceleration_before),
       contacts(memory.contacts),
       before(memory.before),
       before_at(memory.before_at),
@@ -41,16 +42,26 @@ void EventInstant::update() {
   }
 }
 
+void EventInstant::take_accelerations_before() {
+  motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
+    std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
+              acceleration_before.begin() + v.begin);
+  });
+}
+
 void EventInstant::take_contacts_before() {
   before = motion.active().list();
   before_at.assign(motion.model().pairs.size(), none);
   for (Index i = 0; i < before.size(); ++i) before_at[before[i].place] = i;
 }
 
-void EventInstant::find_islands() {
-  // Projections during the event move bodies by less than this.
+double EventInstant::longest_shift() const {
   constexpr double moved = 4.0;
-  const double near = moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+  return moved * std::max(motion.model().options->gap_tolerance, touch_gap);
+}
+
+void EventInstant::find_islands() {
+  const double near = longest_shift();
   const auto is_near = [&](std::size_t pair) {
     return before_at[pair] != none || contacts[pair].gap <= near;
   };

@@ -21,9 +21,11 @@ namespace carom {
 
 /// Memory of an instant, shared by clock groups: an instant at a time uses it.
 struct CAROM_API InstantMemory {
-  explicit InstantMemory(const Assembly& assembly) : now(assembly) {}
+  explicit InstantMemory(const Assembly& assembly)
+      : now(assembly), acceleration_before(now.acceleration.size()) {}
 
   MotionSample now;
+  std::vector<double> acceleration_before;
   std::vector<Constraint> contacts;
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
@@ -37,9 +39,11 @@ struct CAROM_API EventInstant {
                EventBalance& books);
 
   SmoothMotion& motion;
-  double time;                         ///< [s]
-  std::span<double> y;                 ///< state
-  MotionSample& now;                   ///< of it, without contact
+  double time;          ///< [s]
+  std::span<double> y;  ///< state
+  MotionSample& now;    ///< of it, without contact
+  /// Accelerations with the forces of contact up to the event; those without contact at a start.
+  std::vector<double>& acceleration_before;
   std::vector<Constraint>& contacts;   ///< of all pairs in it
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
   std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
@@ -55,6 +59,8 @@ struct CAROM_API EventInstant {
   /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
   /// an edge of either, or not at all.
   void update();
+  /// Takes the accelerations of the sample for those before the event.
+  void take_accelerations_before();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
   /// Finds the islands, by the contacts as they are; they stay during the event.
@@ -63,6 +69,9 @@ struct CAROM_API EventInstant {
   [[nodiscard]] bool touches(std::size_t pair) const {
     return contacts[pair].gap <= touch_gap || (before_at[pair] != none && std::isfinite(contacts[pair].gap));
   }
+  /// Distance that bodies are not moved by during the event, projections included [m]: a longer way may lead
+  /// into what is not in their island.
+  [[nodiscard]] double longest_shift() const;
   /// Speed at which a pair approaches [m/s].
   [[nodiscard]] double approach(std::size_t pair) const {
     return -contacts[pair].normal_velocity(now.state.v.data());

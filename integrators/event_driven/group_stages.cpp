@@ -110,6 +110,7 @@ bool ground_jumps(const GroupParts& group, const MotionSample& now) {
 
 void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
   group.motion.sample(at.time, at.y.data(), Forces::all, at.now);
+  at.take_accelerations_before();
   // A meeting is counted where groups meet: others join at an event of one of them.
   if (event.guard != Guard::meeting) group.limits.count_event(event, at.y.data(), at.now);
   if (event.guard != Guard::meeting)

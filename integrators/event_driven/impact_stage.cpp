@@ -229,7 +229,8 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
 /// Projects the rest of the normal velocities and gaps of captured contacts away.
 void ImpactStage::close_captured(std::span<const Index> pairs, EventInstant& at) {
   // To stop one may be to move another, in almost singular positions: then it may not be stopped. And bodies
-  // that slide may have to part, however slowly, where others guide them.
+  // that slide may have to part, however slowly, where others guide them. Nor do gaps close that are open
+  // together but far from where the bodies are.
   for (const Closing closing : {Closing::with_sliding, Closing::all, Closing::pressed}) {
     list_captured(closing, pairs, at);
     if (memory_->closing.close(memory_->captured, {}, at)) return;

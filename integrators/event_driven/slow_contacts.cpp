@@ -13,7 +13,8 @@ double speed_of_rounding(std::span<const Index> pairs, const EventInstant& at) {
   for (const Index i : pairs) {
     const Constraint& contact = at.contacts[i];
     if (!at.touches(i) || contact.has_dry_friction()) continue;
-    fall = std::max(fall, std::abs(contact.normal_acceleration(at.now.acceleration.data())));
+    for (const double* acceleration : {at.now.acceleration.data(), at.acceleration_before.data()})
+      fall = std::max(fall, std::abs(contact.normal_acceleration(acceleration)));
   }
   return std::sqrt(2.0 * 4.0 * at.scales.gap_noise * fall);
 }
@@ -62,6 +63,8 @@ bool ContactClosing::project(std::vector<ActiveContact>& contacts, std::span<con
     active.swap(contacts);
     lost += projection.lost;
     shift += projection.shift;
+    // Rows that are almost parallel have both gaps closed far away only.
+    if (shift > at.longest_shift()) return false;
     if (projection.changed) at.update();
     for (ActiveContact& contact : contacts) contact.at = at.contacts[contact.place];
     if (add_approaching(contacts, others, at)) {
