@@ -30,15 +30,26 @@ private:
 /// A look at so many points together is not worth while.
 constexpr Index hardly_any = 2;
 
-/// Makes a constraint ready for the rows of a contact. That of the same contact keeps what is not of the
-/// state: to clear all of it costs as much as the rows.
-void start(const ConstraintKey& key, Constraint& out) {
-  if (out.key != key) {
-    out = {};
-    return;
-  }
+/// Clears what the rows of a contact with ground do not write, or add to: the rest is the same in all such
+/// contacts, and to clear it costs as much as the rows.
+void clear_state(Constraint& out) {
   out.drift = out.surface_velocity = out.surface_velocity_after = {};
   out.allowed_approach = 0.0;
+}
+
+/// Makes a constraint ready for the rows of a contact. That of the same contact keeps what is not of the
+/// state.
+void start(const ConstraintKey& key, Constraint& out) {
+  if (out.key == key) return clear_state(out);
+  out = {};
+}
+
+/// One more constraint, ready likewise.
+Constraint& next_of(std::vector<Constraint>& out) { return out.emplace_back(); }
+Constraint& next_of(KeptList<Constraint>& out) {
+  Constraint& next = out.next();
+  clear_state(next);
+  return next;
 }
 
 /// Distance of a centre, beyond which no gap of its point is <= `margin` [m].
@@ -47,6 +58,16 @@ double reach_of(const CentreRun& centres, double margin) {
   // No distance less its radius is missed by the rounding of this sum.
   constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
   return margin + (centres.radius + slack * (std::abs(margin) + centres.radius));
+}
+
+/// Calls f(dimension of space).
+template <class F>
+void in_dimension(const Assembly& assembly, F&& f) {
+  if (assembly.layout()->dimension() == 2) {
+    f(std::integral_constant<int, 2>{});
+  } else {
+    f(std::integral_constant<int, 3>{});
+  }
 }
 
 template <class F>
@@ -65,19 +86,15 @@ GroundContacts::GroundContacts(const Assembly& assembly)
       laws_(assembly, features_, shapes_) {}
 
 void GroundContacts::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
-  if (assembly_->layout()->dimension() == 2) {
-    find_in<2>(components, query, out);
-  } else {
-    find_in<3>(components, query, out);
-  }
+  in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
+}
+
+void GroundContacts::find(Range components, const ContactQuery& query, KeptList<Constraint>& out) const {
+  in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
 }
 
 void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
-  if (assembly_->layout()->dimension() == 2) {
-    find_of<2>(body, query, out);
-  } else {
-    find_of<3>(body, query, out);
-  }
+  in_dimension(*assembly_, [&](auto d) { find_of<d()>(body, query, out); });
 }
 
 template <int D>
@@ -135,6 +152,16 @@ void GroundContacts::for_runs(Range components, F&& f) const {
   }
 }
 
+bool GroundContacts::any_near(Range components, const ContactQuery& query) const {
+  Index others = features_.of(components).points.size();  // beside centres
+  bool any = false;
+  for_runs(components, [&](const CentreRun& run) {
+    if (run.points != none) others -= run.bodies.size();
+    any = any || shapes_near(run.bodies, run, query) != 0;
+  });
+  return any || others > 0;
+}
+
 std::vector<CentreRow> GroundContacts::centre_rows() const {
   std::vector<CentreRow> rows;
   for (const CentreRun& run : features_.centres()) {
@@ -180,9 +207,8 @@ bool GroundContacts::only_points(Range runs) const {
   return true;
 }
 
-template <int D>
-void GroundContacts::find_in(Range components, const ContactQuery& query,
-                             std::vector<Constraint>& out) const {
+template <int D, class Out>
+void GroundContacts::find_in(Range components, const ContactQuery& query, Out& out) const {
   const BodyFeatures::OfComponents own = features_.of(components);
   if (own.points.size() > hardly_any || !only_points(own.centres)) {
     return find_among<D>(components, query, out);
@@ -194,9 +220,8 @@ void GroundContacts::find_in(Range components, const ContactQuery& query,
 }
 
 /// Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
-template <int D>
-void GroundContacts::find_among(Range components, const ContactQuery& query,
-                                std::vector<Constraint>& out) const {
+template <int D, class Out>
+void GroundContacts::find_among(Range components, const ContactQuery& query, Out& out) const {
   constexpr Index many = 64, few = 8;
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
@@ -235,9 +260,9 @@ void GroundContacts::find_among(Range components, const ContactQuery& query,
   rest.before(none, add_point);
 }
 
-template <int D>
+template <int D, class Out>
 void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
-                         const ContactQuery& query, std::vector<Constraint>& out) const {
+                         const ContactQuery& query, Out& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
   const std::span<const Index> touched = laws_.touched_by(feature.material);
   for (std::size_t place = 0; place < touched.size(); ++place) {
@@ -258,7 +283,7 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
       if (!query.lasting->lasts({feature.key, shapes_.key(shape)}, distance, turning)) continue;
     }
     const GroundMotion* const after = query.after == nullptr ? nullptr : shapes_.motion(shape, *query.after);
-    Constraint& contact = out.emplace_back();
+    Constraint& contact = next_of(out);
     fill(at, shape, gap, query.state, motion, after, contact);
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
   }
@@ -292,16 +317,11 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
   const BodyFeature feature = pair.feature == none ? BodyFeature::at_centre(body, pair.body, pair.material)
                                                    : features_.points()[pair.feature];
   start(ConstraintKey{feature.key, shapes_.key(pair.ground_shape)}, out);
-  const auto with_dimension = [&]<int D>(std::integral_constant<int, D>) {
+  in_dimension(*assembly_, [&]<int D>(std::integral_constant<int, D>) {
     const PlacedFeature<D> at = place_feature<D>(body, feature, state, evaluation);
     const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());
     fill(at, pair.ground_shape, gap, state, motion, nullptr, out);
-  };
-  if (assembly_->layout()->dimension() == 2) {
-    with_dimension(std::integral_constant<int, 2>{});
-  } else {
-    with_dimension(std::integral_constant<int, 3>{});
-  }
+  });
 }
 
 void GroundContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {

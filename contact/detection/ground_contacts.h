@@ -12,6 +12,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
+#include <carom/core/numerics/kept_list.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -49,6 +50,10 @@ public:
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
   void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Likewise. \param out a list of contacts with ground alone: of each the state is written, no more
+  void find(Range components, const ContactQuery& query, KeptList<Constraint>& out) const;
+  /// False if surely find() finds none.
+  [[nodiscard]] bool any_near(Range components, const ContactQuery& query) const;
   /// All rows of centres: together they have all bodies that touch. Made at each call.
   [[nodiscard]] std::vector<CentreRow> centre_rows() const;
   /// True if these tell what may touch: all shapes that are touched off the centres are flat.
@@ -70,10 +75,11 @@ public:
                const GroundMotion* motion, Constraint& out) const;
 
 private:
-  template <int D>
-  void find_in(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
-  template <int D>
-  void find_among(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  // Out: one of the two lists that find() fills.
+  template <int D, class Out>
+  void find_in(Range components, const ContactQuery& query, Out& out) const;
+  template <int D, class Out>
+  void find_among(Range components, const ContactQuery& query, Out& out) const;
   template <int D>
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   // Places of shapes among those that a material touches, as bits; all from the last one on share its bit.
@@ -83,9 +89,9 @@ private:
     return ShapeBits{1} << std::min(place, std::size_t{63});
   }
   // Appends the contacts of one feature with some shapes.
-  template <int D>
+  template <int D, class Out>
   void add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes, const ContactQuery& query,
-           std::vector<Constraint>& out) const;
+           Out& out) const;
   // Writes a contact. \param after motion of the shape at the end of the step; may be null
   template <int D>
   void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,

@@ -46,10 +46,8 @@ public:
   void book(std::size_t contact, std::size_t first, double capture_speed, BookedWork& work) const {
     const std::span<const Constraint> constraints = problem_.constraints();
     const Constraint& at = constraints[contact];
-    if (problem_.problem().is_factored()) {
-      fetch_contact_ahead(constraints, contact + ahead);
-      result_.fetch_records(ahead);
-    }
+    if (problem_.problem().is_factored()) fetch_contact_ahead(constraints, contact + ahead);
+    result_.fetch_records(ahead);
     const double* const before = problem_.before().data() + first;
     const bool impact = before[0] < -capture_speed;
     work.impact = work.impact || impact;

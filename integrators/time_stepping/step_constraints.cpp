@@ -144,12 +144,13 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
 
 std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
                                                  const StepTrial& trial) {
-  single_.clear();
-  if (rules_.plain && rules_.parting == Parting::acts) {
-    detector_.ground().find(components, query(in, trial), single_);
-  } else {
-    find_in(in, components, trial, single_);
+  if (finds_plain()) {
+    plain_.clear();
+    detector_.ground().find(components, query(in, trial), plain_);
+    return plain_.all();
   }
+  single_.clear();
+  find_in(in, components, trial, single_);
   return single_;
 }
 

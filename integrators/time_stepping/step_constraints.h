@@ -8,6 +8,7 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/numerics/kept_list.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
@@ -60,7 +61,11 @@ public:
     rules_.parting = parting;
     remember(in, in.last_step);
   }
-  /// Finds the contacts of some components, after begin(), or of such an island. Valid until the next call.
+  /// False if surely some components have no contact, after begin(), or those of such an island.
+  [[nodiscard]] bool may_touch(const StepInput& in, Range components, const StepTrial& trial) const {
+    return !finds_plain() || detector_.ground().any_near(components, query(in, trial));
+  }
+  /// Finds the contacts of some components, likewise. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
   /// Finds the constraints of an island of one component as they were at the start, for another iteration.
@@ -69,6 +74,7 @@ public:
 private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
+  [[nodiscard]] bool finds_plain() const { return rules_.plain && rules_.parting == Parting::acts; }
   [[nodiscard]] bool goes_in_parts(Range batch) const {
     return rules_.by_part && batch.size() > rules_.part_size;
   }
@@ -99,6 +105,7 @@ private:
   BodyContactSearch search_;
   std::vector<Constraint> constraints_, again_, with_rolling_;
   std::vector<Constraint> single_;   // those that join no components, or of a part of a batch
+  KeptList<Constraint> plain_;       // of a part of a batch, where all are plain
   std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written
   std::vector<Index> sources_;  // of the same: place among those of two bodies, or behind them in single_
   StepIslands islands_;

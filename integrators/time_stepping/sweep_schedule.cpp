@@ -85,7 +85,8 @@ void SweepSchedule::improve(const SweepStages& stages) const {
   for_blocks(stages, [&](const Block& block, Index) { stages.improve(block); });
 }
 
-void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask after) const {
+void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask after,
+                        BodyQuestion touch) const {
   const Range all = stages.bodies();
   constexpr Index size = BlockTable::block_size;
   const Index parts = (all.size() + size - 1) / size;
@@ -95,12 +96,13 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
   const Range v{components[stages.components.begin].v.begin, components[stages.components.end - 1].v.end};
   const bool in_pieces = before && threads_ == 1;
   const auto move_pieces = [&](Range some) {
-    for (Index first = some.begin; first < some.end; first += piece_size) {
-      const Range piece{first, std::min(first + piece_size, some.end)};
-      before(piece);
-      stages.move(piece);
-      after(piece);
-    }
+    for_pieces(some, piece_size, [&](Range large) {
+      for_pieces(large, touch(large) ? touching_size : piece_size, [&](Range piece) {
+        before(piece);
+        stages.move(piece);
+        after(piece);
+      });
+    });
   };
   const auto run_part = [&](Range some, Range velocities, Index part) {
     if (any_iterated_) stages.load(velocities);

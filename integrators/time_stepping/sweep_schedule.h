@@ -59,12 +59,25 @@ public:
   void improve(const SweepStages& stages) const;
   /// A task for some bodies, called for one range after the other.
   using BodyTask = FunctionRef<void(Range bodies)>;
-  /// Bodies whose contacts are found, solved and booked together, while their problems are at hand.
+  /// A question about some bodies.
+  using BodyQuestion = FunctionRef<bool(Range bodies)>;
+  /// Bodies that are looked at together: does any touch?
   static constexpr Index piece_size = 64;
+  /// Bodies of which some do, whose contacts are found, solved and booked together: their problems fit into
+  /// the nearest cache.
+  static constexpr Index touching_size = 8;
+  /// Calls f(piece) for pieces of a range, one after the other.
+  template <class F>
+  static void for_pieces(Range all, Index size, F&& f) {
+    for (Index first = all.begin; first < all.end; first += size) {
+      f(Range{first, std::min(first + size, all.end)});
+    }
+  }
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
   /// before and after some bodies move, whose numbers are at hand meanwhile: a piece, or a few parts of each
-  /// thread; or nothing
-  void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {}) const;
+  /// thread; or nothing \param touch false if surely none of them touches: then they are a large piece
+  void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {},
+           BodyQuestion touch = {}) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes);
   /// One sweep, block by block, and its loads. \param guessing whether it begins with a guess

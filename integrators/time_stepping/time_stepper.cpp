@@ -1,9 +1,9 @@
 // Problem: one step t_j -> t_{j+1} (Johansson 1999, section 4). Stages are named functions of a range and
 // hand values on; `in` never changes, whatever is thrown, and the trial of a step that fails is asked for the
-// cause. From here: the iteration is island_iteration.cpp, the law of contact and impact
-// contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those that it calls.
+// cause. From here: steps of one sweep are constant_steps.cpp, the iteration is island_iteration.cpp, the law
+// of contact and impact contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those
+// that it calls.
 
-#include <carom/integrators/time_stepping/located_account.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
@@ -113,36 +113,6 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   return balance_.finish(in);  // works of what acted, records
 }
 
-/// The same stages of bodies that nothing couples, over ground at rest. Contacts of some are found, solved
-/// and booked while they and their problems, which are large, are at hand.
-StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
-  StepTrial& trial = parts_.trial;
-  balance_.begin(in);
-  capped_.begin();
-  if (trial.needs.start_rotations) evaluate_positions(in.assembly, in.start.view(), trial.at_start);
-  parts_.constraints.begin(in);
-  StepIsland part;
-  for (LooseBatch& batch : uncoupled_->batches()) {
-    trial.account.swept = false;
-    for (const LooseBodies& piece : batch.pieces) {
-      part.constraints = parts_.constraints.find_part(in, piece.components, trial);
-      const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, trial);
-      if (failed != nullptr) fail_contact(*failed, in);
-      uncoupled_->move(in, piece);
-      for (const IslandProblem& problem : parts_.contacts.problems()) {
-        book_contact_problem(problem, trial.end.v.data(), in.end_time, in);
-      }
-    }
-    trial.account.swept = true;
-    uncoupled_->account(in, batch);
-    const Range components = batch.all.components;
-    if (!balance_.book_couplings(in, components.begin, trial)) fail_account(in, components);
-  }
-  balance_.report().sweeps = 1;
-  balance_.report().iteration = uncoupled_->iteration();
-  return balance_.finish(in);
-}
-
 void TimeStepper::advance_all(const StepInput& in) {
   if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
@@ -223,54 +193,12 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   throw SolverError(*failed);
 }
 
-/// The step whose loads at its end are those at its start, of which none is dissipative or external.
-void TimeStepper::advance_under_constant_loads(const StepIsland& island, const StepInput& in) {
-  parts_.trial.account.swept = false;
-  parts_.located.clear();
-  parts_.trial.jumps.on = false;
-  if (parts_.constraints.finds_in_parts(island)) return advance_part_by_part(island, in);
-  const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial);
-  if (failed != nullptr) fail_contact(*failed, in);
-  for (const Range components : island.batches) {
-    parts_.schedule.run(
-        ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial, flown_ == Flight::moved});
-    parts_.trial.account.swept = true;
-    if (parts_.located.on()) locate_under_constant_loads(components, island, in, parts_);
-    if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
-  }
-  book_contacts(island, in);
-  if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
-}
-
 void TimeStepper::fail_account(const StepInput& in, Range components) {
   parts_.errors(in, components.begin).fail_account(components);
 }
 
 void TimeStepper::fail_contact(const IslandProblem& problem, const StepInput& in) {
   parts_.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
-}
-
-/// Likewise of a batch of many bodies: contacts of some are found, solved and booked while they and their
-/// problems, which are large, are at hand.
-void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput& in) {
-  const Range components = island.batches.front();
-  const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial};
-  StepIsland part;
-  const auto react = [&](Range bodies) {
-    // Each component is one body.
-    const Index begin = components.begin + (bodies.begin - stages.bodies().begin);
-    part.components = island.components.subspan(begin - components.begin, bodies.size());
-    part.constraints = parts_.constraints.find_part(in, {begin, begin + bodies.size()}, parts_.trial);
-    parts_.trial.account.swept = false;
-    const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, parts_.trial);
-    if (failed != nullptr) fail_contact(*failed, in);
-  };
-  const auto book = [&](Range) {
-    parts_.trial.account.swept = true;
-    book_contacts(part, in);
-  };
-  parts_.schedule.run(stages, react, book);
-  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
 }
 
 /// Books the island, and moves its bodies out of ground shapes where that is asked for.

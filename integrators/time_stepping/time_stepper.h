@@ -60,6 +60,7 @@ public:
 private:
   [[nodiscard]] StepResult& make_step(const StepInput& in);
   [[nodiscard]] StepResult& make_uncoupled_step(const StepInput& in);
+  void advance_loose(std::span<const LooseBodies> pieces, const StepInput& in);
   void step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
   [[nodiscard]] bool strike(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);

@@ -96,9 +96,11 @@ void UncoupledStep::add_batch(Range components) {
   LooseBatch batch{.end = {assembly, trial.end.view(), trial.at_end, component, together},
                    .v = {all[component].v.begin, all[components.end - 1].v.end},
                    .all = loose(components)};
-  for (Index first = component; first < components.end; first += SweepSchedule::piece_size) {
-    batch.pieces.push_back(loose({first, std::min(first + SweepSchedule::piece_size, components.end)}));
-  }
+  SweepSchedule::for_pieces(components, SweepSchedule::piece_size, [&](Range some) {
+    LoosePiece& piece = batch.pieces.emplace_back(LoosePiece{.all = loose(some)});
+    SweepSchedule::for_pieces(some, SweepSchedule::touching_size,
+                              [&](Range few) { piece.parts.push_back(loose(few)); });
+  });
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
     const ForceKind& elements = *assembly.force_kinds()[kind];
     const Range range = assembly.elements(component, kind);

@@ -28,6 +28,13 @@ struct LooseBodies {
   BodyMasses masses = {};
 };
 
+/// Some of them, that are looked at together: does any touch? If so they go by parts, whose contacts are
+/// found, solved and booked at once.
+struct LoosePiece {
+  LooseBodies all = {};
+  std::vector<LooseBodies> parts = {};
+};
+
 /// A batch of them, and the potentials of what acts on them. It follows from the model.
 struct LooseBatch {
   /// Elements of a kind, and what their energy counts as.
@@ -39,7 +46,7 @@ struct LooseBatch {
   EvaluationContext end;  ///< at which potentials are asked for: the end of a step
   Range v;                ///< velocities
   LooseBodies all = {};
-  std::vector<LooseBodies> pieces = {};  ///< of `all`: whose contacts are found, solved and booked at once
+  std::vector<LoosePiece> pieces = {};  ///< of `all`
   std::vector<Potential> potentials = {};
 };
 

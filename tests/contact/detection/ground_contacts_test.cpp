@@ -115,6 +115,47 @@ TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
   EXPECT_GT(opened, 10U);
 }
 
+// A list that is kept holds contacts of other bodies, with other rows, before.
+TEST(GroundContacts, FindIntoAKeptListWhatTheyFindAnew) {
+  carom_test::Random random(4205);
+  KeptList<Constraint> kept;
+  int nothing_near = 0, several = 0;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
+    const GroundContacts contacts(model.assembly);
+    const GroundPlaces places;
+    for (const double margin : {-0.9, 0.0, infinity}) {
+      const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, margin, nullptr};
+      for (Index first = 0; first < 90; first += 3) {
+        std::vector<Constraint> anew;
+        contacts.find({first, first + 3}, query, anew);
+        kept.clear();
+        contacts.find({first, first + 3}, query, kept);
+        if (!contacts.any_near({first, first + 3}, query)) {
+          EXPECT_TRUE(anew.empty());
+          ++nothing_near;
+        }
+        several += anew.size() > 1 ? 1 : 0;
+        ASSERT_EQ(kept.size(), anew.size());
+        for (std::size_t i = 0; i < anew.size(); ++i) {
+          const Constraint &a = kept.all()[i], &b = anew[i];
+          EXPECT_EQ(a.key, b.key);
+          EXPECT_EQ(a.gap, b.gap);
+          EXPECT_EQ(a.rows, b.rows);
+          EXPECT_EQ(a.body(), b.body());
+          ASSERT_EQ(a.columns(), b.columns());
+          for (int k = 0; k < a.rows * a.columns(); ++k) EXPECT_EQ(a.row(0)[k], b.row(0)[k]);
+          EXPECT_EQ(a.drift, b.drift);
+          EXPECT_EQ(a.friction, b.friction);
+          EXPECT_EQ(a.law.normal_restitution, b.law.normal_restitution);
+        }
+      }
+    }
+  }
+  EXPECT_GT(nothing_near, 10);
+  EXPECT_GT(several, 100);
+}
+
 TEST(GroundContacts, WithoutGroundNothingTouches) {
   System system;
   system.add(Particle{.mass = 1.0});

@@ -166,6 +166,38 @@ INSTANTIATE_TEST_SUITE_P(Iterations, UncoupledStepBits,
                                                           Iteration::anderson),
                                           testing::Values(ImpactTimes::at_step_start, ImpactTimes::located)));
 
+// Of many bodies those that stand far from all others that touch are taken in large pieces. 700 are more than
+// the short path takes.
+TEST(UncoupledStep, OfManyBodiesSomeTouchInSomePieces) {
+  for (const int bodies : {100, 700}) {
+    const auto many = [&](Path path) {
+      System system = scene(path);
+      for (int i = 0; i < bodies; ++i) {
+        const bool falls = i % 70 == 5;
+        const BodyId body = system.add(RigidBody{.mass = disc(2.0, 0.1),
+                                                 .position = {0.3 * i, falls ? 0.1 + 1e-4 * i : 50.0},
+                                                 .velocity = {1.0, 0.5},
+                                                 .spin = 0.1 * i});
+        system.add(Disc{.body = body, .radius = 0.1});
+      }
+      return system;
+    };
+    const TimeStepping mode{.step = 1e-3};
+    Simulation a(many(Path::short_one), mode), b(many(Path::usual), mode);
+    std::size_t contacts = 0;
+    for (int i = 0; i < 250 && !HasFailure(); ++i) {
+      const StepReport &of_a = a.step(), &of_b = b.step();
+      expect_same(of_a, of_b);
+      expect_same(a.statistics(), b.statistics());
+      EXPECT_EQ(a.state().q, b.state().q);
+      EXPECT_EQ(a.state().v, b.state().v);
+      EXPECT_EQ(a.energy().save(), b.energy().save());
+      contacts += of_a.contacts.size();
+    }
+    EXPECT_GT(contacts, 100U);
+  }
+}
+
 // Records stand where those of other contacts stood in the step before: nothing of these is left in them.
 // Runs that begin with the step have no step before.
 TEST(UncoupledStep, RecordsHaveNothingOfTheStepBefore) {
