@@ -6,6 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Without, ccache keeps nothing that is compiled with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
+# Compilers know a header that is precompiled by all of its text.
+export CCACHE_COMMENTS=true
 
 scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 venv="$PWD/build/python-test"

@@ -8,6 +8,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Without, ccache keeps nothing that is compiled with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
+# Compilers know a header that is precompiled by all of its text.
+export CCACHE_COMMENTS=true
 
 scripts/setup.sh --python
 cmake --preset release >/dev/null

@@ -18,6 +18,8 @@ log="build/$preset/tests.log"
 
 # Without, ccache keeps nothing that is compiled with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
+# Compilers know a header that is precompiled by all of its text.
+export CCACHE_COMMENTS=true
 
 scripts/setup.sh
 cmake --preset "$preset" -DCAROM_FAST_TESTS="$fast"

@@ -9,6 +9,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 export CCACHE_SLOPPINESS=pch_defines,time_macros
+# Compilers know a header that is precompiled by all of its text.
+export CCACHE_COMMENTS=true
 scripts/setup.sh --python
 
 pythons=("$@")
