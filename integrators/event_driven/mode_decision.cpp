@@ -107,7 +107,14 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
     name_cause(problem_, taking_part_, slips_, candidates);
     return report.outcome == Outcome::no_solution ? Decision::impossible : Decision::failed;
   }
-  size_ = std::max(size_, size_by_rounding(problem_));
+  const double by_rounding = size_by_rounding(problem_);
+  // Contacts that jam may be given forces of any size: those whose rounding alone is larger than the
+  // accelerations without contact satisfy the certificate, and say nothing.
+  if (size_ > 0.0 && SlipDirections::no_acceleration * by_rounding > size_) {
+    name_cause(problem_, taking_part_, slips_, candidates);
+    return Decision::failed;
+  }
+  size_ = std::max(size_, by_rounding);
   Decision decision = Decision::made;
   if (!follow) read_modes(candidates, problem_.impulses());
   if (report.outcome == Outcome::several_solutions || finds_several(candidates)) {

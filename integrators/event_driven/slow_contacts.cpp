@@ -56,15 +56,19 @@ bool ContactClosing::project(std::vector<ActiveContact>& contacts, std::span<con
   const auto is_closed = [&](const ActiveContact& contact) {
     return std::abs(contact.at.normal_velocity(at.velocities())) <= at.scales.speed_noise;
   };
-  double lost = 0.0, shift = 0.0;
+  // Rows that are almost parallel have both gaps closed far away only. Deep gaps, as steps in time leave at a
+  // start, are farther than what touches at an event.
+  constexpr double most_of_gap = 16.0;
+  double lost = 0.0, shift = 0.0, longest = at.longest_shift();
+  for (const ActiveContact& contact : contacts)
+    longest = std::max(longest, most_of_gap * std::abs(contact.at.gap));
   for (int i = 0; i < most_projections;) {
     active.swap(contacts);
     const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
     active.swap(contacts);
     lost += projection.lost;
     shift += projection.shift;
-    // Rows that are almost parallel have both gaps closed far away only.
-    if (shift > at.longest_shift()) return false;
+    if (shift > longest) return false;
     if (projection.changed) at.update();
     for (ActiveContact& contact : contacts) contact.at = at.contacts[contact.place];
     if (add_approaching(contacts, others, at)) {

@@ -275,6 +275,15 @@ TEST(EventPilesLong, JamsOfWhatSlidesHardlyFasterThanRoundingAreFound) {
   EXPECT_EQ(runs.failed, 0);
 }
 
+// A disc between two walls may be given forces of any size: an answer of 1e39 N was taken, beside which all
+// accelerations are rounding, and modes without forces that press; their event came again at the same time.
+TEST(EventPiles, ForcesThatSayNothingAreNoAnswer) {
+  Runs runs;
+  run({8, true, 1.2, 0.6, 57}, 1.3, runs);
+  run({10, true, 1.2, 0.6, 45}, 0.75, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
