@@ -94,23 +94,21 @@ void GroundContacts::find(Range components, const ContactQuery& query, KeptList<
 }
 
 void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
-  in_dimension(*assembly_, [&](auto d) { find_of<d()>(body, query, out); });
-}
-
-template <int D>
-void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
   const Index component = assembly_->component_of(body);
   const BodySlot slot = assembly_->layout()->bodies()[body];
+  const auto add_point = [&](const BodyFeature& point) {
+    in_dimension(*assembly_, [&](auto d) { add<d()>(slot, point, all_shapes, query, out); });
+  };
   for_runs({component, component + 1}, [&](const CentreRun& run) {
     if (run.points != none || body < run.bodies.begin || body >= run.bodies.end) return;
-    add<D>(slot, BodyFeature::at_centre(slot, body, run.material), all_shapes, query, out);
+    add_point(BodyFeature::at_centre(slot, body, run.material));
   });
   const Range own = features_.of({component, component + 1}).points;
   const auto points = features_.points().begin();
   const auto before = [](const BodyFeature& point, Index of) { return point.body < of; };
   for (auto point = std::lower_bound(points + own.begin, points + own.end, body, before);
        point != points + own.end && point->body == body; ++point) {
-    add<D>(slot, *point, all_shapes, query, out);
+    add_point(*point);
   }
 }
 

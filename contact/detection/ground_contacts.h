@@ -9,10 +9,10 @@
 #include <carom/contact/detection/contact_rows.h>
 #include <carom/contact/detection/ground_laws.h>
 #include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/kept_list.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
-#include <carom/core/numerics/kept_list.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -80,8 +80,6 @@ private:
   void find_in(Range components, const ContactQuery& query, Out& out) const;
   template <int D, class Out>
   void find_among(Range components, const ContactQuery& query, Out& out) const;
-  template <int D>
-  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   // Places of shapes among those that a material touches, as bits; all from the last one on share its bit.
   using ShapeBits = std::uint64_t;
   static constexpr ShapeBits all_shapes = ~ShapeBits{0};

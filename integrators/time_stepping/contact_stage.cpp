@@ -69,14 +69,8 @@ void ContactStage::begin(const StepIsland& island) {
 
 /// One more problem, to be stated.
 IslandProblem& ContactStage::next_problem() {
-  const std::size_t next = first_ + in_use_++;
-  if (next >= problems_.size()) make_problems(next + 1);
-  return problems_[next];
-}
-
-/// Seldom asked: most steps have no more problems than one before. \param count of all
-void ContactStage::make_problems(std::size_t count) {
-  while (problems_.size() < count) problems_.emplace_back(of_problems_);
+  while (first_ + in_use_ >= problems_.size()) problems_.emplace_back(of_problems_);
+  return problems_[first_ + in_use_++];
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,

@@ -73,7 +73,6 @@ private:
   };
   void begin(const StepIsland& island);
   IslandProblem& next_problem();
-  void make_problems(std::size_t count);
   template <class F>
   [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
   void list_struck(std::span<const Constraint> constraints);

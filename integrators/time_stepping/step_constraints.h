@@ -6,9 +6,9 @@
 /// components.
 
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/kept_list.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/core/numerics/kept_list.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>

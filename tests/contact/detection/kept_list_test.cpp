@@ -1,4 +1,4 @@
-#include <carom/core/numerics/kept_list.h>
+#include <carom/contact/detection/kept_list.h>
 
 #include <gtest/gtest.h>
 
