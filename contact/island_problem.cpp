@@ -25,12 +25,6 @@ namespace carom {
 
 namespace {
 
-// Whether a problem has the form of one planar contact, so that only its numbers need to be filled in.
-bool is_one_planar_contact(const ContactProblem& problem) {
-  return problem.rows() == 2 && problem.groups().size() == 1 &&
-         problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
-}
-
 /// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
 void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
   set.kind = SetKind::bounded_interval;
@@ -93,7 +87,7 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = jammed_ = false;
   answer_.response.clear();
-  if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
+  if (constraints.size() != 1 || constraints[0].rows != 2 || !problem_.is_one_planar_contact()) {
     return build_any(velocity_before, response, start);
   }
   // The hot path: one planar contact after another, so that only its numbers need to be filled in.

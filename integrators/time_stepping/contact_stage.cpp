@@ -12,21 +12,22 @@ namespace {
 /// The impulses of the step before, by key, are where sweeps start.
 class LastImpulses {
 public:
-  LastImpulses(const ContactHistory& before, double step) : before_(before), longer_(step / before.step) {}
+  LastImpulses(const ContactHistory& before, double step) : before_(before), step_(step) {}
   /// \param impulses out, by row of the constraints
   void operator()(std::span<const Constraint> constraints, double* impulses) {
+    const double longer = step_ / before_.step;
     for (const Constraint& constraint : constraints) {
       const Index known = before_.contacts.find(constraint.key, next_);
       if (known != none) next_ = known + 1;
       for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-        *impulses++ = known == none ? 0.0 : longer_ * before_.impulses[known][row];
+        *impulses++ = known == none ? 0.0 : longer * before_.impulses[known][row];
       }
     }
   }
 
 private:
   const ContactHistory& before_;
-  double longer_;
+  double step_;
   Index next_ = 0;  // most contacts are those of the step before, in the same order
 };
 
@@ -307,17 +308,11 @@ const IslandProblem* ContactStage::first_unsolved() const {
 }
 
 void ContactStage::add_statistics(ChainStatistics& sum) {
-  for (SolverChain& chain : chains_) {
-    if (chain.statistics().problems == 0) continue;
-    sum += chain.statistics();
-    chain.reset_statistics();
-  }
+  for (SolverChain& chain : chains_) chain.take_statistics(sum);
 }
 
 void ContactStage::forget_statistics() {
-  for (SolverChain& chain : chains_) {
-    if (chain.statistics().problems > 0) chain.reset_statistics();
-  }
+  for (SolverChain& chain : chains_) chain.reset_statistics();
 }
 
 }  // namespace carom
