@@ -101,7 +101,10 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     before_[row] = along[row] - contact.surface_velocity[row];
     answer_.impulse[row] = 0.0;
   }
-  if (response != nullptr) respond(*response);
+  if (response == nullptr) return;
+  if (delassus_.build_of_one_contact(directions_, *response, problem_.matrix().data())) return;
+  delassus_.build(directions_, *response);
+  delassus_.write_symmetric(problem_.matrix().data());
 }
 
 void IslandProblem::build_any(const double* velocity_before, BodyResponse* response, SweepStart start) {
@@ -232,7 +235,9 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
     return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, scratch_.given,
                                       scratch_.slot_velocity, problem_);
   }
-  set_free_velocity_of_rows(constraints_, velocity_free, {before_, restitution_}, problem_);
+  const RowsBefore before{before_, restitution_};
+  if (set_free_velocity_of_contact(constraints_, velocity_free, before, problem_)) return;
+  set_free_velocity_of_rows(constraints_, velocity_free, before, problem_);
 }
 
 void IslandProblem::set_velocity(const double* velocity) {
@@ -258,6 +263,7 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
   } else {
     chain.solve(problem_, answer_);
   }
+  if (answer_.report.usable() && modes_.empty()) return answer_.report;  // nearly always
   if (options_.plastic_jams && !answer_.report.usable() &&
       remove_restitution(before_, restitution_, scratch_.given, problem_)) {
     jammed_ = true;
