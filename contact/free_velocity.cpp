@@ -20,26 +20,12 @@ namespace {
   return std::abs(number) <= rounding * constraint.speed(row, velocity_free) + least ? 0.0 : number;
 }
 
-/// True if both rows of a problem of one planar contact can be moved.
-bool moves_both_rows(const ContactProblem& problem) {
-  return problem.diagonal(0) != 0.0 && problem.diagonal(1) != 0.0;
-}
-
 }  // namespace
 
 void set_free_velocity_of_rows(std::span<const Constraint> constraints, const double* velocity_free,
                                const RowsBefore& before, ContactProblem& problem) {
   const double *const gamma = before.velocity.data(), *const e = before.restitution.data();
   double* const b = problem.vector().data();
-  if (constraints.size() == 1 && constraints.front().rows == 2 && moves_both_rows(problem)) {
-    // The hot path, as below without its cases.
-    const Constraint& contact = constraints.front();
-    const std::array<double, 2> along = times_both_rows(contact, velocity_free);
-    b[0] = along[0] - contact.surface_velocity_after[0] + e[0] * gamma[0];
-    b[1] = along[1] - contact.surface_velocity_after[1] + e[1] * gamma[1];
-    if (contact.allowed_approach > 0.0) b[0] += contact.allowed_approach;
-    return;
-  }
   std::size_t row = 0;
   for (const Constraint& constraint : constraints) {
     const std::array<double, 3> after = velocities_after(constraint, velocity_free);

@@ -4,10 +4,12 @@
 /// The vector b of a contact problem: velocities along the rows that a step or impact would end with if no
 /// constraint acted, against those of the surfaces then, and the restitution (docs/method.md, section 2).
 
+#include <carom/contact/contact_velocity.h>
 #include <carom/contact/delassus.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/constraint.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,22 @@ struct RowsBefore {
   std::span<const double> restitution;  ///< e
 };
 
+/// b of one contact in the plane, both of whose rows can be moved: the usual problem. False of any other.
+/// \param velocity_free of all bodies
+[[nodiscard]] inline bool set_free_velocity_of_contact(std::span<const Constraint> constraints,
+                                                       const double* velocity_free, const RowsBefore& before,
+                                                       ContactProblem& problem) {
+  const bool is_one = constraints.size() == 1 && constraints.front().rows == 2;
+  if (!is_one || problem.diagonal(0) == 0.0 || problem.diagonal(1) == 0.0) return false;
+  const Constraint& contact = constraints.front();
+  const std::array<double, 2> along = times_both_rows(contact, velocity_free);
+  const double *const gamma = before.velocity.data(), *const e = before.restitution.data();
+  double* const b = problem.vector().data();
+  b[0] = along[0] - contact.surface_velocity_after[0] + e[0] * gamma[0];
+  b[1] = along[1] - contact.surface_velocity_after[1] + e[1] * gamma[1];
+  if (contact.allowed_approach > 0.0) b[0] += contact.allowed_approach;
+  return true;
+}
 /// b of a problem whose W is made. \param velocity_free of all bodies
 void set_free_velocity_of_rows(std::span<const Constraint> constraints, const double* velocity_free,
                                const RowsBefore& before, ContactProblem& problem);

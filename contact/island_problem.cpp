@@ -25,12 +25,6 @@ namespace carom {
 
 namespace {
 
-// Whether a problem has the form of one planar contact, so that only its numbers need to be filled in.
-bool is_one_planar_contact(const ContactProblem& problem) {
-  return problem.rows() == 2 && problem.groups().size() == 1 &&
-         problem.sets()[0].kind == SetKind::half_line && problem.sets()[1].kind == SetKind::bounded_interval;
-}
-
 /// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
 void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
   set.kind = SetKind::bounded_interval;
@@ -93,7 +87,7 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = jammed_ = false;
   answer_.response.clear();
-  if (constraints.size() != 1 || constraints[0].rows != 2 || !is_one_planar_contact(problem_)) {
+  if (constraints.size() != 1 || constraints[0].rows != 2 || !problem_.is_one_planar_contact()) {
     return build_any(velocity_before, response, start);
   }
   // The hot path: one planar contact after another, so that only its numbers need to be filled in.
@@ -107,7 +101,10 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     before_[row] = along[row] - contact.surface_velocity[row];
     answer_.impulse[row] = 0.0;
   }
-  if (response != nullptr) respond(*response);
+  if (response == nullptr) return;
+  if (delassus_.build_of_one_contact(directions_, *response, problem_.matrix().data())) return;
+  delassus_.build(directions_, *response);
+  delassus_.write_symmetric(problem_.matrix().data());
 }
 
 void IslandProblem::build_any(const double* velocity_before, BodyResponse* response, SweepStart start) {
@@ -238,7 +235,9 @@ void IslandProblem::set_free_velocity(const double* velocity_free) {
     return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, scratch_.given,
                                       scratch_.slot_velocity, problem_);
   }
-  set_free_velocity_of_rows(constraints_, velocity_free, {before_, restitution_}, problem_);
+  const RowsBefore before{before_, restitution_};
+  if (set_free_velocity_of_contact(constraints_, velocity_free, before, problem_)) return;
+  set_free_velocity_of_rows(constraints_, velocity_free, before, problem_);
 }
 
 void IslandProblem::set_velocity(const double* velocity) {
@@ -264,6 +263,7 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
   } else {
     chain.solve(problem_, answer_);
   }
+  if (answer_.report.usable() && modes_.empty()) return answer_.report;  // nearly always
   if (options_.plastic_jams && !answer_.report.usable() &&
       remove_restitution(before_, restitution_, scratch_.given, problem_)) {
     jammed_ = true;

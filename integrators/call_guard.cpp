@@ -24,13 +24,14 @@ namespace {
 
 }  // namespace
 
-void CallGuard::demand(std::string_view call, Need need) const {
+/// A call from within some function.
+void CallGuard::demand_within(std::string_view call, Need need) const {
   const bool fits = [&] {
     switch (need) {
       case Need::outside:
-        return caller_ == Caller::nobody;
+        return false;
       case Need::no_reader:
-        return caller_ == Caller::nobody || caller_ == Caller::action;
+        return caller_ == Caller::action;
       case Need::no_step:
         break;
     }

@@ -46,9 +46,13 @@ public:
   };
 
   /// Throws ModelError naming the call and the function that made it, unless it may come from there.
-  void demand(std::string_view call, Need need) const;
+  void demand(std::string_view call, Need need) const {
+    if (caller_ != Caller::nobody) demand_within(call, need);  // every call may come from outside
+  }
 
 private:
+  void demand_within(std::string_view call, Need need) const;
+
   Caller caller_ = Caller::nobody;
 };
 

@@ -10,28 +10,6 @@
 
 namespace carom {
 
-namespace {
-
-/// An end of a step this close to a wanted time, relative to the step, is that time.
-constexpr double snap = 1e-9;
-
-}  // namespace
-
-double StepGrid::length() const {
-  const auto* options = std::get_if<TimeStepping>(mode_);
-  return options ? options->step : std::get<EventDriven>(*mode_).interval;
-}
-
-double StepGrid::closeness(double time) const {
-  if (const auto* options = std::get_if<TimeStepping>(mode_)) return snap * options->step;
-  // Components can go to any time; only the rounding of k intervals is not to be told apart.
-  return 8.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(time));
-}
-
-double StepGrid::next(const Companion& companion) const {
-  return companion.grid_start + static_cast<double>(companion.grid_steps + 1) * length();
-}
-
 void StepGrid::skip_to(Companion& companion, double time) const {
   companion.grid_steps = std::llround((time - companion.grid_start) / length());
   match(companion, time);
@@ -44,12 +22,10 @@ void StepGrid::match(Companion& companion, double time) const {
   if (!(std::abs(present - time) <= closeness(time))) restart_grid(companion, time);
 }
 
-void StepGrid::demand_times(const char* call, double time, const Companion& companion, double now) const {
-  const double shortest = shortest_step_at(time);
+void StepGrid::refuse_times(const char* call, double time, const Companion& companion, double now) const {
+  const double shortest = shortest_step_at(time), longest = this->longest();
   const auto* const stepping = std::get_if<TimeStepping>(mode_);
   const bool controlled = stepping != nullptr && stepping->control;
-  const double longest = controlled ? stepping->control->largest : length();
-  if (longest >= shortest && companion.rhythms.empty()) return;  // asked before every step
   const auto refuse = [&](const std::string& quantity, double length, double allowed) {
     throw ModelError(std::string(call) + ": " + quantity + " is " + to_text(length) +
                      " s; allowed: at least " + to_text(allowed) +
@@ -87,12 +63,6 @@ void skip_events(Companion& companion, double time) {
     const double passed = std::floor((time - rhythm.start) / rhythm.interval);
     rhythm.fired = std::max<std::int64_t>(0, static_cast<std::int64_t>(passed));
   }
-}
-
-double next_due(const Companion& companion) {
-  double next = std::numeric_limits<double>::infinity();
-  for (const Rhythm& rhythm : companion.rhythms) next = std::min(next, rhythm.due());
-  return next;
 }
 
 }  // namespace carom

@@ -37,6 +37,15 @@ template <int D>
 double GravityKind<D>::potential(const EvaluationContext& at, Range elements) const {
   const Range bodies = at.bodies.empty() ? at.assembly.components()[at.component].bodies : at.bodies;
   CompensatedSum sum;
+  if (bodies.size() == 1) {  // which a step of one body asks for each time: without a walk over kinds
+    const BodySlot body = at.assembly.layout()->bodies()[bodies.begin];
+    const BodyKind& kind = *at.assembly.body_kinds()[body.kind];
+    for (Index element = elements.begin; element < elements.end; ++element) {
+      const double* const g = parts_[element].acceleration.data();
+      sum.add(kind.weight_potential({body.slot, body.slot + 1}, g, at.state.q + body.q));
+    }
+    return sum.value();
+  }
   for (Index element = elements.begin; element < elements.end; ++element) {
     const double* const g = parts_[element].acceleration.data();
     at.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index q, Index, Index) {

@@ -26,19 +26,6 @@ double ground_turning(const PlacedFeature<2>& at, const StateView& state, const 
 }  // namespace
 
 template <int D>
-PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature, const StateView& state,
-                               const Evaluation& evaluation) {
-  Vec<D> arm = Vec<D>::Zero();
-  if constexpr (Space<D>::has_orientation) {
-    if (body.rotation != none) {
-      arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
-                             Vec<D>(Eigen::Map<const Vec<D>>(feature.centre.data())));
-    }
-  }
-  return {body, feature, arm, Eigen::Map<const Vec<D>>(state.q + body.q) + arm};
-}
-
-template <int D>
 void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& state, Constraint& out) {
   const BodySlot& body = at.body;
   out.clear_bodies();
@@ -121,10 +108,6 @@ double turning_bound(const PlacedFeature<D>& at, const StateView& state, const G
   return rate;
 }
 
-template PlacedFeature<2> place_feature<2>(const BodySlot&, const BodyFeature&, const StateView&,
-                                           const Evaluation&);
-template PlacedFeature<3> place_feature<3>(const BodySlot&, const BodyFeature&, const StateView&,
-                                           const Evaluation&);
 template void fill_rows<2>(const PlacedFeature<2>&, const Gap&, const StateView&, Constraint&);
 template void fill_rows<3>(const PlacedFeature<3>&, const Gap&, const StateView&, Constraint&);
 template double turning_bound<2>(const PlacedFeature<2>&, const StateView&, const GroundMotion*, double);

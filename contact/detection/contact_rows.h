@@ -27,8 +27,17 @@ struct PlacedFeature {
 
 /// Places a feature. The position group of `evaluation` must be up to date.
 template <int D>
-[[nodiscard]] PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature,
-                                             const StateView& state, const Evaluation& evaluation);
+[[nodiscard]] inline PlacedFeature<D> place_feature(const BodySlot& body, const BodyFeature& feature,
+                                                    const StateView& state, const Evaluation& evaluation) {
+  Vec<D> arm = Vec<D>::Zero();
+  if constexpr (Space<D>::has_orientation) {
+    if (body.rotation != none) {
+      arm = Space<D>::rotate(evaluation.rotation.data() + body.rotation,
+                             Vec<D>(Eigen::Map<const Vec<D>>(feature.centre.data())));
+    }
+  }
+  return {body, feature, arm, Eigen::Map<const Vec<D>>(state.q + body.q) + arm};
+}
 
 /// Writes body, gap, Jacobian and drift of a contact with a shape at rest; `out` is as made by default.
 template <int D>

@@ -64,6 +64,7 @@ void ContactProblem::reset(int rows) {
   b_.assign(n, 0.0);
   sets_.assign(n, RowSet{});
   groups_.clear();
+  one_planar_contact_ = false;
   if (factored_) factors_.reset(0, 0);
   factored_ = false;
 }
@@ -85,6 +86,7 @@ void ContactProblem::resize_factors(int rows) {
   b_.resize(n);
   sets_.resize(n);
   groups_.clear();
+  one_planar_contact_ = false;
   diagonal_.resize(n);  // group() writes it
   factors_.resize_rows(rows);
   factored_ = true;
@@ -134,11 +136,13 @@ ContactProblem ContactProblem::dense() const {
   made.b_ = b_;
   made.sets_ = sets_;
   made.groups_ = groups_;
+  made.one_planar_contact_ = rows_ == 2 && groups_.size() == 1 && is_planar_contact(sets_, 0);
   return made;
 }
 
 void ContactProblem::group() {
   groups_.clear();
+  one_planar_contact_ = !factored_ && rows_ == 2 && is_planar_contact(sets_, 0);
   groups_.reserve(static_cast<std::size_t>(rows_));
   for (int row = 0; row < rows_; ++row) {
     if (is_planar_contact(sets_, row)) {

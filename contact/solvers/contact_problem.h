@@ -13,6 +13,7 @@
 #include <carom/core/export.h>
 #include <carom/core/row_set.h>
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,11 @@ struct RowGroup {
   int first = 0;  ///< first row (the normal row of a contact)
   int size = 1;   ///< number of rows
 };
+
+/// Place of an entry of a matrix that is stored row by row.
+[[nodiscard]] inline std::size_t entry_place(int row, int column, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
 
 /// Symmetric positive semidefinite matrix W, vector b and row sets. W is dense (row-major), or left as its
 /// factors H M^-1 H^T where it would be too large (response_factors.h): is_factored(). The sets, the law and
@@ -62,8 +68,8 @@ public:
   }
 
   /// Entry of W [1/kg, 1/(kg m), ...: velocity per impulse]. Of a dense problem only.
-  [[nodiscard]] double w(int row, int column) const { return w_[index(row, column)]; }
-  [[nodiscard]] double& w(int row, int column) { return w_[index(row, column)]; }
+  [[nodiscard]] double w(int row, int column) const { return w_[entry_place(row, column, rows_)]; }
+  [[nodiscard]] double& w(int row, int column) { return w_[entry_place(row, column, rows_)]; }
 
   /// W, row-major, rows() x rows(); empty of a problem in factors.
   [[nodiscard]] std::span<const double> matrix() const { return {w_.data(), w_.size()}; }
@@ -84,6 +90,8 @@ public:
 
   /// Groups found by group().
   [[nodiscard]] std::span<const RowGroup> groups() const { return {groups_.data(), groups_.size()}; }
+  /// True if group() found one contact in the plane, with friction, and W is dense: nearly all problems.
+  [[nodiscard]] bool is_one_planar_contact() const { return one_planar_contact_; }
 
   /// xi = W P + b, each entry summed in twice the precision and rounded once: large impulses of contacts that
   /// share a body cancel in it. With factors plainly, by way of the velocities M^-1 H^T P.
@@ -101,14 +109,11 @@ public:
   [[nodiscard]] static ContactProblem load(const std::string& path);
 
 private:
-  [[nodiscard]] std::size_t index(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(column);
-  }
-
   void group_factors();
 
   int rows_ = 0;
   bool factored_ = false;
+  bool one_planar_contact_ = false;  // since group()
   std::vector<double> w_, b_;
   ResponseFactors factors_;
   std::vector<double> diagonal_;  // of W, by row, of a problem in factors

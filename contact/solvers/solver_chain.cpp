@@ -8,6 +8,7 @@
 #include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -23,13 +24,32 @@ void demand_grouped(const ContactProblem& problem, std::span<const double> impul
   throw std::invalid_argument("contact solver: the problem is not grouped");
 }
 
+/// Counts of regular contacts, which are all that most steps have: of one solver, with residuals of the first
+/// class.
+struct RegularCounts {
+  std::int64_t problems = 0, degenerate = 0;
+  double worst_residual = 0.0;
+
+  void add_to(ChainStatistics& sum) const {
+    static_assert(accepted_residual <= certified_residuals[0]);
+    constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);
+    sum.problems += problems;
+    sum.tried[id] += problems;
+    sum.accepted[id] += problems;
+    sum.certified[0] += problems;
+    sum.degenerate += degenerate;
+    sum.worst_residual = std::max(sum.worst_residual, worst_residual);
+  }
+};
+
 }  // namespace
 
 struct SolverChain::Workspace {
   ExactSolvers exact;
   WarmStart warm_start;
   LargeProblemSolver large;
-  ChainStatistics statistics;
+  ChainStatistics statistics;  // but for `regular`
+  RegularCounts regular;
   std::vector<double> xi, start;  // the last: impulses of a start
   std::vector<ContactMode> modes, start_modes;
   bool capped = false;  // a budget was set: it judges other problems too
@@ -56,10 +76,7 @@ bool SolverChain::Workspace::begin(const ContactProblem& problem, std::span<doub
 // The hot path: one planar contact, regular and unique. False where the long way has to be gone.
 bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::span<double> impulse,
                                            ContactReport& report) {
-  if (impulse.size() != 2 || problem.groups().size() != 1 || problem.sets().size() != 2 ||
-      problem.sets()[0].kind != SetKind::half_line || problem.sets()[1].kind != SetKind::bounded_interval) {
-    return false;
-  }
+  if (!problem.is_one_planar_contact() || impulse.size() != 2) return false;
   const CertifiedImpulse answer = solve_regular_contact(problem);
   if (!answer.usable || !(answer.residual <= accepted_residual)) return false;
   impulse[0] = answer.impulse.normal;
@@ -78,11 +95,9 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   report.tried = 1u << id;
   report.solver = solver_names[id];
   report.reason = {};
-  ++statistics.problems;
-  ++statistics.tried[id];
-  ++statistics.accepted[id];
-  if (answer.degenerate) ++statistics.degenerate;
-  statistics.count_residual(answer.residual);
+  ++regular.problems;
+  regular.degenerate += answer.degenerate ? 1 : 0;
+  regular.worst_residual = std::max(regular.worst_residual, answer.residual);
   return true;
 }
 
@@ -218,7 +233,22 @@ void SolverChain::set_watch(const SweepWatch& watch) {
 
 std::span<const double> SolverChain::velocities() const { return work_->xi; }
 std::span<const ContactMode> SolverChain::modes() const { return work_->modes; }
-const ChainStatistics& SolverChain::statistics() const { return work_->statistics; }
-void SolverChain::reset_statistics() { work_->statistics = {}; }
+const ChainStatistics& SolverChain::statistics() const {
+  work_->regular.add_to(work_->statistics);
+  work_->regular = {};
+  return work_->statistics;
+}
+void SolverChain::take_statistics(ChainStatistics& sum) {
+  Workspace& work = *work_;
+  if (work.regular.problems > 0) work.regular.add_to(sum);
+  work.regular = {};
+  if (work.statistics.problems == 0) return;
+  sum += work.statistics;
+  work.statistics = {};
+}
+void SolverChain::reset_statistics() {
+  work_->regular = {};
+  if (work_->statistics.problems > 0) work_->statistics = {};
+}
 
 }  // namespace carom

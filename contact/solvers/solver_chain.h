@@ -78,8 +78,11 @@ public:
   /// Mode of each group of the last answer, by the rule of contact_mode.h. Valid until the next solve.
   [[nodiscard]] std::span<const ContactMode> modes() const;
 
-  /// Counts since construction or reset.
+  /// Counts since construction or reset. Valid until the next call of the chain.
   [[nodiscard]] const ChainStatistics& statistics() const;
+
+  /// Adds the counts to `sum`, and sets them to zero.
+  void take_statistics(ChainStatistics& sum);
 
   /// Sets all counts to zero.
   void reset_statistics();

@@ -33,7 +33,24 @@ bool BodyResponse::take_loads(Index, double*) { return false; }
 
 BodyMasses BodyResponse::alone(Index) const { return {}; }
 
+MassResponse::MassResponse(const Assembly& assembly) : assembly_(&assembly) {
+  const BodySlots& bodies = assembly.layout()->bodies();
+  if (bodies.empty()) return;
+  const BodySlot first = bodies[0], last = bodies[bodies.size() - 1];
+  // Bodies of a kind follow one another in it: between these two there are no others.
+  if (first.kind != last.kind || last.slot - first.slot + 1 != bodies.size()) return;
+  of_all_ = assembly.body_kinds()[first.kind]->masses(first.slot);
+}
+
 BodyMasses MassResponse::alone(Index body) const {
+  if (of_all_.mass != nullptr) {
+    BodyMasses own = of_all_;
+    const Index before = own.stride * body;
+    own.mass += before;
+    if (own.inertia != nullptr) own.inertia += before;
+    if (own.gyration_radius != nullptr) own.gyration_radius += before;
+    return own;
+  }
   const BodySlot& slot = assembly_->layout()->bodies()[body];
   return assembly_->body_kinds()[slot.kind]->masses(slot.slot);
 }

@@ -38,13 +38,14 @@ public:
 class CAROM_API MassResponse final : public BodyResponse {
 public:
   /// \param assembly must outlive it
-  explicit MassResponse(const Assembly& assembly) : assembly_(&assembly) {}
+  explicit MassResponse(const Assembly& assembly);
   [[nodiscard]] Range reach(Index body) const override;
   [[nodiscard]] BodyMasses alone(Index body) const override;
   void answer(Index body, double* x, std::size_t columns, char* held) override;
 
 private:
   const Assembly* assembly_;
+  BodyMasses of_all_;  // from the first body on, where all are of one kind; else null `mass`
 };
 
 /// K = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1 over one component: bodies that joints bind answer together.

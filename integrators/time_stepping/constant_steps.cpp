@@ -22,9 +22,8 @@ StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
       advance_loose(by_part ? std::span(piece.parts) : std::span(&piece.all, 1), in);
     }
     trial.account.swept = true;
-    uncoupled_->account(in, batch);
-    const Range components = batch.all.components;
-    if (!balance_.book_couplings(in, components.begin, trial)) fail_account(in, components);
+    const LooseAccount account = uncoupled_->account(in, batch);
+    if (!balance_.book_loads(account.works, account.potentials)) fail_account(in, batch.all.components);
   }
   balance_.report().sweeps = 1;
   balance_.report().iteration = uncoupled_->iteration();

@@ -3,6 +3,7 @@
 #include <carom/integrators/time_stepping/contact_stage.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace carom {
@@ -12,21 +13,22 @@ namespace {
 /// The impulses of the step before, by key, are where sweeps start.
 class LastImpulses {
 public:
-  LastImpulses(const ContactHistory& before, double step) : before_(before), longer_(step / before.step) {}
+  LastImpulses(const ContactHistory& before, double step) : before_(before), step_(step) {}
   /// \param impulses out, by row of the constraints
   void operator()(std::span<const Constraint> constraints, double* impulses) {
+    const double longer = step_ / before_.step;
     for (const Constraint& constraint : constraints) {
       const Index known = before_.contacts.find(constraint.key, next_);
       if (known != none) next_ = known + 1;
       for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-        *impulses++ = known == none ? 0.0 : longer_ * before_.impulses[known][row];
+        *impulses++ = known == none ? 0.0 : longer * before_.impulses[known][row];
       }
     }
   }
 
 private:
   const ContactHistory& before_;
-  double longer_;
+  double step_;
   Index next_ = 0;  // most contacts are those of the step before, in the same order
 };
 
@@ -67,10 +69,9 @@ void ContactStage::begin(const StepIsland& island) {
   in_use_ = 0;
 }
 
-/// One more problem, to be stated.
-IslandProblem& ContactStage::next_problem() {
+/// Of one more problem.
+void ContactStage::make_room() {
   while (first_ + in_use_ >= problems_.size()) problems_.emplace_back(of_problems_);
-  return problems_[first_ + in_use_++];
 }
 
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
@@ -145,7 +146,12 @@ const IslandProblem* ContactStage::solve_constant(const StepInput& in, const Ste
     list_struck(island.constraints);
   }
   trial.expect_impulses();
-  free_struck(in, in.companion.loads.total.data(), trial);
+  const double* const loads = in.companion.loads.total.data();
+  if (struck_.size() == 1) {
+    free_alone(in, loads, island.constraints.front().blocks[0], trial);
+  } else {
+    free_struck(in, loads, trial);
+  }
   return part_problems(in, island, [&](IslandProblem& problem) {
     return solve_against_free(problem, chains_.front(), trial);
   });
@@ -258,10 +264,26 @@ void ContactStage::free_body(const StepInput& in, const EndLoads& loads, Index b
   free_body<0>(in, loads, slot, trial);
 }
 
+/// Likewise of the only body that has constraints, under constant loads.
+void ContactStage::free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
+                              StepTrial& trial) const {
+  const BodyMasses masses = masses_.alone(body.body);
+  if (masses.layout != BodyMasses::Layout::planar_bodies)
+    return free_body(in, {loads, loads}, body.body, trial);
+  const double half = 0.5 * in.step;
+  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
+  const double *const load = loads + body.v, *const start = in.start.v.data() + body.v;
+  const float* const rounding = in.companion.rounding.data() + body.v;
+  const std::array<double, 3> mass{*masses.mass, *masses.mass, *masses.inertia};
+  for (std::size_t k = 0; k < mass.size(); ++k) {
+    free[k] = half * (load[k] + load[k]) / mass[k] + (static_cast<double>(rounding[k]) + start[k]);
+    dv[k] = 0.0;
+  }
+}
+
 /// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one
 /// another.
 void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
-  if (struck_.size() == 1) return free_body(in, {loads, loads}, struck_.front(), trial);
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
   const double* const start = in.start.v.data();
@@ -307,17 +329,11 @@ const IslandProblem* ContactStage::first_unsolved() const {
 }
 
 void ContactStage::add_statistics(ChainStatistics& sum) {
-  for (SolverChain& chain : chains_) {
-    if (chain.statistics().problems == 0) continue;
-    sum += chain.statistics();
-    chain.reset_statistics();
-  }
+  for (SolverChain& chain : chains_) chain.take_statistics(sum);
 }
 
 void ContactStage::forget_statistics() {
-  for (SolverChain& chain : chains_) {
-    if (chain.statistics().problems > 0) chain.reset_statistics();
-  }
+  for (SolverChain& chain : chains_) chain.reset_statistics();
 }
 
 }  // namespace carom

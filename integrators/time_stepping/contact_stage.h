@@ -72,7 +72,11 @@ private:
     const double* end;
   };
   void begin(const StepIsland& island);
-  IslandProblem& next_problem();
+  IslandProblem& next_problem() {
+    if (first_ + in_use_ >= problems_.size()) make_room();
+    return problems_[first_ + in_use_++];
+  }
+  void make_room();
   template <class F>
   [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
   void list_struck(std::span<const Constraint> constraints);
@@ -82,6 +86,8 @@ private:
   template <std::size_t N>
   void free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body, StepTrial& trial) const;
   void free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const;
+  void free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
+                  StepTrial& trial) const;
   void free_struck(const StepInput& in, const double* loads, StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);

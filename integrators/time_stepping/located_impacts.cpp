@@ -235,11 +235,7 @@ void LocatedImpacts::forget_statistics() {
 }
 
 void LocatedImpacts::add_statistics(ChainStatistics& sum) {
-  for (LocatedMotion& motion : motions_) {
-    if (motion.chain().statistics().problems == 0) continue;
-    sum += motion.chain().statistics();
-    motion.chain().reset_statistics();
-  }
+  for (LocatedMotion& motion : motions_) motion.chain().take_statistics(sum);
 }
 
 }  // namespace carom

@@ -43,6 +43,15 @@ bool StepBalance::book_couplings(const StepInput& in, Index component, const Ste
   return true;
 }
 
+bool StepBalance::book_loads(const BlockWorks& works, const StoredEnergies& potentials) {
+  StoredEnergies& stored = result_.stored;
+  stored[StoredEnergy::kinetic] += works.kinetic;
+  for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += potentials.values[i];
+  if (!std::isfinite(stored.total())) return false;
+  coupling_work_.add(works.total);
+  return true;
+}
+
 void StepBalance::book_joints(const StepInput& in, Index component, JointStage& joints,
                               const IslandProblem* contact, StepTrial& trial) {
   const Assembly& assembly = *assembly_;

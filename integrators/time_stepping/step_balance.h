@@ -80,6 +80,8 @@ public:
   void begin(const StepInput& in);
   /// Books what elements did: works and energies of the last iterate. False if one is not finite.
   [[nodiscard]] bool book_couplings(const StepInput& in, Index component, const StepTrial& trial);
+  /// Likewise of bodies whose loads do not change, and are conservative.
+  [[nodiscard]] bool book_loads(const BlockWorks& works, const StoredEnergies& potentials);
   /// Books the work of reactions and of the way back onto the joints; records their impulses.
   void book_joints(const StepInput& in, Index component, JointStage& joints, const IslandProblem* contact,
                    StepTrial& trial);

@@ -55,6 +55,7 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
+  if (rules_.plain && !rules_.turning) return;  // nobody asks
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
     detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);

@@ -106,7 +106,7 @@ struct CAROM_API StepTrial {
   }
   /// Room for velocities without contact, once anything touches.
   void expect_impulses() {
-    if (dv_impulses.size() == end.v.size()) return;
+    if (!dv_impulses.empty()) return;
     dv_impulses.resize(end.v.size());
     free.resize(end.v.size());
   }

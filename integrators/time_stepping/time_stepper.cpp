@@ -75,7 +75,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
   try {
     StepResult& result = uncoupled_ && !parts_.located.on() ? make_uncoupled_step(in) : make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
-    parts_.located.add_statistics(companion.contact_statistics);
+    if (parts_.located.on()) parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
     capped_.write(report.capped_problem);

@@ -27,16 +27,17 @@ bool starts_free(const StepInput& in, const Detector& detector, std::span<const 
 }
 
 /// Works of the loads of a batch, and energies at the end of the step.
-void take_account(const StepInput& in, const StepRule& rule, LooseBatch& batch, const StepTrial& trial,
-                  BlockWorks& works, StoredEnergies& potentials) {
+LooseAccount account_of(const StepInput& in, const StepRule& rule, LooseBatch& batch,
+                        const StepTrial& trial) {
+  LooseAccount account;
   const LooseBodies& all = batch.all;
-  works.kinetic = all.place.kind->kinetic_energy(all.place.slots, trial.end.v.data() + all.place.v);
-  works.total = rule.work_constant(in, batch.v, trial);
-  works.dissipative = works.external = 0.0;
+  account.works.kinetic = all.place.kind->kinetic_energy(all.place.slots, trial.end.v.data() + all.place.v);
+  account.works.total = rule.work_constant(in, batch.v, trial);
   batch.end.state = trial.end.view();
   for (const LooseBatch::Potential& of : batch.potentials) {
-    potentials[of.form] += of.kind->potential(batch.end, of.elements);
+    account.potentials[of.form] += of.kind->potential(batch.end, of.elements);
   }
+  return account;
 }
 
 /// Work of the loads of all bodies, which have moved [J]. \param stored energies at the end, to be added to
@@ -44,12 +45,10 @@ double work_of(const StepInput& in, const StepRule& rule, std::span<LooseBatch> 
                const StepTrial& trial, StoredEnergies& stored) {
   CompensatedSum work;
   for (LooseBatch& batch : batches) {
-    BlockWorks works;
-    StoredEnergies potentials;
-    take_account(in, rule, batch, trial, works, potentials);
-    stored[StoredEnergy::kinetic] += works.kinetic;
-    work.add(works.total);
-    for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += potentials.values[i];
+    const LooseAccount account = account_of(in, rule, batch, trial);
+    stored[StoredEnergy::kinetic] += account.works.kinetic;
+    work.add(account.works.total);
+    for (std::size_t i = 0; i < stored_energy_count; ++i) stored.values[i] += account.potentials.values[i];
   }
   return work.value();
 }
@@ -117,10 +116,8 @@ void UncoupledStep::move(const StepInput& in, const LooseBodies& bodies) const {
   for (const Index body : struck) parts_->rule.move_constant(in, {body, body + 1}, true, parts_->trial);
 }
 
-void UncoupledStep::account(const StepInput& in, LooseBatch& batch) const {
-  TrialAccount& account = parts_->trial.account;
-  account.start(1);
-  take_account(in, parts_->rule, batch, parts_->trial, account.works.front(), account.potentials);
+LooseAccount UncoupledStep::account(const StepInput& in, LooseBatch& batch) const {
+  return account_of(in, parts_->rule, batch, parts_->trial);
 }
 
 Flight UncoupledStep::fly(const StepInput& in, State& state, Companion& companion, StepReport& report) {

@@ -50,6 +50,12 @@ struct LooseBatch {
   std::vector<Potential> potentials = {};
 };
 
+/// Works of the loads of a batch over a step, and potentials at its end.
+struct LooseAccount {
+  BlockWorks works;
+  StoredEnergies potentials;
+};
+
 /// How far a flight comes with a step: something may touch at its start; its bodies have moved as if
 /// nothing touched, which is not all there is to be done; it is made.
 enum class Flight : std::uint8_t { not_free, moved, made };
@@ -71,8 +77,8 @@ public:
   [[nodiscard]] std::span<LooseBatch> batches() { return batches_; }
   /// Velocities and positions of some bodies, whose contacts are solved.
   void move(const StepInput& in, const LooseBodies& bodies) const;
-  /// Works and energies of a batch that has moved, as TrialAccount tells them.
-  void account(const StepInput& in, LooseBatch& batch) const;
+  /// Works and energies of a batch that has moved.
+  [[nodiscard]] LooseAccount account(const StepInput& in, LooseBatch& batch) const;
   /// Iteration that reports name.
   [[nodiscard]] Iteration iteration() const { return iteration_; }
 

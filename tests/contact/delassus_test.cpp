@@ -4,6 +4,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/contact/contact_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 
@@ -11,6 +12,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 namespace {
@@ -132,6 +136,54 @@ constexpr double rounding = 1e-14;
 TEST_P(DelassusTest, MassesAlone) {
   MassResponse response(assembly_);
   expect_product(response, inverse_masses(), rounding);
+}
+
+// Of bodies of one kind and of several; the places of masses follow from the first body's, or not.
+TEST(MassResponseTest, BodiesHaveTheMassesOfTheirKind) {
+  System of_one_kind;
+  for (int i = 0; i < body_count; ++i)
+    of_one_kind.add(RigidBody{.mass = {.mass = 1.0 + i, .inertia = 0.2 + 0.1 * i}});
+  System particles;
+  for (int i = 0; i < body_count; ++i) particles.add(Particle{.mass = 1.0 + i % 2});
+  for (const System& system : {of_one_kind, particles, bodies(false), bodies(true)}) {
+    const Assembly assembly(system);
+    const MassResponse response(assembly);
+    for (Index body = 0; body < body_count; ++body) {
+      const BodySlot slot = assembly.layout()->bodies()[body];
+      const BodyKind& kind = *assembly.body_kinds()[slot.kind];
+      const BodyMasses found = response.alone(body), own = kind.masses(slot.slot);
+      EXPECT_EQ(found.layout, own.layout);
+      EXPECT_EQ(found.mass, own.mass);
+      EXPECT_EQ(found.inertia, own.inertia);
+      EXPECT_EQ(found.gyration_radius, own.gyration_radius);
+      EXPECT_EQ(*found.mass, kind.mass(slot.slot));
+    }
+  }
+}
+
+/// Numbers by their bits: -0 is not 0.
+std::array<std::uint64_t, 2> bits(const std::array<double, 2>& numbers) {
+  return std::bit_cast<std::array<std::uint64_t, 2>>(numbers);
+}
+
+TEST(ContactVelocity, BothRowsOfABodyOnGroundHaveTheBitsOfEach) {
+  Random random(8);
+  for (const int columns : {2, 3}) {
+    Constraint contact;
+    contact.rows = 2;
+    contact.add_body(4, 7, columns);
+    std::vector<double> v(20);
+    for (int i = 0; i < 100; ++i) {
+      // Zeros of both signs among them.
+      const auto number = [&] { return i % 3 == 0 ? (i % 2 == 0 ? -0.0 : 0.0) : random.uniform(-1.0, 1.0); };
+      for (int row = 0; row < 2; ++row) {
+        for (int c = 0; c < columns; ++c) contact.row(row)[c] = random.uniform(-1.0, 1.0);
+      }
+      for (double& of : v) of = number();
+      const std::array<double, 2> each{contact.times(0, v.data()), contact.times(1, v.data())};
+      EXPECT_EQ(bits(times_both_rows(contact, v.data())), bits(each));
+    }
+  }
 }
 
 TEST_F(DelassusOfAMechanism, WithJoints) {

@@ -41,6 +41,32 @@ TEST(ContactProblem, GroupsContactsAndLoneRows) {
   }
 }
 
+// Solvers take a short way for it: nothing else may look like it, nor may it before it is grouped.
+TEST(ContactProblem, KnowsOneContactInThePlane) {
+  ContactProblem problem;
+  problem.reset(2);
+  problem.sets()[1] = friction(0, 0.3);
+  EXPECT_FALSE(problem.is_one_planar_contact());
+  problem.group();
+  EXPECT_TRUE(problem.is_one_planar_contact());
+  EXPECT_TRUE(problem.dense().is_one_planar_contact());
+  problem.sets()[1] = proportional(0, 0.3);
+  problem.group();
+  EXPECT_FALSE(problem.is_one_planar_contact());
+  problem.reset(3);
+  problem.sets()[1] = friction(0, 0.3);
+  problem.group();
+  EXPECT_FALSE(problem.is_one_planar_contact());
+  problem.reset(2);
+  problem.group();  // two limits
+  EXPECT_FALSE(problem.is_one_planar_contact());
+  problem.reset_factors(2, 1);
+  problem.sets()[1] = friction(0, 0.3);
+  problem.group();
+  EXPECT_FALSE(problem.is_one_planar_contact());
+  EXPECT_TRUE(problem.dense().is_one_planar_contact());
+}
+
 TEST(ContactProblem, RefusesSetsThatCannotBe) {
   const auto refused = [](int rows, auto fill) {
     ContactProblem problem;

@@ -152,6 +152,42 @@ TEST(SolverChain, StatisticsAddUp) {
   EXPECT_EQ(chain.statistics().problems, 0);
 }
 
+// Single contacts are counted apart, and together with the others wherever anybody asks.
+TEST(SolverChain, StatisticsThatAreTakenAddUpToTheSame) {
+  SolverChain taken, kept;
+  ChainStatistics sum;
+  constexpr int problems = 300;
+  for (std::uint64_t seed = 0; seed < problems; ++seed) {
+    ContactProblem problem = contact_test::random_problem(seed, 4).problem;
+    if (seed % 3 != 0) {  // its first contact alone
+      const double w[] = {problem.w(0, 0), problem.w(0, 1), problem.w(1, 1)},
+                   b[] = {problem.vector()[0], problem.vector()[1]};
+      const RowSet friction = problem.sets()[1];
+      problem.reset(2);
+      problem.w(0, 0) = w[0];
+      problem.w(0, 1) = problem.w(1, 0) = w[1];
+      problem.w(1, 1) = w[2];
+      problem.vector()[0] = b[0];
+      problem.vector()[1] = b[1];
+      problem.sets()[1] = friction;
+      problem.group();
+    }
+    std::vector<double> p(static_cast<std::size_t>(problem.rows()));
+    static_cast<void>(kept.solve(problem, p));
+    static_cast<void>(taken.solve(problem, p));
+    if (seed % 7 == 0) EXPECT_EQ(kept.statistics().problems, static_cast<std::int64_t>(seed) + 1);
+    if (seed % 2 == 0) taken.take_statistics(sum);
+  }
+  taken.take_statistics(sum);
+  EXPECT_EQ(sum, kept.statistics());
+  EXPECT_EQ(sum.problems, problems);
+  EXPECT_EQ(taken.statistics(), ChainStatistics{});
+  taken.take_statistics(sum);
+  EXPECT_EQ(sum, kept.statistics());
+  EXPECT_GT(sum.accepted[static_cast<std::size_t>(SolverId::single_contact)], problems / 5);
+  EXPECT_GT(sum.accepted[static_cast<std::size_t>(SolverId::principal_pivoting)], 0);
+}
+
 TEST(SolverChain, StatisticsAreATable) {
   ChainStatistics statistics;
   statistics.problems = 12;
