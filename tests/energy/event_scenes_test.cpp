@@ -219,14 +219,15 @@ TEST(EventScenes, CornersInLineAtASingularPosition) { expect_sound_scenes({12873
 TEST(EventScenes, ForcesThatAreNothingOverNothing) { expect_sound_scenes({39039, 132523}); }
 
 // Turns of a body change nothing but the rounding of its motion, and how large that is taken to be.
-// Whether alarms at the start of a step came to an end depended on it: in 25 of 40 runs they did not.
+// Whether alarms at the start of a step came to an end depended on it: in 25 of 40 runs they did not. And
+// steps came to the rounding of time where forces were 360 times the others, in one of a hundred runs.
 TEST(EventScenes, ForcesThatAreNothingOverNothingWhateverTheRounding) {
   constexpr int most_turns = 40;
   constexpr double two_pi = 6.283185307179586;
   const EventScene scene(39039);
   for (int turns = 0; turns < most_turns; ++turns) {
     SCOPED_TRACE(turns);
-    Simulation simulation(scene.system(), EventDriven{});
+    Simulation simulation(scene.system(), EventDriven{.relative_tolerance = turns % 2 == 0 ? 5e-10 : 1e-9});
     State state = simulation.state();
     for (const BodyId body : simulation.system().bodies()) {
       if (simulation.system().has_orientation(body)) state.angle(body) += two_pi * turns;
