@@ -1,11 +1,13 @@
 // Problem: a fault of the search for events must not pass for a motion.
 
+#include <carom/contact/pressed_bodies.h>
 #include <carom/core/errors.h>
 #include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/overlap_check.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -26,6 +28,16 @@ double allowed_overlap(const EventDriven& options, std::span<const double> place
 }
 
 namespace {
+
+std::string uneven_masses_of(const Assembly& assembly) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const BodySlot& slot : assembly.layout()->bodies()) {
+    const double mass = assembly.body_kinds()[slot.kind]->mass(slot.slot);
+    least = std::min(least, mass);
+    most = std::max(most, mass);
+  }
+  return uneven_masses(least, most);
+}
 
 std::string tell_overlap(const std::string& contact, double gap, double allowed) {
   return "gap of " + contact + " is " + to_text(gap) + " m; allowed: not below " + to_text(allowed) +
@@ -78,7 +90,8 @@ void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation
   failure.step = state.time - from;
   failure.parts.push_back(detector_->name(worst));
   const std::string what = "event-driven at t = " + to_text(state.time) +
-                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap);
+                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap) +
+                           uneven_masses_of(*assembly_);
   throw SolverError(what, std::move(failure));
 }
 

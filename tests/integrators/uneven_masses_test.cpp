@@ -111,6 +111,15 @@ TEST(UnevenMasses, ALightBodyBouncesToAnEndUnderAHeavyOne) {
   }
 }
 
+// Impacts of the heavy body are solved with five digits, and others follow from them.
+TEST(UnevenMasses, FewDigitsAreNamedWhereverARunEnds) {
+  for (const bool boxes : {false, true}) {
+    const Tower at = tower(1.0, 1e11, boxes, 0.5);
+    Simulation events(at.system, EventDriven{});
+    EXPECT_THROWS(SolverError, events.run_until(1.0), "masses differ by a factor of 1", "digits");
+  }
+}
+
 TEST(UnevenMasses, WithoutDigitsAreNamed) {
   for (const bool boxes : {false, true}) {
     const Tower at = tower(1.0, 1e14, boxes);
