@@ -102,6 +102,7 @@ private:
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
   void scale_rows();
   [[nodiscard]] bool solve();
+  void refine(double size, double* acceleration);
   void add_dry_friction(std::size_t first, std::size_t last, double* acceleration);
   bool react(std::size_t first, std::size_t last, double* acceleration);
 

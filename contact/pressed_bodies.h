@@ -18,5 +18,14 @@ namespace carom {
 /// Likewise: by how much the masses differ, where that leaves a light body between heavy ones few digits (its
 /// acceleration is the difference of forces that are as much larger); else empty.
 [[nodiscard]] CAROM_API std::string uneven_masses(const IslandProblem& problem);
+/// Likewise of the masses of some bodies, where an error may have come of that. \param least,most [kg]
+[[nodiscard]] CAROM_API std::string uneven_masses(double least, double most);
+
+/// Says that bounds of friction in joints and the forces that they follow from come to no end, and why.
+inline constexpr const char* unsettled_friction =
+    "friction in joints and the forces that bound it do not settle (allowed: coefficients, friction times "
+    "radius of a pin, below the arms of loads and contacts about it; beyond, friction may grow with the "
+    "force "
+    "that it causes)";
 
 }  // namespace carom

@@ -88,7 +88,7 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
     try {
       flow.advance(std::min(longest, until));
     } catch (const SolverError& error) {
-      if (!finds_unbounded_force(flow.end(), flow.state().data()))
+      if (!finds_unbounded_force(flow.end(), flow.state().data(), UnboundedForces::least_growth))
         failure_->fail_flow(error, *motion_, y.data(), memory_->within);
       return unbounded_at(time, y, error.what());
     }
@@ -142,9 +142,10 @@ Event EventDetector::unbounded_at(double time, std::span<const double> y, std::s
   return {time, Guard::painleve, 0};
 }
 
-bool EventDetector::finds_unbounded_force(double time, const double* y) {
+/// \param growth of forces, against those of the neighbourhood
+bool EventDetector::finds_unbounded_force(double time, const double* y, double growth) {
   motion_->sample(time, y, Forces::all, memory_->within);
-  return unbounded_->find(motion_->active().list(), scales_.force);
+  return unbounded_->find(motion_->active().list(), growth * scales_.force);
 }
 
 /// True if forces without bound come to an end within the step because closed contacts follow from each other

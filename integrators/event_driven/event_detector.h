@@ -55,7 +55,8 @@ private:
   [[nodiscard]] bool lowers_level(const SearchedStep& step, const Event& predicted);
   [[nodiscard]] bool is_false_alarm(SearchedStep& step, const Event& predicted, const Event& located);
   [[nodiscard]] Event first_of(SearchedStep& step, const Event& predicted, const Event& located);
-  [[nodiscard]] bool finds_unbounded_force(double time, const double* y);
+  [[nodiscard]] bool finds_unbounded_force(double time, const double* y,
+                                           double growth = UnboundedForces::growth);
   [[nodiscard]] bool comes_to_pole(double time, std::span<const double> y);
   [[nodiscard]] Event unbounded_at(double time, std::span<const double> y, std::string reason);
   [[nodiscard]] bool repeat_shorter(SearchedStep& step, const Event& event, double time,

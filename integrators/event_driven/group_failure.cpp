@@ -13,13 +13,33 @@
 
 namespace carom {
 
+namespace {
+
+/// Text about the masses of bodies that touch, where digits that they leave may be the cause.
+std::string uneven_masses_of(const GroupModel& model) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  model.for_bodies([&](const BodyKind& kind, Range slots, Index, Index, const MotionUnknowns::Part&) {
+    for (Index slot = slots.begin; slot < slots.end; ++slot) {
+      least = std::min(least, kind.mass(slot));
+      most = std::max(most, kind.mass(slot));
+    }
+  });
+  return most > 0.0 ? uneven_masses(least, most) : std::string{};
+}
+
+}  // namespace
+
 void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
                         const IslandProblem* problem) const {
   std::string message = "event-driven at t = " + to_text(clock_->now) + " s: " + what;
   const Assembly& assembly = *model_->assembly;
   if (problem != nullptr && problem->report().outcome == Outcome::no_solution)
     message += pressed_by(assembly.system(), *problem);
-  if (problem != nullptr && !problem->report().usable()) message += uneven_masses(*problem);
+  if (problem == nullptr) {
+    message += uneven_masses_of(*model_);
+  } else if (!problem->report().usable()) {
+    message += uneven_masses(*problem);
+  }
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();
@@ -61,6 +81,10 @@ void GroupFailure::demand_finite_loads(const MotionSample& at) const {
 
 void GroupFailure::fail_loads(const MotionSample& at) const {
   demand_finite_loads(at);
+  const JointRows& joints = model_->detector->joints();
+  for (const MotionUnknowns::Part& part : model_->parts()) {
+    if (joints.has_friction(part.component)) fail(unsettled_friction, {});
+  }
   fail("the loads are not finite", {});
 }
 

@@ -2,6 +2,7 @@
 
 #include <carom/contact/impact_restitution.h>
 #include <carom/contact/impact_rules.h>
+#include <carom/contact/pressed_bodies.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 
 #include <algorithm>
@@ -160,9 +161,8 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
 void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) const {
   const std::vector<Constraint>& touching = memory_->touching;
   // Solved at each bound of friction in joints, which do not come to an end.
-  const std::string why = problem.report().usable()
-                              ? "friction in joints and the forces that bound it do not settle"
-                              : std::string(to_string(problem.report().outcome));
+  const std::string why =
+      problem.report().usable() ? unsettled_friction : std::string(to_string(problem.report().outcome));
   std::string what =
       "the contact problem of an impact is not solved (" + why + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());

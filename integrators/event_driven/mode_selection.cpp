@@ -1,5 +1,6 @@
 // Problem: modes of all that touches, where events have just ended some, and forces may not exist.
 
+#include <carom/contact/pressed_bodies.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 
 #include <algorithm>
@@ -109,7 +110,11 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
     if (by_forces != Decision::failed) return by_forces;
   }
   if (decision == Decision::impossible) fail_unkept();
-  failure_->fail("the contact problem of the accelerations is not solved", names_of_candidates(),
+  const bool by_joints = std::any_of(
+      memory_->candidates.begin(), memory_->candidates.end(),
+      [&](const Candidate& candidate) { return at.motion.joints().depends_on_joint_force(candidate.at); });
+  const std::string why = by_joints ? std::string("; ") + unsettled_friction : std::string{};
+  failure_->fail("the contact problem of the accelerations is not solved" + why, names_of_candidates(),
                  &memory_->decision.problem());
 }
 

@@ -1,10 +1,13 @@
 // Problem: a fault of the search for events must not pass for a motion.
 
+#include <carom/contact/pressed_bodies.h>
 #include <carom/core/errors.h>
+#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/overlap_check.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,15 +19,25 @@ OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, c
   found_.reserve(few);
 }
 
-double allowed_overlap(const EventDriven& options, std::span<const double> places) {
+double allowed_overlap(const EventDriven& options, std::span<const double> places, double error) {
   constexpr double tolerances = 10.0;  // output within a step is less exact than its end
+  constexpr double roundings = 4.0;    // up to there gaps touch
   double size = 0.0;
   for (const double place : places) size = std::max(size, std::abs(place));
-  const double of_integrator = options.relative_tolerance * size + options.absolute_tolerance;
-  return tolerances * (options.gap_tolerance + of_integrator);
+  return tolerances * (options.gap_tolerance + error) + roundings * gap_noise_of(size);
 }
 
 namespace {
+
+std::string uneven_masses_of(const Assembly& assembly) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const BodySlot& slot : assembly.layout()->bodies()) {
+    const double mass = assembly.body_kinds()[slot.kind]->mass(slot.slot);
+    least = std::min(least, mass);
+    most = std::max(most, mass);
+  }
+  return uneven_masses(least, most);
+}
 
 std::string tell_overlap(const std::string& contact, double gap, double allowed) {
   return "gap of " + contact + " is " + to_text(gap) + " m; allowed: not below " + to_text(allowed) +
@@ -41,15 +54,16 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
     deepest = &contact;
   }
   if (deepest == nullptr || deepest->gap >= -model.options->gap_tolerance) return;
-  const double allowed = -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()));
+  const double allowed =
+      -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()), at.motion.error_of_places(at.y));
   if (deepest->gap >= allowed) return;
   const std::string name = failure.name(*deepest);
   failure.fail(tell_overlap(name, deepest->gap, allowed), {name});
 }
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
-void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
-  const double allowed_gap = -allowed_overlap(*options_, state.q);
+void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double error, double from) {
+  const double allowed_gap = -allowed_overlap(*options_, state.q, error);
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();
@@ -76,7 +90,8 @@ void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation
   failure.step = state.time - from;
   failure.parts.push_back(detector_->name(worst));
   const std::string what = "event-driven at t = " + to_text(state.time) +
-                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap);
+                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap) +
+                           uneven_masses_of(*assembly_);
   throw SolverError(what, std::move(failure));
 }
 

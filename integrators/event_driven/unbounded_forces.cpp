@@ -7,10 +7,10 @@
 
 namespace carom {
 
-bool UnboundedForces::find(std::span<const ActiveContact> contacts, double scale) {
+bool UnboundedForces::find(std::span<const ActiveContact> contacts, double bound) {
   pairs_.clear();
   for (const ActiveContact& contact : contacts) {
-    if (std::abs(contact.normal) > growth * scale) pairs_.push_back(contact.pair);
+    if (std::abs(contact.normal) > bound) pairs_.push_back(contact.pair);
   }
   return !pairs_.empty();
 }

@@ -19,11 +19,13 @@ public:
   /// Forces that have outgrown all others by this are infinite nearby: W_nn - s mu W_nt has fallen to the
   /// inverse part of what it was.
   static constexpr double growth = 1e3;
+  /// Likewise where steps have come to the rounding of time, which may be before that.
+  static constexpr double least_growth = 1e2;
 
   /// Forgets all.
   void clear() { pairs_.clear(); }
-  /// Finds them among closed contacts, with their forces. True if there are any. \param scale of forces [N]
-  bool find(std::span<const ActiveContact> contacts, double scale);
+  /// Finds them among closed contacts, with their forces. True if there are any. \param bound of forces [N]
+  bool find(std::span<const ActiveContact> contacts, double bound);
   /// True if that of a pair is one.
   [[nodiscard]] bool contains(const ContactPair& pair) const;
 

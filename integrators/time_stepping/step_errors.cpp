@@ -231,7 +231,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   }
   std::string message = place(in_) + "contact problem of " + listed(failure.parts) + ": ";
   if (problem.report().usable()) {
-    message += "friction in joints and the forces that bound it do not settle";
+    message += unsettled_friction;
   } else {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");

@@ -152,6 +152,13 @@ TEST(EventScenesLong, LikewiseWithEachMethod) {
 
 // Scenes that failed once.
 
+// The ledger was open by 1.2e-6 while errors of places were relative to the places.
+TEST(EventScenes, AdamsClosesTheAccount) {
+  Findings findings;
+  run_scene(2244, {.method = FlowMethod::adams}, residual_at_default, findings);
+  for (const std::string& failure : findings.failures) ADD_FAILURE() << failure;
+}
+
 void expect_sound_scenes(std::initializer_list<std::uint64_t> seeds) {
   for (const EventDriven& options : {EventDriven{}, tight}) {
     Findings findings;
@@ -219,14 +226,15 @@ TEST(EventScenes, CornersInLineAtASingularPosition) { expect_sound_scenes({12873
 TEST(EventScenes, ForcesThatAreNothingOverNothing) { expect_sound_scenes({39039, 132523}); }
 
 // Turns of a body change nothing but the rounding of its motion, and how large that is taken to be.
-// Whether alarms at the start of a step came to an end depended on it: in 25 of 40 runs they did not.
+// Whether alarms at the start of a step came to an end depended on it: in 25 of 40 runs they did not. And
+// steps came to the rounding of time where forces were 360 times the others, in one of a hundred runs.
 TEST(EventScenes, ForcesThatAreNothingOverNothingWhateverTheRounding) {
   constexpr int most_turns = 40;
   constexpr double two_pi = 6.283185307179586;
   const EventScene scene(39039);
   for (int turns = 0; turns < most_turns; ++turns) {
     SCOPED_TRACE(turns);
-    Simulation simulation(scene.system(), EventDriven{});
+    Simulation simulation(scene.system(), EventDriven{.relative_tolerance = turns % 2 == 0 ? 5e-10 : 1e-9});
     State state = simulation.state();
     for (const BodyId body : simulation.system().bodies()) {
       if (simulation.system().has_orientation(body)) state.angle(body) += two_pi * turns;

@@ -17,12 +17,12 @@ TEST(UnboundedForces, FoundAgainstTheScale) {
   contacts[1].normal = -2.0 * UnboundedForces::growth * 5.0;
   UnboundedForces unbounded;
   EXPECT_FALSE(unbounded.contains(contacts[1].pair));
-  EXPECT_TRUE(unbounded.find(contacts, 5.0));
+  EXPECT_TRUE(unbounded.find(contacts, 5.0 * UnboundedForces::growth));
   EXPECT_FALSE(unbounded.contains(contacts[0].pair));
   EXPECT_TRUE(unbounded.contains(contacts[1].pair));
-  EXPECT_FALSE(unbounded.find(contacts, 50.0));
+  EXPECT_FALSE(unbounded.find(contacts, 50.0 * UnboundedForces::growth));
   EXPECT_FALSE(unbounded.contains(contacts[1].pair));
-  EXPECT_TRUE(unbounded.find(contacts, 5.0));
+  EXPECT_TRUE(unbounded.find(contacts, 5.0 * UnboundedForces::growth));
   unbounded.clear();
   EXPECT_FALSE(unbounded.contains(contacts[1].pair));
 }
