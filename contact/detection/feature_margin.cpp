@@ -67,6 +67,13 @@ Index FeatureRegions::face_of_segment(Index nearest) const {
   const double behind = -face.height(Vec<2>(shift_ + turned));
   if (!(behind > 0.0)) return nearest;
   const double above = std::max(0.0, face.height(place_)), share = above / (above + behind);
+  // Two segments cross each other at the end that has gone through by the least.
+  if (of_vertex_.size() == 2) {
+    const OutlineEdge other(of_vertex_, 0);
+    for (const Vec<2>& end : outline_.vertices) {
+      if (std::abs(other.height(in_frame_of_vertex(end))) < above) return nearest;
+    }
+  }
   const double at_vertex = face.coordinate(place_), at_middle = face.coordinate(Vec<2>(shift_ + turned));
   const double along = at_vertex + share * (at_middle - at_vertex);
   return along >= 0.0 && along <= face.length ? n + face.head : nearest;

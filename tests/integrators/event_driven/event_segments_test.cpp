@@ -71,6 +71,24 @@ TEST(EventSegments, CornersHitThemAsTheyHitAHalfPlane) {
   }
 }
 
+TEST(EventSegments, EndsOfOthersHitThem) {
+  for (const double angle : {0.5, 1.4, -0.9, 2.5}) {
+    Vec<2> on_plane = Vec<2>::Zero();
+    for (const bool segment : {false, true}) {
+      System system = falls_on(segment, false, 0.2, 0.0, 0.0);
+      const BodyId body = system.add(
+          RigidBody{.mass = planar::rod(1.0, 0.4), .position = {1.0, 0.8}, .angle = angle, .spin = 1.0},
+          "falling");
+      system.add(Segment{.body = body, .from = {-0.2, 0.0}, .to = {0.2, 0.0}});
+      Simulation simulation(system, tight());
+      simulation.run_until(0.8);
+      const Vec<2> at = simulation.state().position(body);
+      if (!segment) on_plane = at;
+      EXPECT_NEAR((at - on_plane).norm(), 0.0, 1e-9) << angle;
+    }
+  }
+}
+
 TEST(EventSegments, FreeOnesAreHitToo) {
   // A fast box meets a segment in free flight (momentum of both is kept), and goes round the end of another.
   System system;
