@@ -288,7 +288,8 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
-  if (a.radius + b.radius == 0.0 && std::abs(gap.gap) <= FeatureMargin::corner_follows) {
+  const bool is_near = std::abs(gap.gap) <= FeatureMargin::corner_follows;
+  if (a.radius + b.radius == 0.0 && (is_near || FeatureRegions::is_flat(outlines_.described(b)))) {
     const Index nearest = FeatureRegions(outline_pair(pair, state, evaluation)).nearest();
     gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
   }

@@ -79,8 +79,9 @@ public:
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
   /// \param slack opening of any contact that is none [m]
+  /// \param keeps_pressed whether contacts with an impulse last whatever their gap
   void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step, double slack,
-                LastingContacts& out) const;
+                bool keeps_pressed, LastingContacts& out) const;
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;

@@ -42,14 +42,41 @@ Index FeatureRegions::nearest() const {
     feature = found[0].feature_b;
     distance = found[0].gap;
   }
-  if (!sharp_ || !has_several() || std::abs(distance) > FeatureMargin::corner_follows) return feature;
+  if (!sharp_ || !has_several()) return feature;
+  if (std::abs(distance) > FeatureMargin::corner_follows) return face_of_segment(feature);
   // In the place of a corner rounding decides which feature is nearest.
   for (Index corner = 0; corner < outline_.size(); ++corner) {
     const Vec<2> off = place_ - outline_.vertices[corner];
     if (std::max(std::abs(off[0]), std::abs(off[1])) <= FeatureMargin::corner_follows)
       return touching_at(corner, feature);
   }
-  return feature;
+  return face_of_segment(feature);
+}
+
+/// Of the two faces of a segment without thickness that before which the outline of the vertex stands. A
+/// vertex that has gone through the segment is behind it, although it is nearer to the other face: the
+/// segment is between the vertex and the middle of its outline. \param nearest feature
+Index FeatureRegions::face_of_segment(Index nearest) const {
+  const Index n = outline_.size();
+  if (chain_ || !is_flat(outline_) || of_vertex_.size() < 2 || !outline_.is_edge(nearest)) return nearest;
+  const OutlineEdge face(outline_, nearest - n);
+  Vec<2> sum = Vec<2>::Zero();
+  for (const Vec<2>& vertex : of_vertex_.vertices) sum += vertex;
+  const Vec<2> middle = sum / static_cast<double>(of_vertex_.size());
+  const Vec<2> turned(cosine_ * middle[0] - sine_ * middle[1], sine_ * middle[0] + cosine_ * middle[1]);
+  const double behind = -face.height(Vec<2>(shift_ + turned));
+  if (!(behind > 0.0)) return nearest;
+  const double above = std::max(0.0, face.height(place_)), share = above / (above + behind);
+  // Two segments cross each other at the end that has gone through by the least.
+  if (of_vertex_.size() == 2) {
+    const OutlineEdge other(of_vertex_, 0);
+    for (const Vec<2>& end : outline_.vertices) {
+      if (std::abs(other.height(in_frame_of_vertex(end))) < above) return nearest;
+    }
+  }
+  const double at_vertex = face.coordinate(place_), at_middle = face.coordinate(Vec<2>(shift_ + turned));
+  const double along = at_vertex + share * (at_middle - at_vertex);
+  return along >= 0.0 && along <= face.length ? n + face.head : nearest;
 }
 
 /// Of the two edges at a corner the one along which the outlines are separated, or overlap least.

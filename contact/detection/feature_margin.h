@@ -32,6 +32,10 @@ public:
 
   /// True if there is more than one feature.
   [[nodiscard]] bool has_several() const { return outline_.size() > 1; }
+  /// True of an outline that is a segment without thickness: it has two faces, each with a side of its own.
+  [[nodiscard]] static bool is_flat(const ConvexOutline& outline) {
+    return outline.size() == 2 && outline.radius == 0.0;
+  }
   /// True if neither vertex nor outline are rounded.
   [[nodiscard]] bool is_sharp() const { return sharp_; }
   /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows from each other the edge
@@ -50,6 +54,7 @@ public:
   [[nodiscard]] double clearance(Index feature) const;
 
 private:
+  [[nodiscard]] Index face_of_segment(Index nearest) const;
   [[nodiscard]] Index touching_at(Index corner, Index found) const;
   [[nodiscard]] Index edge_at(Index corner, Index found) const;
   [[nodiscard]] Vec<2> in_frame_of_vertex(const Vec<2>& point) const;

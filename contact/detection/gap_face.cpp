@@ -193,9 +193,11 @@ private:
     if (corner.is_free || beyond_neighbour <= 0.0 || own >= 0.0) return true;
     // Outside the ridge, before the neighbour, and so is all of the outline.
     if (height > 0.0 && !is_cut_by(ends_) && !is_cut_by(neighbour_at(corner, sense))) return false;
-    // Inside it, before both faces: the nearer one has it, if it looks at this vertex.
+    // Inside it, before both faces: the nearer one has it, if it looks at this vertex, or if all of the
+    // outline is out of that one sooner than the vertex is out of this.
     if (sense > 0.0 ? own >= height : own > height) return true;
-    return separation_at(corner.at, corner.along) < height;
+    const double separation = separation_at(corner.at, corner.along);
+    return separation < height && separation < own;
   }
 
   const ConvexOutline& a_;

@@ -120,7 +120,8 @@ GroundContacts::ShapeBits GroundContacts::shapes_near(Range bodies, const Centre
                                                       const ContactQuery& query) const {
   if (query.lasting != nullptr) {
     const bool bare = centres.points == none;
-    if (bare ? query.lasting->any_centre(bodies) : shapes_.any_moves()) return all_shapes;
+    const bool others_open = shapes_.any_moves() || query.lasting->keeps_pressed();
+    if (bare ? query.lasting->any_centre(bodies) : others_open) return all_shapes;
   }
   const double margin = reach_of(centres, query.margin);
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];

@@ -11,6 +11,7 @@
 #include <carom/core/constraint_table.h>
 #include <carom/core/export.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,17 +28,22 @@ public:
   static constexpr double most_opening = 8.0;
 
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
-  /// \param slack opening that is none [m]
-  void start(double step, double slack = 0.0) {
+  /// \param slack opening that is none [m] \param keeps_pressed whether contacts that pressed last whatever
+  /// their gap
+  void start(double step, double slack = 0.0, bool keeps_pressed = false) {
     step_ = step;
     slack_ = slack;
+    keeps_pressed_ = keeps_pressed;
     contacts_.clear();
     centres_.clear();
+    pressed_.clear();
   }
   /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
-  void add(const ConstraintKey& key, Index centre = none) {
+  /// \param pressed whether it had an impulse
+  void add(const ConstraintKey& key, Index centre = none, bool pressed = false) {
     contacts_.add(key);
     if (centre != none) centres_.push_back(centre);
+    if (keeps_pressed_) pressed_.push_back(pressed ? 1 : 0);
   }
   /// Makes the contacts ready to be looked up.
   void finish() {
@@ -57,9 +63,15 @@ public:
   [[nodiscard]] double step() const { return step_; }
   /// Opening that counts as none [m].
   [[nodiscard]] double slack() const { return slack_; }
-  /// True if a contact is among them and turning explains its gap. \param turning bound on |d| [m/s^2]
+  /// True if contacts that pressed last whatever their gap.
+  [[nodiscard]] bool keeps_pressed() const { return keeps_pressed_; }
+  /// True if a contact is among them and turning explains its gap, or it pressed and that is enough.
+  /// \param turning bound on |d| [m/s^2]
   [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
-    return gap <= reach(turning) + slack_ && contains(key);
+    if (gap <= reach(turning) + slack_) return contains(key);
+    if (!keeps_pressed_) return false;
+    const Index place = contacts_.find(key);
+    return place != none && pressed_[place] != 0;
   }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
@@ -68,8 +80,10 @@ private:
   void put_in_order();
 
   double step_ = 0.0, slack_ = 0.0;
+  bool keeps_pressed_ = false;
   ConstraintTable contacts_;
-  std::vector<Index> centres_;  // ascending
+  std::vector<Index> centres_;         // ascending
+  std::vector<std::uint8_t> pressed_;  // in the order of add(), where that is asked
 };
 
 }  // namespace carom

@@ -20,6 +20,24 @@ constexpr int most_impacts_at_once = 10000;
 // makes others approach, and so on. After these only what approaches is stopped, which ends.
 constexpr int most_closings_at_once = 16;
 
+/// True of two contacts of the same two outlines that are one: where two round corners meet, each of them
+/// stands against the outline of the other.
+bool is_repeated(const Constraint& contact, const Constraint& other) {
+  constexpr double rounding = 1e-12;  // of directions and levers, which both follow from the same two corners
+  const auto same_owner = [](const FeatureKey& one, const FeatureKey& two) {
+    return one.owner == two.owner && one.serial == two.serial;
+  };
+  if (contact.type != ConstraintType::contact || other.type != contact.type || contact.rows != other.rows ||
+      contact.columns() != other.columns() || !same_owner(contact.key.a, other.key.a) ||
+      !same_owner(contact.key.b, other.key.b)) {
+    return false;
+  }
+  const auto* const end = contact.jacobian.data() + contact.rows * contact.columns();
+  return std::equal(contact.jacobian.data(), end, other.jacobian.data(), [](double one, double two) {
+    return std::abs(one - two) <= rounding * std::max(1.0, std::abs(one));
+  });
+}
+
 }  // namespace
 
 bool ImpactStage::resolve(EventInstant& at) {
@@ -81,6 +99,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
+  if (!captured) leave_out_repeated();
   memory_->note = {};
   memory_->note.cut_sequence =
       sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
@@ -150,12 +169,33 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     Constraint& contact = touching.emplace_back(at.contacts[i]);
     memory_->places.push_back(i);
     contact.friction_bound = 0.0;
-    if (!rolling) contact.friction = contact.law.friction_at(contact.sliding_speed(at.velocities()));
+    // Rounding is no sliding: what sticks has its static friction.
+    const double sliding = contact.sliding_speed(at.velocities());
+    if (!rolling) contact.friction = contact.law.friction_at(sliding > at.scales.speed_noise ? sliding : 0.0);
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (at.rate_jumps && at.before_at[i] != none) {
       contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
     }
   }
+}
+
+/// Leaves out contacts that are listed twice, with their rolling resistance: one contact is solved as such.
+void ImpactStage::leave_out_repeated() {
+  std::vector<Constraint>& touching = memory_->touching;
+  std::size_t kept = 0;
+  bool leaves_out = false;
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    const auto is_same = [&](const Constraint& other) { return is_repeated(touching[i], other); };
+    if (touching[i].type != ConstraintType::rolling) {
+      const auto end = touching.begin() + static_cast<std::ptrdiff_t>(kept);
+      leaves_out = std::find_if(touching.begin(), end, is_same) != end;
+    }
+    if (leaves_out) continue;
+    if (kept != i) touching[kept] = touching[i];
+    memory_->places[kept++] = memory_->places[i];
+  }
+  touching.resize(kept);
+  memory_->places.resize(kept);
 }
 
 void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) const {

@@ -63,6 +63,7 @@ void GapProjection::start(const Bodies& bodies, const Which& which, Range v, con
   towards_.resize(state.v.size());
   std::copy(state.q.begin() + first, state.q.begin() + end, unmoved_.begin() + first);
   std::fill(displacement_.begin() + v.begin, displacement_.begin() + v.end, 0.0);
+  pushed_.clear();
   wanted_.clear();
   for (const Constraint& contact : which.taking_part) wanted_.push_back(pair_of(contact.key));
   std::sort(wanted_.begin(), wanted_.end());
@@ -102,8 +103,11 @@ GapProjection::Result GapProjection::project(const Bodies& bodies, const Which& 
       }
       const bool deep = std::any_of(together.begin(), together.end(),
                                     [&](const Constraint& at) { return at.gap < -2.0 * depth; });
-      const bool open = moved && std::all_of(together.begin(), together.end(),
-                                             [](const Constraint& at) { return at.gap > 0.0; });
+      // What pushes a body ends closed: a pass that moves it too far leaves the contact open by the square of
+      // the way, and the next step without it.
+      const bool open = moved && std::any_of(together.begin(), together.end(), [&](const Constraint& at) {
+                          return at.gap > 0.0 && has_pushed(at.key);
+                        });
       // Where turning bodies have been moved far their joints are off by the square of it.
       if (deep || open || (moved && is_off(state, evaluation, 2.0 * depth))) {
         improved = move(bodies, together, chain, state, evaluation, depth) || improved;
@@ -152,6 +156,21 @@ bool GapProjection::has_moved(const Bodies& bodies, std::span<const Constraint> 
     return std::any_of(displacement_.begin() + slot.v, displacement_.begin() + slot.v + slot.v_size,
                        [](double number) { return number != 0.0; });
   });
+}
+
+/// True if a contact pushed in the last pass that moved its bodies.
+bool GapProjection::has_pushed(const ConstraintKey& key) const {
+  return std::binary_search(pushed_.begin(), pushed_.end(), key);
+}
+
+/// Notes which contacts push, by their multipliers.
+void GapProjection::note_pushes(std::span<const Constraint> contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto place = std::lower_bound(pushed_.begin(), pushed_.end(), contacts[i].key);
+    const bool is_there = place != pushed_.end() && *place == contacts[i].key;
+    if (multipliers_[i] > 0.0 && !is_there) pushed_.insert(place, contacts[i].key);
+    if (!(multipliers_[i] > 0.0) && is_there) pushed_.erase(place);
+  }
 }
 
 /// True if a gap of the joints at hand is larger than `depth`.
@@ -203,6 +222,7 @@ bool GapProjection::move(const Bodies& bodies, std::span<const Constraint> conta
                            contacts[i].times(0, towards_.data());
   }
   if (!chain.solve(problem_, multipliers_).usable()) return false;
+  note_pushes(contacts);
   delassus_.add_response(multipliers_, towards_.data());
   for (const Index body : of_island_) {
     const BodySlot slot = slots[body];

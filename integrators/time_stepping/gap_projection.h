@@ -65,6 +65,8 @@ private:
   void find(const Bodies& bodies, const Which& which, double margin, const State& state,
             const Evaluation& evaluation);
   [[nodiscard]] bool has_moved(const Bodies& bodies, std::span<const Constraint> contacts);
+  [[nodiscard]] bool has_pushed(const ConstraintKey& key) const;
+  void note_pushes(std::span<const Constraint> contacts);
   [[nodiscard]] bool is_off(const State& state, const Evaluation& evaluation, double depth) const;
   bool move(const Bodies& bodies, std::span<const Constraint> contacts, SolverChain& chain, State& state,
             const Evaluation& evaluation, double depth);
@@ -73,6 +75,7 @@ private:
   std::vector<Constraint> contacts_;
   BodyContactSearch search_;
   std::vector<ConstraintKey> wanted_;  // of contacts that take part, ascending
+  std::vector<ConstraintKey> pushed_;  // of contacts that pushed in the last pass, ascending
   IslandPartition partition_;
   std::vector<ImpulseDirection> normals_;
   Delassus delassus_;

@@ -12,8 +12,14 @@ namespace carom {
 
 namespace {
 
-/// A body that was hit where a gap closed stands on the ground to rounding: on either side of it [m].
+/// A body that was hit where a gap closed, or moved out of the ground, stands on it to rounding: on either
+/// side of it [m].
 constexpr double rounding = 1e-12;
+
+/// True if bodies stand on the ground to rounding where contact lasts.
+bool ends_at_rounding(const TimeStepping& options) {
+  return options.impacts == ImpactTimes::located || options.project_gaps;
+}
 
 /// True if turning can open contacts: of a feature on an arm, on ground that moves or is curved, of two
 /// bodies, of outlines, at limits (contact/detection/lasting_contacts.h).
@@ -35,10 +41,15 @@ bool is_plain(const Detector& detector) {
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
-      rules_{options.capture_speed, options.impacts == ImpactTimes::located ? rounding : 0.0,
+      rules_{options.capture_speed,
+             ends_at_rounding(options) ? rounding : 0.0,
+             options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
-             options.impacts == ImpactTimes::located || turning_opens(detector_), is_plain(detector_)},
-      islands_(assembly) {}
+             ends_at_rounding(options) || turning_opens(detector_),
+             is_plain(detector_)},
+      islands_(assembly) {
+  if (options.project_gaps) rules_.margin = rounding;
+}
 
 void StepConstraints::allow_rounding(double step) {
   rules_.margin = rounding;
@@ -58,7 +69,8 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   if (rules_.plain && !rules_.turning) return;  // nobody asks
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
-    detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
+    detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, rules_.keeps_pressed,
+                       lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();

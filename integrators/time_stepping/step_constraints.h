@@ -90,6 +90,7 @@ private:
   struct {
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
+    bool keeps_pressed;               // contacts with an impulse in the step before last
     bool drifts;                      // contacts of two bodies need their drifts
     bool turning;                     // contacts may be opened by turning, or by slack
     bool plain;                       // nothing touches but ground at rest, with laws of sliding alone

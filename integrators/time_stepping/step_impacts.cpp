@@ -103,8 +103,9 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     if (!(fastest(contacts) > least)) return;
     touching_.assign(contacts.begin(), contacts.end());
     for (Constraint& contact : touching_) {
-      if (!contact.has_dry_friction())
-        contact.friction = contact.law.friction_at(contact.sliding_speed(start_.v.data()));
+      if (contact.has_dry_friction()) continue;
+      const double sliding = contact.sliding_speed(start_.v.data());
+      contact.friction = contact.law.friction_at(sliding > noise ? sliding : 0.0);
     }
     ImpactNote note;
     note.cut_sequence = sequential && round >= options.impact_rules.sequence_limit;

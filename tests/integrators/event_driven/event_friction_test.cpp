@@ -288,4 +288,44 @@ TEST(EventFriction, StribecksCurveSlowsAsTheClosedFormSays) {
   EXPECT_TRUE(ledger.closes());
 }
 
+TEST(EventFriction, WhatSticksHasItsStaticFrictionWhenItIsHit) {
+  // A box is carried by a belt, and hit from above by a disc that drags it along: both floor contacts slip in
+  // the impact, from sticking. The speed against the belt is rounding, which differs with the slope.
+  constexpr double mu_k = 0.3, mu_s = 0.5;
+  int sliding_by_rounding = 0;
+  for (int i = 0; i < 40; ++i) {
+    const double slope = 0.03 * i, belt = 0.7 + 0.013 * i;
+    const Vec<2> normal = incline(slope), along(normal[1], -normal[0]);
+    System system;
+    system.add(Gravity{-g * normal});
+    const MaterialId rubber = system.material("rubber"), wood = system.material("wood");
+    const Surface floor{.friction = mu_k, .normal_restitution = 0.0, .static_friction = mu_s};
+    system.between(rubber, wood, floor);
+    system.between(wood, wood, {.friction = 0.8, .normal_restitution = 0.0});
+    system.add(HalfPlane{.normal = normal, .material = rubber, .surface_speed = belt});
+    const BodyId block = system.add(RigidBody{
+        .mass = box(1.0, 0.6, 0.1), .position = 0.05 * normal, .angle = slope, .velocity = belt * along});
+    system.add(Polygon{.body = block,
+                       .vertices = {{-0.3, -0.05}, {0.3, -0.05}, {0.3, 0.05}, {-0.3, 0.05}},
+                       .material = wood});
+    const BodyId ball = system.add(RigidBody{.mass = disc(3.0, 0.05),
+                                             .position = 0.35 * normal - 0.53 * along,
+                                             .velocity = 6.0 * along - 2.0 * normal});
+    system.add(Disc{.body = ball, .radius = 0.05, .material = wood});
+    Simulation simulation(std::move(system), tight());
+    simulation.run_until(0.2);
+    double pressed = 0.0, rubbed = 0.0;
+    for (const EventRecord& event : simulation.events()) {
+      if (event.kind != EventKind::impact || !event.obstacle.valid()) continue;
+      if (pressed == 0.0 && event.velocity_before[1] != 0.0) ++sliding_by_rounding;
+      EXPECT_LE(std::abs(event.velocity_before[1]), 1e-11) << i;
+      pressed += event.impulse[0];
+      rubbed += event.impulse[1];
+    }
+    ASSERT_GT(pressed, 1.0) << i;
+    EXPECT_NEAR(rubbed, -mu_s * pressed, 1e-11 * pressed) << i;
+  }
+  EXPECT_GE(sliding_by_rounding, 1);
+}
+
 }  // namespace
