@@ -11,10 +11,17 @@
 #include <carom/core/constraint_table.h>
 #include <carom/core/export.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 namespace carom {
+
+/// Opening of contacts that is none [m].
+struct OpeningSlack {
+  double of_all = 0.0;      ///< rounding
+  double of_pressed = 0.0;  ///< of those that pushed in the step before: errors of their answers too
+};
 
 /// The contacts of the step before that turning may have opened, and by how much. A workspace:
 /// Detector::remember() fills it at the start of every step.
@@ -27,16 +34,18 @@ public:
   static constexpr double most_opening = 8.0;
 
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
-  /// \param slack opening that is none [m]
-  void start(double step, double slack = 0.0) {
+  void start(double step, const OpeningSlack& slack = {}) {
     step_ = step;
     slack_ = slack;
     contacts_.clear();
+    pressed_.clear();
     centres_.clear();
   }
-  /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
-  void add(const ConstraintKey& key, Index centre = none) {
+  /// Adds a contact. \param pressed whether it had an impulse \param centre its body, in the order of
+  /// assembly, where it touches at its centre of mass
+  void add(const ConstraintKey& key, bool pressed = false, Index centre = none) {
     contacts_.add(key);
+    if (slack_.of_pressed > 0.0) pressed_.push_back(pressed);
     if (centre != none) centres_.push_back(centre);
   }
   /// Makes the contacts ready to be looked up.
@@ -51,15 +60,23 @@ public:
   [[nodiscard]] std::span<const ConstraintKey> keys() const { return contacts_.keys(); }
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }
+  /// True if a contact is among them and had an impulse, where these have a slack of their own.
+  [[nodiscard]] bool is_pressed(const ConstraintKey& key) const {
+    const Index known = contacts_.find(key);
+    return known < pressed_.size() && pressed_[known];
+  }
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
   [[nodiscard]] double step() const { return step_; }
-  /// Opening that counts as none [m].
-  [[nodiscard]] double slack() const { return slack_; }
+  /// The largest opening that counts as none [m].
+  [[nodiscard]] double slack() const { return std::max(slack_.of_all, slack_.of_pressed); }
   /// True if a contact is among them and turning explains its gap. \param turning bound on |d| [m/s^2]
   [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
-    return gap <= reach(turning) + slack_ && contains(key);
+    const double explained = reach(turning);
+    if (!(gap <= explained + slack())) return false;
+    return gap <= explained + slack_.of_all ? contains(key)
+                                            : gap <= explained + slack_.of_pressed && is_pressed(key);
   }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
@@ -67,8 +84,10 @@ public:
 private:
   void put_in_order();
 
-  double step_ = 0.0, slack_ = 0.0;
+  double step_ = 0.0;
+  OpeningSlack slack_;
   ConstraintTable contacts_;
+  std::vector<bool> pressed_;   // in the order of add(); empty without a slack of theirs
   std::vector<Index> centres_;  // ascending
 };
 

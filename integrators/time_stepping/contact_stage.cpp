@@ -9,10 +9,13 @@ namespace carom {
 
 namespace {
 
-/// The impulses of the step before, by key, are where sweeps start.
+/// The impulses of the step before, by key, are where sweeps start: per time, unless that step was much
+/// shorter. Then they are more than forces, by what velocities had to change however short it was, and sweeps
+/// would start from impulses without end that cancel each other.
 class LastImpulses {
 public:
-  LastImpulses(const ContactHistory& before, double step) : before_(before), longer_(step / before.step) {}
+  LastImpulses(const ContactHistory& before, double step)
+      : before_(before), longer_(std::min(step / before.step, most_growth)) {}
   /// \param impulses out, by row of the constraints
   void operator()(std::span<const Constraint> constraints, double* impulses) {
     for (const Constraint& constraint : constraints) {
@@ -25,6 +28,8 @@ public:
   }
 
 private:
+  static constexpr double most_growth = 2.0;  // that of step control
+
   const ContactHistory& before_;
   double longer_;
   Index next_ = 0;  // most contacts are those of the step before, in the same order

@@ -57,7 +57,10 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 void StepConstraints::remember(const StepInput& in, double last_step) {
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
-    detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, lasting_);
+    const double step = std::max(in.step, last_step);
+    const bool is_free = rules_.parting == Parting::is_free;
+    const OpeningSlack slack{rules_.slack, is_free ? step * rules_.capture_speed : rules_.slack};
+    detector_.remember(in.companion.modes, step, slack, lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
@@ -81,13 +84,25 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
   }
 }
 
-/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; and
-/// one that stays closed to rounding over a step, for it would close in it again and again.
+/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; one
+/// that stays closed to rounding over a step, for it would close in it again and again; and one that pushed
+/// in the step before, if it parts slowly: as its answer was to keep it closed, it parts by what that was
+/// wrong.
 bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
   if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
   const double* const v = in.start.v.data();
-  return constraint.velocity(0, v) > std::max(noise * constraint.speed(0, v), rules_.slowest);
+  const double rate = constraint.velocity(0, v);
+  if (!(rate > std::max(noise * constraint.speed(0, v), rules_.slowest))) return false;
+  return rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key);
+}
+
+/// A contact that parts and acts may come back as fast, which does no work: held where it has come to, it
+/// would gain what loads take to draw it back.
+void StepConstraints::allow_return(const StepInput& in, Constraint& constraint) const {
+  if (rules_.parting != Parting::is_free || constraint.has_dry_friction()) return;
+  const double rate = constraint.velocity(0, in.start.v.data());
+  if (rate > rules_.slowest) constraint.allowed_approach = std::max(constraint.allowed_approach, rate);
 }
 
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
@@ -106,6 +121,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   take_sticking(found);
+  for (Constraint& constraint : found) allow_return(in, constraint);
   // Friction in joints comes last.
   if (found.back().has_dry_friction())
     share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
@@ -196,6 +212,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
     if (sticks) take_sticking({&out, 1});
+    allow_return(in, out);
   }
   islands_.take(constraints_);
   return true;
