@@ -136,6 +136,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   }
   add(out, companion.joints);
   add(out, companion.contacts);
+  out.add(companion.steps_owed);
   const std::string_view body(out.bytes().data(), out.bytes().size());
   CheckpointWriter end;
   end.add(checksum(body));
@@ -325,6 +326,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
     read_joint_history(in, state.v.size(), other.joints);
     read_contacts(in, other.contacts);
   }
+  if (version >= 11) in.get(other.steps_owed);
   in.finish();
   demand_rhythms(path, other.rhythms, companion.rhythms);
   state = std::move(read);

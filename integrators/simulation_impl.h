@@ -44,6 +44,7 @@ struct Simulation::Impl {
     companion.history.known = 0;
     companion.joints.clear();
     companion.iterations.clear();
+    companion.steps_owed = 0;
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();
   }

@@ -32,9 +32,9 @@ void Detector::find(Range components, const ContactQuery& query, std::vector<Con
 }
 
 void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
-                        double slack, bool keeps_pressed, LastingContacts& out) const {
-  out.start(step, slack, keeps_pressed);
-  const bool any_opens = slack != 0.0 || keeps_pressed;
+                        const OpeningSlack& slack, LastingContacts& out) const {
+  out.start(step, slack);
+  const bool no_slack = out.slack() == 0.0;
   const Layout& layout = *assembly_->layout();
   const GroundShapes& shapes = ground_.shapes();
   for (const auto& entry : contacts) {
@@ -42,21 +42,21 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
     const bool pressed = entry.second != ContactMode::open;
     const bool of_bodies = key.b.owner != FeatureKey::Owner::obstacle;
     if (key.a.owner != FeatureKey::Owner::body || of_bodies) {
-      out.add(key, none, pressed);
+      out.add(key, pressed);
       continue;
     }
-    // A centre of mass has no arm: but for slack and pressing only a shape that turns, or is curved, can open
-    // such a contact.
-    if (!any_opens && !shapes.any_moves() && pieces_.empty()) continue;
+    // A centre of mass has no arm: but for slack only a shape that turns, or is curved, can open such a
+    // contact.
+    if (no_slack && !shapes.any_moves() && pieces_.empty()) continue;
     const Index shape = shapes.find(key.b.serial);
     if (shape != none && shapes.has_pieces(shape)) {
-      out.add(key, none, pressed);
+      out.add(key, pressed);
       continue;
     }
     const BodyId body{key.a.serial, layout.token()};
     if (shape == none || !layout.contains(body)) continue;
-    if (!any_opens && !shapes.moves(shape)) continue;
-    out.add(key, layout.index(body), pressed);
+    if (no_slack && !shapes.moves(shape)) continue;
+    out.add(key, pressed, layout.index(body));
   }
   out.finish();
 }

@@ -78,10 +78,9 @@ public:
   [[nodiscard]] const JointRows& joints() const { return joints_; }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
   /// Companion::modes \param step length of a step that gaps may come from [s]
-  /// \param slack opening of any contact that is none [m]
-  /// \param keeps_pressed whether contacts with an impulse last whatever their gap
-  void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step, double slack,
-                bool keeps_pressed, LastingContacts& out) const;
+  /// \param slack openings that are none
+  void remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
+                const OpeningSlack& slack, LastingContacts& out) const;
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;

@@ -123,12 +123,13 @@ GroundContacts::ShapeBits GroundContacts::shapes_near(Range bodies, const Centre
     const bool others_open = shapes_.any_moves() || query.lasting->keeps_pressed();
     if (bare ? query.lasting->any_centre(bodies) : others_open) return all_shapes;
   }
-  const double margin = reach_of(centres, query.margin);
+  const double slack = query.lasting == nullptr ? 0.0 : query.lasting->slack();
+  const double margin = reach_of(centres, query.margin + slack);
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
   const std::span<const Index> touched = laws_.touched_by(material_of(centres));
   ShapeBits near = 0;
-  bool may_open = query.lasting != nullptr && query.lasting->slack() != 0.0;
+  bool may_open = slack != 0.0;
   for (std::size_t place = 0; place < touched.size(); ++place) {
     const Index shape = touched[place];
     if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) near |= bit_of(place);

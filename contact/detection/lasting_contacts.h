@@ -11,11 +11,19 @@
 #include <carom/core/constraint_table.h>
 #include <carom/core/export.h>
 
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
 namespace carom {
+
+/// Opening of contacts that is none [m].
+struct OpeningSlack {
+  double of_all = 0.0;      ///< rounding
+  double of_pressed = 0.0;  ///< of those that pushed in the step before: errors of their answers too;
+                            ///< infinity: they last whatever their gap
+};
 
 /// The contacts of the step before that turning may have opened, and by how much. A workspace:
 /// Detector::remember() fills it at the start of every step.
@@ -28,22 +36,19 @@ public:
   static constexpr double most_opening = 8.0;
 
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
-  /// \param slack opening that is none [m] \param keeps_pressed whether contacts that pressed last whatever
-  /// their gap
-  void start(double step, double slack = 0.0, bool keeps_pressed = false) {
+  void start(double step, const OpeningSlack& slack = {}) {
     step_ = step;
     slack_ = slack;
-    keeps_pressed_ = keeps_pressed;
     contacts_.clear();
-    centres_.clear();
     pressed_.clear();
+    centres_.clear();
   }
-  /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
-  /// \param pressed whether it had an impulse
-  void add(const ConstraintKey& key, Index centre = none, bool pressed = false) {
+  /// Adds a contact. \param pressed whether it had an impulse \param centre its body, in the order of
+  /// assembly, where it touches at its centre of mass
+  void add(const ConstraintKey& key, bool pressed = false, Index centre = none) {
     contacts_.add(key);
+    if (slack_.of_pressed > 0.0) pressed_.push_back(pressed);
     if (centre != none) centres_.push_back(centre);
-    if (keeps_pressed_) pressed_.push_back(pressed ? 1 : 0);
   }
   /// Makes the contacts ready to be looked up.
   void finish() {
@@ -57,21 +62,27 @@ public:
   [[nodiscard]] std::span<const ConstraintKey> keys() const { return contacts_.keys(); }
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }
+  /// True if a contact is among them and had an impulse, where these have a slack of their own.
+  [[nodiscard]] bool is_pressed(const ConstraintKey& key) const {
+    const Index known = contacts_.find(key);
+    return known < pressed_.size() && pressed_[known];
+  }
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.
   [[nodiscard]] bool any_centre(Range bodies) const;
   /// Length of the step that gaps come from [s].
   [[nodiscard]] double step() const { return step_; }
-  /// Opening that counts as none [m].
-  [[nodiscard]] double slack() const { return slack_; }
-  /// True if contacts that pressed last whatever their gap.
-  [[nodiscard]] bool keeps_pressed() const { return keeps_pressed_; }
-  /// True if a contact is among them and turning explains its gap, or it pressed and that is enough.
-  /// \param turning bound on |d| [m/s^2]
+  /// True if contacts that pushed last whatever their gap.
+  [[nodiscard]] bool keeps_pressed() const { return std::isinf(slack_.of_pressed); }
+  /// The largest opening that counts as none and has a bound [m].
+  [[nodiscard]] double slack() const {
+    return keeps_pressed() ? slack_.of_all : std::max(slack_.of_all, slack_.of_pressed);
+  }
+  /// True if a contact is among them and turning explains its gap, or slack. \param turning bound on |d|
+  /// [m/s^2]
   [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
-    if (gap <= reach(turning) + slack_) return contains(key);
-    if (!keeps_pressed_) return false;
-    const Index place = contacts_.find(key);
-    return place != none && pressed_[place] != 0;
+    const double explained = reach(turning);
+    if (gap <= explained + slack_.of_all) return contains(key);
+    return gap <= explained + slack_.of_pressed && is_pressed(key);
   }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
@@ -79,11 +90,11 @@ public:
 private:
   void put_in_order();
 
-  double step_ = 0.0, slack_ = 0.0;
-  bool keeps_pressed_ = false;
+  double step_ = 0.0;
+  OpeningSlack slack_;
   ConstraintTable contacts_;
-  std::vector<Index> centres_;         // ascending
-  std::vector<std::uint8_t> pressed_;  // in the order of add(), where that is asked
+  std::vector<bool> pressed_;   // in the order of add(); empty without a slack of theirs
+  std::vector<Index> centres_;  // ascending
 };
 
 }  // namespace carom

@@ -271,13 +271,16 @@ double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& w
   return 0.0;
 }
 
-/// Friction in a joint, along its row at the start or halfway, where the trial has the mean velocities.
+/// Friction in a joint, along its row at the start or halfway, where the trial has the mean velocities. What
+/// a row that turns makes of the velocities at both ends is work of the friction too.
 void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                                       const StepTrial& trial, ImpulseWork& sum) {
   const Constraint& at = problem.constraints()[contact];
   const double moment = problem.map().impulse(contact, 0), before = problem.map().before(contact, 0);
-  const double mean_rate = after == trial.end.v.data() ? at.times(0, trial.midpoint.v.data())
-                                                       : 0.5 * (before + at.velocity_after(0, after));
+  const double made_up = at.surface_velocity[0] + at.surface_velocity_after[0];
+  const double mean_rate = after == trial.end.v.data()
+                               ? at.times(0, trial.midpoint.v.data())
+                               : 0.5 * (before + at.velocity_after(0, after) + made_up);
   JointReaction reaction;
   reaction.moment = moment;
   result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;

@@ -10,13 +10,15 @@ namespace carom {
 
 namespace {
 
-/// The impulses of the step before, by key, are where sweeps start.
+/// The impulses of the step before, by key, are where sweeps start: per time, unless that step was much
+/// shorter. Then they are more than forces, by what velocities had to change however short it was, and sweeps
+/// would start from impulses without end that cancel each other.
 class LastImpulses {
 public:
   LastImpulses(const ContactHistory& before, double step) : before_(before), step_(step) {}
   /// \param impulses out, by row of the constraints
   void operator()(std::span<const Constraint> constraints, double* impulses) {
-    const double longer = step_ / before_.step;
+    const double longer = std::min(step_ / before_.step, most_growth);
     for (const Constraint& constraint : constraints) {
       const Index known = before_.contacts.find(constraint.key, next_);
       if (known != none) next_ = known + 1;
@@ -27,6 +29,8 @@ public:
   }
 
 private:
+  static constexpr double most_growth = 2.0;  // that of step control
+
   const ContactHistory& before_;
   double step_;
   Index next_ = 0;  // most contacts are those of the step before, in the same order

@@ -13,12 +13,22 @@ constexpr int most_tries = 20;
 // Of velocities: changes as small as this are rounding.
 constexpr double rounding = 1e-14;
 
-bool is_before(const Constraint& a, const Constraint& b) { return a.key < b.key; }
+bool is_before(const Constraint& a, const Constraint& b) {
+  return a.key != b.key ? a.key < b.key : a.type < b.type;
+}
 
-/// The contact of a key in a list that is ordered by keys; null if there is none.
+/// The constraint of a key and type in a list that is ordered by these; null if there is none.
 const Constraint* find_in(const std::vector<Constraint>& list, const Constraint& contact) {
   const auto at = std::lower_bound(list.begin(), list.end(), contact, is_before);
-  return at == list.end() || at->key != contact.key ? nullptr : &*at;
+  return at == list.end() || is_before(contact, *at) ? nullptr : &*at;
+}
+
+/// Brings a constraint to another one, but for what the sweeps make of it.
+void take(const Constraint& from, Constraint& to) {
+  to.jacobian = from.jacobian;
+  to.surface_velocity = from.surface_velocity;
+  to.surface_velocity_after = from.surface_velocity_after;
+  to.friction_bound = from.friction_bound;
 }
 
 }  // namespace
@@ -26,8 +36,10 @@ const Constraint* find_in(const std::vector<Constraint>& list, const Constraint&
 void ContactTurning::begin(std::span<const StepIsland> islands, bool alone) {
   turned_.clear();
   shared_.clear();
+  mechanisms_.clear();
   tries_ = 0;
   change_ = std::numeric_limits<double>::infinity();
+  joints_->forget_paths();
   for (const StepIsland& island : islands) {
     for (const Constraint& contact : island.constraints) {
       for (int b = 0; contact.bodies > 1 && b < contact.bodies; ++b)
@@ -36,14 +48,29 @@ void ContactTurning::begin(std::span<const StepIsland> islands, bool alone) {
   }
   std::sort(shared_.begin(), shared_.end());
   for (const StepIsland& island : islands) {
+    const std::size_t before = mechanisms_.size();
+    if (joints_->any()) list_mechanisms(island);
+    const bool answered = mechanisms_.size() > before;
     for (const Constraint& contact : island.constraints) {
-      if (contact.type != ConstraintType::contact || !contact.turns()) continue;
+      if (contact.type == ConstraintType::rolling) continue;  // spins
+      if (!answered && (contact.type != ConstraintType::contact || !contact.turns())) continue;
       if (alone && may_be_followed(contact)) continue;
-      turned_.push_back({contact, contact.surface_velocity_after});
+      turned_.push_back({contact, contact, contact.surface_velocity_after});
     }
   }
   std::sort(turned_.begin(), turned_.end(),
             [](const Turned& a, const Turned& b) { return is_before(a.start, b.start); });
+}
+
+/// Components of an island whose joints answer contact: not friction in them alone.
+void ContactTurning::list_mechanisms(const StepIsland& island) {
+  if (std::all_of(island.constraints.begin(), island.constraints.end(),
+                  [](const Constraint& constraint) { return constraint.has_dry_friction(); })) {
+    return;
+  }
+  for (const Index component : island.components) {
+    if (joints_->of(component) != nullptr) mechanisms_.push_back(component);
+  }
 }
 
 /// True of a contact of a body that may be followed alone.
@@ -52,17 +79,16 @@ bool ContactTurning::may_be_followed(const Constraint& contact) const {
          !std::binary_search(shared_.begin(), shared_.end(), contact.body());
 }
 
-/// Place of a contact among those that turn; their number if it is none of them.
+/// Place of a constraint among those that turn; their number if it is none of them.
 std::size_t ContactTurning::find(const Constraint& contact) const {
   const auto at = std::lower_bound(
       turned_.begin(), turned_.end(), contact,
       [](const Turned& turned, const Constraint& of) { return is_before(turned.start, of); });
-  const bool found =
-      contact.type == ConstraintType::contact && at != turned_.end() && at->start.key == contact.key;
+  const bool found = at != turned_.end() && !is_before(contact, at->start);
   return found ? static_cast<std::size_t>(at - turned_.begin()) : turned_.size();
 }
 
-bool ContactTurning::has_converged(const StepTrial& trial) {
+bool ContactTurning::has_converged(const StepTrial& trial, double residual) {
   const std::vector<double>& v = trial.end.v;
   double size = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i) size = std::max(size, lengths_[i] * std::abs(v[i]));
@@ -74,7 +100,8 @@ bool ContactTurning::has_converged(const StepTrial& trial) {
     double change = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i)
       change = std::max(change, lengths_[i] * std::abs(v[i] - last_[i]));
-    if (change <= noise_ || !(change < change_) || tries_ == most_tries) return true;
+    if (change <= std::max(noise_, residual * size) || !(change < change_) || tries_ == most_tries)
+      return true;
     change_ = change;
   }
   last_.assign(v.begin(), v.end());
@@ -92,6 +119,8 @@ double ContactTurning::reach(const StepInput& in) const {
         in.step * (std::abs(at.normal_velocity(in.start.v.data())) + in.step * std::abs(at.drift[0]));
     largest = std::max(largest, std::max(at.gap, 0.0) + opens);
   }
+  for (const Index component : mechanisms_)
+    largest = std::max(largest, joints_->of(component)->largest_displacement());
   return more * largest;
 }
 
@@ -100,40 +129,59 @@ void ContactTurning::find_at(const State& state, double margin, std::vector<Cons
   std::sort(out.begin(), out.end(), is_before);
 }
 
-bool ContactTurning::turn(const StepInput& in, const StepTrial& trial, std::span<const StepIsland> islands) {
-  if (turned_.empty() || has_converged(trial)) return false;
+bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands,
+                          double residual) {
+  if ((turned_.empty() && mechanisms_.empty()) || has_converged(trial, residual)) return false;
   middle_ = trial.end;
   middle_.time = in.start.time + 0.5 * in.step;
   // In the plane coordinates and velocities correspond one to one.
   for (std::size_t i = 0; i < middle_.q.size(); ++i) middle_.q[i] = 0.5 * (in.start.q[i] + trial.end.q[i]);
+  end_ = trial.end;
+  end_.time = in.end_time;
+  bool any = false;
+  for (const Index component : mechanisms_) {
+    JointStage& joints = *joints_->of(component);
+    any = joints.answer().follow_path(in, middle_, joints.rows(), trial) || any;
+  }
   const double margin = reach(in);
   find_at(middle_, margin, at_middle_);
-  middle_.q = trial.end.q;
-  middle_.time = in.end_time;
-  find_at(middle_, margin, at_end_);
-  const double *const v0 = in.start.v.data(), *const v1 = trial.end.v.data();
-  bool any = false;
-  for (const StepIsland& island : islands) {
-    for (Constraint& contact : island.constraints) any = turn(contact, v0, v1) || any;
-  }
+  find_at(end_, margin, at_end_);
+  for (Turned& turned : turned_) any = turn(turned, in.start.v.data(), end_.v.data(), trial) || any;
+  for (const StepIsland& island : islands) restore(island);
   return any;
 }
 
-/// True if the rows of a contact turn by more than rounding. \param v0,v1 velocities at both ends
-bool ContactTurning::turn(Constraint& contact, const double* v0, const double* v1) {
-  const std::size_t place = find(contact);
-  if (place == turned_.size()) return false;
-  Turned& turned = turned_[place];
-  const Constraint *const middle = find_in(at_middle_, contact), *const end = find_in(at_end_, contact);
-  if (middle == nullptr || end == nullptr) return false;  // it has come to another feature, or parted
+void ContactTurning::restore(const StepIsland& island) const {
+  for (Constraint& constraint : island.constraints) {
+    const std::size_t place = find(constraint);
+    if (place != turned_.size()) take(turned_[place].now, constraint);
+  }
+}
+
+/// Brings a constraint to the path. True if its rows turn by more than rounding. \param v0,v1 velocities at
+/// both ends \param trial with the rotations of mechanisms halfway and at the end
+bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, const StepTrial& trial) const {
+  Constraint middle = turned.start, end = turned.start;
+  if (turned.start.has_dry_friction()) {
+    const JointRows& joints = look_.detector().joints();
+    joints.update_friction({middle_.view(), trial.at_midpoint.rotation.data()}, middle);
+    joints.update_friction({end_.view(), trial.at_end.rotation.data()}, end);
+  } else {
+    const Constraint *const halfway = find_in(at_middle_, turned.start), *const last =
+                                                                             find_in(at_end_, turned.start);
+    if (halfway == nullptr || last == nullptr) return false;  // it has come to another feature, or parted
+    middle.jacobian = halfway->jacobian;
+    end.jacobian = last->jacobian;
+    end.surface_velocity = last->surface_velocity;
+  }
   bool turns = false;
-  contact.jacobian = middle->jacobian;
-  turned.ground_after = end->surface_velocity;
-  for (int i = 0; i < contact.rows; ++i) {
+  turned.now.jacobian = middle.jacobian;
+  turned.ground_after = end.surface_velocity;
+  for (int i = 0; i < middle.rows; ++i) {
     const auto row = static_cast<std::size_t>(i);
-    contact.surface_velocity[row] = middle->times(i, v0) - turned.start.velocity(i, v0);
-    contact.surface_velocity_after[row] = middle->times(i, v1) - end->velocity(i, v1);
-    const double made_up = contact.surface_velocity_after[row] - turned.ground_after[row];
+    turned.now.surface_velocity[row] = middle.times(i, v0) - turned.start.velocity(i, v0);
+    turned.now.surface_velocity_after[row] = middle.times(i, v1) - end.velocity(i, v1);
+    const double made_up = turned.now.surface_velocity_after[row] - turned.ground_after[row];
     turns = turns || std::abs(made_up) > noise_;
   }
   return turns;
@@ -145,7 +193,7 @@ double ContactTurning::work(const IslandProblem& problem) const {
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     const std::size_t place = find(contact);
-    if (place == turned_.size()) continue;
+    if (place == turned_.size() || contact.has_dry_friction()) continue;
     const Turned& turned = turned_[place];
     for (int i = 0; i < contact.rows; ++i) {
       const auto row = static_cast<std::size_t>(i);

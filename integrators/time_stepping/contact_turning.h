@@ -1,20 +1,24 @@
 #pragma once
 
 /// \file
-/// Lasting contacts that turn within a step, of bodies that share contacts (TimeStepping::impacts, where
-/// LocatedMotion does not follow a body alone). As joints are held: impulses act along the rows H_m halfway,
-/// at the mean of the coordinates, and the law takes the velocities along the rows at both ends,
+/// Lasting contacts that turn within a step, of bodies that share contacts or have joints
+/// (TimeStepping::impacts, where LocatedMotion does not follow a body alone). As joints are held: impulses
+/// act along the rows H_m halfway, at the mean of the coordinates, and the law takes the velocities along the
+/// rows at both ends,
 ///
 ///     gamma^- = H_0 v_0,   gamma^+ = H_1 v_1,
 ///
-/// so that contacts neither sink nor gain energy but by errors of third order in a step. The step is repeated
-/// with the rows of its own path until its end no longer changes.
+/// so that contacts neither sink nor gain energy but by errors of third order in a step. Joints answer
+/// contact by the same convention (joint_answer.h): were contact to act halfway, and the answer at the start,
+/// the two would do work on each other of first order. The step is repeated with the rows of its own path
+/// until its end no longer changes.
 
 #include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -27,40 +31,48 @@
 
 namespace carom {
 
-/// Rows of the contacts of one step. Keeps memory.
+/// Rows of the contacts of one step, and of the joints that answer them. Keeps memory.
 class CAROM_API ContactTurning {
 public:
-  /// Both must outlive it.
-  ContactTurning(const Assembly& assembly, const Detector& detector)
-      : look_(assembly, detector), lengths_(assembly.length_scales()) {}
+  /// All must outlive it.
+  ContactTurning(const Assembly& assembly, const Detector& detector, JointStages& joints)
+      : look_(assembly, detector), joints_(&joints), lengths_(assembly.length_scales()) {}
 
-  /// Begins a step whose contacts are those of some islands, as they are at its start.
+  /// Begins a step whose constraints are those of some islands, as they are at its start.
   /// \param alone whether bodies none of whose contacts is shared are followed by themselves
   void begin(std::span<const StepIsland> islands, bool alone);
-  /// Brings the contacts to the path of the trial. False if they are there: nothing turns, or the end of the
-  /// trial has changed no more than rounding since the last time, or no less.
-  [[nodiscard]] bool turn(const StepInput& in, const StepTrial& trial, std::span<const StepIsland> islands);
+  /// Brings the constraints to the path of the trial, and the joints that answer them. False if they are
+  /// there: nothing turns, or the end of the trial has changed no more than rounding and errors of the
+  /// answers since the last time, or no less. \param residual the largest certificate of the answers
+  [[nodiscard]] bool turn(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands,
+                          double residual);
+  /// Brings constraints that were found anew to the path again.
+  void restore(const StepIsland& island) const;
   /// Work of the impulses of a problem on what turning makes of the velocities along its rows: an error of
-  /// the step [J].
+  /// the step [J]. Friction in joints is booked with what it does.
   [[nodiscard]] double work(const IslandProblem& problem) const;
 
 private:
-  // A contact at the start of the step, and the velocities of the ground that it touches at the end.
+  // A constraint at the start of the step, as it is turned, and the velocities of the ground that it touches
+  // at the end.
   struct Turned {
-    Constraint start;
+    Constraint start, now;
     std::array<double, std::size_t{Constraint::max_rows}> ground_after{};
   };
   [[nodiscard]] bool may_be_followed(const Constraint& contact) const;
+  void list_mechanisms(const StepIsland& island);
   [[nodiscard]] std::size_t find(const Constraint& contact) const;
-  [[nodiscard]] bool turn(Constraint& contact, const double* v0, const double* v1);
-  [[nodiscard]] bool has_converged(const StepTrial& trial);
+  [[nodiscard]] bool turn(Turned& turned, const double* v0, const double* v1, const StepTrial& at) const;
+  [[nodiscard]] bool has_converged(const StepTrial& trial, double residual);
   [[nodiscard]] double reach(const StepInput& in) const;
   void find_at(const State& state, double margin, std::vector<Constraint>& out);
 
   ContactLook look_;
-  State middle_;
-  std::vector<Turned> turned_;  // by key
-  std::vector<Index> shared_;   // bodies with contacts of two, ascending
+  JointStages* joints_;
+  State middle_, end_;
+  std::vector<Turned> turned_;     // by key and type
+  std::vector<Index> shared_;      // bodies with contacts of two, ascending
+  std::vector<Index> mechanisms_;  // components whose joints answer contact
   std::vector<Constraint> at_middle_, at_end_;
   std::vector<double> lengths_;  // Assembly::length_scales()
   std::vector<double> last_;     // velocities at the end of the trial before

@@ -24,7 +24,7 @@ void JoinedMechanisms::start(const StepInput& in, const StepIsland& island, Isla
     JointStage* const joints = stages_->of(component);
     if (joints == nullptr) continue;
     joints->start_joined(in, trial);
-    joints_.push_back(&joints->rows().at_start());
+    joints_.push_back(&joints->answer().rows());
   }
   response_.bind(joints_);
   problem.respond(response_);

@@ -44,15 +44,21 @@ void JointStages::record(double step, JointHistory& history) const {
   }
 }
 
+void JointStages::forget_paths() {
+  for (const auto& stage : stages_) {
+    if (stage != nullptr) stage->answer().forget_path();
+  }
+}
+
 JointStage::JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays)
     : joints_(assembly, component, arrays),
+      answer_(component, joints_.rows.at_end()),
       untouched_(joints_, first_row),
       total_(joints_.impulse),
       bounds_(assembly, component, joints_.rows.at_end()) {}
 
 void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
                        StepTrial& trial) {
-  StepJointRows& rows = joints_.rows;
   for (Constraint& constraint : contacts.constraints) constraint.friction_bound *= in.step;
   trial.expect_impulses();
   joints_.clear(joints_.arrays->dv_contact);
@@ -60,11 +66,11 @@ void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, 
                         [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
   guessed_ = guesses && contacts.problem == nullptr && untouched_.start(in, rule, trial);
   if (!guessed_) begin_at_start(in, rule.is_mean() && contacts.problem == nullptr, trial);
-  if (!struck_ && !rows.at_start().depends_on_time()) return;
-  rows.place_start(in, trial);
+  if (!struck_ && !answer_.rows().depends_on_time()) return;
+  answer_.place(in, trial);
   if (!struck_) return;
-  rows.at_start().factor();
-  JointResponse response(rows.at_start());
+  answer_.rows().factor();
+  JointResponse response(answer_.rows());
   contacts.problem->respond(response);
 }
 
@@ -104,15 +110,15 @@ void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
   struck_ = true;
   guessed_ = false;
   begin_at_start(in, false, trial);
-  joints_.rows.place_start(in, trial);
-  joints_.rows.at_start().factor();
+  answer_.place(in, trial);
+  answer_.rows().factor();
 }
 
 void JointStage::approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free) {
   joints_.react(in, rule, trial);
   const Range v = joints_.v();
   for (Index i = v.begin; i < v.end; ++i) free[i] = trial.free[i] + joints_.arrays->dv_joints[i];
-  allow_at_start(free);
+  allow_answered(free);
 }
 
 void JointStage::leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial) {
@@ -128,7 +134,7 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
   if (struck_) {
     // The guess of Newton's method couples bodies by more than their joints.
     if (contacts.stale_matrix) {
-      JointResponse response(joints_.rows.at_start());
+      JointResponse response(answer_.rows());
       problem.respond(response);
     }
     for (std::size_t c = 0; c < contacts.constraints.size(); ++c) {
@@ -141,7 +147,7 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
   }
   const Range v = joints_.v();
   for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = trial.free[i] + arrays.dv_joints[i];
-  if (struck_) allow_at_start(arrays.scratch.data());
+  if (struck_) allow_answered(arrays.scratch.data());
   problem.set_free_velocity(arrays.scratch.data());
   const FrictionBoundProblem bounded{.problem = problem,
                                      .contacts = contacts.constraints,
@@ -155,21 +161,12 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
   return true;
 }
 
-void JointStage::allow_at_start(double* velocity) {
-  JointConstraints& start = joints_.rows.at_start();
-  start.residuals(JointLevel::change, velocity, joints_.left.data());
-  for (std::size_t row = 0; row < joints_.left.size(); ++row)
-    joints_.left[row] += joints_.rows.at_end().rate(row);
-  start.solve(joints_.left.data());
-  start.add_response(joints_.left.data(), velocity);
-}
-
 const double* JointStage::velocities_of_contact(StepTrial& trial) {
   if (!struck_) return trial.end.v.data();
   const Range v = joints_.v();
   std::vector<double>& allowed = joints_.arrays->allowed;
   std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, allowed.begin() + v.begin);
-  allow_at_start(allowed.data());
+  allow_answered(allowed.data());
   return allowed.data();
 }
 
@@ -195,7 +192,7 @@ void JointStage::update_friction_rows(JointContacts& contacts, StepTrial& trial)
 const double* JointStage::multipliers(const IslandProblem* problem) {
   total_ = joints_.impulse;
   if (problem == nullptr) return total_.data();
-  JointConstraints& answering = struck_ ? joints_.rows.at_start() : joints_.rows.at_midpoint();
+  JointConstraints& answering = struck_ ? answer_.rows() : joints_.rows.at_midpoint();
   std::vector<double>& loads = joints_.arrays->scratch;
   joints_.clear(loads);
   problem->map().add_loads(1.0, loads.data());
@@ -251,6 +248,15 @@ double JointStage::project_velocities(StepTrial& trial) {
   joints.project(JointLevel::velocity, trial.end.v.data());
   joints.project(JointLevel::velocity, trial.end.v.data());  // what rounding left
   return before - kinetic();
+}
+
+double JointStage::largest_displacement() const {
+  const JointArrays& arrays = *joints_.arrays;
+  const Range v = joints_.v();
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i)
+    largest = std::max(largest, arrays.lengths[i] * std::abs(arrays.displacement[i]));
+  return largest;
 }
 
 double JointStage::violation(const StepInput& in, StepTrial& trial) {

@@ -4,7 +4,7 @@
 /// Joints of one component in a step: velocities that they allow at its end, positions on them, and what
 /// reactions did. With the rows G0 at the start, Gm halfway and G1 at the end (docs/method.md, section 8),
 ///
-///   v_{j+1} = v_free + M^-1 Gm^T L + K H^T P,   K = M^-1 - M^-1 G0^T (G0 M^-1 G0^T)^-1 G0 M^-1
+///   v_{j+1} = v_free + M^-1 Gm^T L + K H^T P,   K = M^-1 - M^-1 A^T (A M^-1 A^T)^-1 A M^-1,   A = G0 or Gm
 ///   q_{j+1} = q_j advanced by h (v_j + v_{j+1})/2 + d
 ///
 /// where every sweep corrects L by what is left of  G1 v_{j+1} + rate = 0  and the displacement d, of third
@@ -16,16 +16,21 @@
 /// reactions do no work, and velocities follow (Gonzalez 1999; Betsch and Steinmann 2002).
 ///
 /// Contact acts along its rows H at the start of the step, and so does the answer of the joints to it, along
-/// their rows G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees velocities
-/// that the joints allow there,
+/// their rows A = G0 there: both are one impact with W = H K H^T, the same in all sweeps. The law sees
+/// velocities that the joints allow there,
 ///
-///   gamma^+ = H (v - M^-1 G0^T S^-1 (G0 v + rate)),   S = G0 M^-1 G0^T,   v = v_{j+1},   rate at the end,
+///   gamma^+ = H (v - M^-1 A^T S^-1 (A v + a)),   S = A M^-1 A^T,   v = v_{j+1},   a the rate at the end,
 ///
 /// which differ from H v_{j+1} by how far the joints turn within the step. With that, of contacts at one pin
 /// (the ends of two bars that it joins) one follows from the other; with H v_{j+1} they would contradict each
 /// other by that little, and large impulses would change from sweep to sweep. Impulses and answers do the
 /// work P . (gamma^- + gamma^+)/2, and on drivers the multipliers times the mean of their rates, nothing
 /// else.
+///
+/// That is of first order where joints turn: contact holds velocities that are not those of the end. Where
+/// impacts are located the step is repeated, and contact acts along its rows halfway, with the answer along
+/// A = Gm there, both against their conditions at the end (contact_turning.h, joint_answer.h); what is seen
+/// above is then v_{j+1} itself.
 ///
 /// Friction in joints is a row of the contact problem with |P| <= h times its bound. Without contacts its
 /// force acts halfway, against the rate that the coordinate has at the end.
@@ -36,6 +41,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/integrators/time_stepping/joint_answer.h>
 #include <carom/integrators/time_stepping/joint_iterate.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
@@ -91,8 +97,13 @@ public:
   void finish(const StepInput& in, StepTrial& trial) const;
   /// Velocities that the joints allow where bodies have been moved to. Returns the kinetic energy lost [J].
   double project_velocities(StepTrial& trial);
-  /// Makes velocities obey the joints with the rows at the start and the rates at the end.
-  void allow_at_start(double* velocity);
+  /// Answer to contact.
+  [[nodiscard]] JointAnswer& answer() { return answer_; }
+  /// Makes velocities obey its condition.
+  void allow_answered(double* velocity) { answer_.allow(joints_.rows.at_end(), velocity, joints_.left); }
+  /// Largest displacement of a body back onto the joints in the last sweep; angles times the radius of
+  /// gyration [m].
+  [[nodiscard]] double largest_displacement() const;
   /// Velocities at the end as contact sees them.
   [[nodiscard]] const double* velocities_of_contact(StepTrial& trial);
 
@@ -115,6 +126,7 @@ private:
   void update_friction_rows(JointContacts& contacts, StepTrial& trial);
 
   JointIterate joints_;
+  JointAnswer answer_;
   UntouchedJoints untouched_;  // iterates joints_
   bool struck_ = false;
   bool guessed_ = false;       // untouched_ iterates the step
@@ -140,6 +152,8 @@ public:
                                                     StepTrial& trial) const;
   /// Takes a step down for the guess at the next one. \param step its length [s]
   void record(double step, JointHistory& history) const;
+  /// A step begins: joints answer contact along their rows at its start.
+  void forget_paths();
 
 private:
   const Assembly* assembly_;

@@ -108,9 +108,9 @@ NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, 
   matrix_.solve(update_.data() + v.begin, residuals_.data());
   if (contact != nullptr) {
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];
-    LinearisedResponse response(matrix_, v, joints.is_struck() ? &joints.rows().at_start() : nullptr);
+    LinearisedResponse response(matrix_, v, joints.is_struck() ? &joints.answer().rows() : nullptr);
     contact->respond(response);
-    if (joints.is_struck()) joints.allow_at_start(scratch_.data());
+    if (joints.is_struck()) joints.allow_answered(scratch_.data());
     contact->set_velocity(scratch_.data());
     contact->map().add_velocities(update_.data(), -1.0);
     if (!contact->solve(chain).usable()) return Outcome::unsolved;

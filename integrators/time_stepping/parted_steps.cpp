@@ -4,6 +4,7 @@
 #include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/parted_steps.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -43,6 +44,20 @@ void PartedSteps::make_part(double length, double end) {
   trial_.state = done_.state;
   trial_.companion = done_.companion;
   stepper_->step(trial_.state, trial_.companion, length, end, part_);
+  made_ += stepper_->passes();
+}
+
+/// Impulses of a short part say less of the next one than those of a longer part before it.
+void PartedSteps::keep_impulses() {
+  constexpr double much = 0.5;
+  ContactHistory &now = done_.companion.contacts, &before = trial_.companion.contacts;
+  if (!before.empty() && now.step < much * before.step) std::swap(now, before);
+}
+
+/// True if closings are looked for in what is left of the step.
+bool PartedSteps::may_search() const {
+  const std::int64_t most = stepper_->options().steps_per_step * std::int64_t{saved_steps};
+  return done_.companion.steps_owed + made_ < most;
 }
 
 /// A part up to the end of the step, or to where something is deep enough.
@@ -66,6 +81,7 @@ void PartedSteps::part_before_passage(const Whole& whole, double length) {
 void PartedSteps::part_at_closing(const Whole& whole, double length) {
   constexpr double aim = 0.5 * ClosingSearch::rounding;
   const double begin = done_.state.time;
+  if (!may_search()) return make_part(length, whole.end);
   double open = begin, closed = std::numeric_limits<double>::infinity();
   ClosingSearch::Closing hit;  // the last one found
   for (double end = whole.end;;) {
@@ -89,7 +105,7 @@ void PartedSteps::part_at_closing(const Whole& whole, double length) {
 void PartedSteps::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   done_.state = state;
   done_.companion = companion;
-  parts_ = 0;
+  parts_ = made_ = 0;
   if (closings_) closings_->begin_step();
   const Whole whole{state.time, step, end_time};
   for (double length = step; done_.state.time < end_time; length = end_time - done_.state.time) {
@@ -100,8 +116,12 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
       add(part_, sum_);
     }
     std::swap(done_, trial_);
+    keep_impulses();
   }
   sum_.step = step;
+  sum_.steps_made = made_;
+  std::int64_t& owed = done_.companion.steps_owed;
+  owed = std::max(owed + made_ - stepper_->options().steps_per_step, std::int64_t{0});
   sum_.findings.swap(report.findings);
   std::swap(report, sum_);
   std::swap(state, done_.state);

@@ -4,6 +4,11 @@
 /// Steps in several parts. A step ends early where a pair would come too deep (OverlapRules::never_tunnel),
 /// or where a contact closes that has to be hit then (TimeStepping::impacts); the rest of it is another one,
 /// which begins with the impact.
+///
+/// Every closing takes some steps of the whole model. In a heap something closes all the time: so the steps
+/// that are made are counted, those repeated because contacts turn included, and with s of them allowed for
+/// each (TimeStepping::steps_per_step) n steps take at most (n + 50) s and one search, if one by itself takes
+/// no more than s. What is not searched for any more acts when the next step begins, by the same laws.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -22,6 +27,8 @@ class CAROM_API PartedSteps {
 public:
   /// Parts of one step at the most: more are needed only where something flies to and fro in it for ever.
   static constexpr int most_parts = 10000;
+  /// Steps that may be saved for searches of closings, times TimeStepping::steps_per_step.
+  static constexpr int saved_steps = 50;
 
   /// All must outlive it.
   PartedSteps(const Assembly& assembly, TimeStepper& stepper);
@@ -44,12 +51,15 @@ private:
   void make_part(double length, double end);
   void part_before_passage(const Whole& whole, double length);
   void part_at_closing(const Whole& whole, double length);
+  [[nodiscard]] bool may_search() const;
+  void keep_impulses();
 
   TimeStepper* stepper_;
   std::unique_ptr<PassageSearch> passages_;  // one of these is null
   std::unique_ptr<ClosingSearch> closings_;
   Run done_, trial_;
   int parts_ = 0;  // that ended early
+  int made_ = 0;   // steps of the whole model for the step at hand, with those repeated
   StepReport part_, sum_;
 };
 

@@ -56,23 +56,23 @@ void StepBalance::book_joints(const StepInput& in, Index component, JointStage& 
                               const IslandProblem* contact, StepTrial& trial) {
   const Assembly& assembly = *assembly_;
   const Range q = assembly.components()[component].q, v = assembly.components()[component].v;
-  const JointConstraints &start = joints.rows().at_start(), &end = joints.rows().at_end();
+  const JointAnswer& answer = joints.answer();
+  const JointConstraints& end = joints.rows().at_end();
   const double* const total = joints.multipliers(contact);
   joints.finish(in, trial);
-  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step. Answers
-  // along the rows at the start have none.
+  // Reactions do no work on the constraints but that of drivers: the rest is an error of the step.
   coupling_work_.add(joints.iterate().work(trial));
   if (contact != nullptr) rates_.resize(end.size());
   if (joints.is_struck()) {
-    // Half of what rounding of the step before has left of the constraints, which the answers meet.
-    start.residuals(JointLevel::velocity, in.start.v.data(), rates_.data());
+    // Along the rows at the start half of what rounding of the step before has left of the constraints.
+    answer.errors(end, in.start.v.data(), rates_.data());
   } else if (contact != nullptr) {
     joints.rows().at_midpoint().residuals(JointLevel::change, trial.midpoint.v.data(), rates_.data());
   }
-  for (std::size_t row = 0; row < end.size() && (contact != nullptr || start.depends_on_time()); ++row) {
+  for (std::size_t row = 0; row < end.size() && (contact != nullptr || end.depends_on_time()); ++row) {
     const double reaction = joints.iterate().impulse[row];
     double rate = 0.0;
-    if (start.depends_on_time()) rate = 0.5 * (start.rate(row) + end.rate(row));
+    if (end.depends_on_time()) rate = 0.5 * (answer.rate_at_start(row) + end.rate(row));
     result_.flows[EnergyFlow::external] -= total[row] * rate;
     coupling_work_.add(reaction * rate);
     if (contact == nullptr) continue;

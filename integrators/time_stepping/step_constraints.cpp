@@ -6,6 +6,7 @@
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -64,13 +65,21 @@ void StepConstraints::place_surfaces(const StepInput& in) {
   detector_.demand_continuous(places_, places_after_);
 }
 
+/// \param step length of a step that gaps may come from [s]
+OpeningSlack StepConstraints::slack_of(double step) const {
+  OpeningSlack slack{rules_.slack, rules_.slack};
+  if (rules_.parting == Parting::is_free) slack.of_pressed = step * rules_.capture_speed;
+  if (rules_.keeps_pressed) slack.of_pressed = std::numeric_limits<double>::infinity();
+  return slack;
+}
+
 /// A gap was opened by the step before, which this one may be a small part of.
 void StepConstraints::remember(const StepInput& in, double last_step) {
   if (rules_.plain && !rules_.turning) return;  // nobody asks
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
-    detector_.remember(in.companion.modes, std::max(in.step, last_step), rules_.slack, rules_.keeps_pressed,
-                       lasting_);
+    const double step = std::max(in.step, last_step);
+    detector_.remember(in.companion.modes, step, slack_of(step), lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
@@ -94,13 +103,25 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
   }
 }
 
-/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; and
-/// one that stays closed to rounding over a step, for it would close in it again and again.
+/// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; one
+/// that stays closed to rounding over a step, for it would close in it again and again; and one that pushed
+/// in the step before, if it parts slowly: as its answer was to keep it closed, it parts by what that was
+/// wrong.
 bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
   if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
   const double* const v = in.start.v.data();
-  return constraint.velocity(0, v) > std::max(noise * constraint.speed(0, v), rules_.slowest);
+  const double rate = constraint.velocity(0, v);
+  if (!(rate > std::max(noise * constraint.speed(0, v), rules_.slowest))) return false;
+  return rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key);
+}
+
+/// A contact that parts and acts may come back as fast, which does no work: held where it has come to, it
+/// would gain what loads take to draw it back.
+void StepConstraints::allow_return(const StepInput& in, Constraint& constraint) const {
+  if (rules_.parting != Parting::is_free || constraint.has_dry_friction()) return;
+  const double rate = constraint.velocity(0, in.start.v.data());
+  if (rate > rules_.slowest) constraint.allowed_approach = std::max(constraint.allowed_approach, rate);
 }
 
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
@@ -119,6 +140,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   take_sticking(found);
+  for (Constraint& constraint : found) allow_return(in, constraint);
   // Friction in joints comes last.
   if (found.back().has_dry_friction())
     share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
@@ -209,6 +231,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
     if (sticks) take_sticking({&out, 1});
+    allow_return(in, out);
   }
   islands_.take(constraints_);
   return true;

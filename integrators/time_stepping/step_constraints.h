@@ -81,9 +81,11 @@ private:
   [[nodiscard]] bool find_joining(const StepInput& in, std::span<const Range> batches,
                                   const StepTrial& trial);
   [[nodiscard]] bool is_left_out(const StepInput& in, const Constraint& constraint) const;
+  void allow_return(const StepInput& in, Constraint& constraint) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
   void take_sticking(std::span<Constraint> found) const;
+  [[nodiscard]] OpeningSlack slack_of(double step) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
   Detector detector_;

@@ -19,15 +19,6 @@ JointView view_of(const State& state, const Evaluation& evaluation) {
   return {state.view(), evaluation.rotation.data()};
 }
 
-/// Brings rows to a configuration; a motion that is not finite there fails the step.
-void update(JointConstraints& rows, const JointView& at, const StepInput& in) {
-  try {
-    rows.update(at);
-  } catch (const SolverError& error) {
-    fail_motion(error, in);
-  }
-}
-
 /// Rotations at a place of the step, by those at its start, from which bodies turn little.
 void turn(const StepInput& in, Index component, const State& state, const Evaluation& start,
           Evaluation& out) {
@@ -58,8 +49,16 @@ double angle(const JointConstraints& joints, std::size_t row) {
 
 }  // namespace
 
+void update_rows(JointConstraints& rows, const JointView& at, const StepInput& in) {
+  try {
+    rows.update(at);
+  } catch (const SolverError& error) {
+    fail_motion(error, in);
+  }
+}
+
 StepJointRows::StepJointRows(const Assembly& assembly, Index component)
-    : component_(component), end_(assembly, component), midpoint_(end_), start_(end_) {}
+    : component_(component), end_(assembly, component), midpoint_(end_) {}
 
 void StepJointRows::start(const StepInput& in, bool mean, StepTrial& trial) {
   reactions_ = Reactions::halfway;
@@ -82,14 +81,9 @@ void StepJointRows::place_midpoint(const StepInput& in, StepTrial& trial) const 
   }
 }
 
-void StepJointRows::place_start(const StepInput& in, StepTrial& trial) {
-  evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
-  update(start_, view_of(in.start, trial.at_start), in);
-}
-
 void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   turn(in, component_, trial.end, trial.at_start, trial.at_end);
-  update(end_, view_of(trial.end, trial.at_end), in);
+  update_rows(end_, view_of(trial.end, trial.at_end), in);
 }
 
 void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
@@ -101,8 +95,8 @@ void StepJointRows::place(const StepInput& in, StepTrial& trial) {
   place_end(in, trial);
   place_midpoint(in, trial);
   const bool halfway = reactions_ != Reactions::at_end;
-  update(midpoint_, halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end),
-         in);
+  update_rows(midpoint_,
+              halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end), in);
 }
 
 bool StepJointRows::begin_regular(const StepInput& in, bool mean, StepTrial& trial) {
@@ -144,7 +138,7 @@ void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<do
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
-  update(midpoint_, view_of(in.start, trial.at_start), in);
+  update_rows(midpoint_, view_of(in.start, trial.at_start), in);
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) look_ahead(row, work[row], angle(midpoint_, row));
   place(in, trial);
@@ -191,7 +185,7 @@ void StepJointRows::solve(std::vector<double>& r) {
 
 bool StepJointRows::correct_velocities(const StepInput& in, StepTrial& trial,
                                        std::vector<double>& residuals) {
-  update(end_, view_of(trial.end, trial.at_end), in);
+  update_rows(end_, view_of(trial.end, trial.at_end), in);
   end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());
   if (!mixed_.factor(end_, midpoint_)) return false;
   mixed_.solve(residuals.data());

@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// Rows of the joints of one component in a step: G0 at the start, Gm halfway (or where the reactions push),
-/// G1 at the end; and the factors by which conditions at the end are met. Near a singular position, where
-/// rows depend on each other, the rows of the reactions are chosen so that sweeps contract.
+/// Rows of the joints of one component in a step: Gm halfway (or where the reactions push), G1 at the end;
+/// and the factors by which conditions at the end are met. Near a singular position, where rows depend on
+/// each other, the rows of the reactions are chosen so that sweeps contract.
 ///
 /// Mean rows are Gm at the mean of the places and of the rotation matrices at both ends, for
 /// ForceRule::energy_momentum: where bodies turn by 2 atan(h w/2) these are, up to a factor, discrete
@@ -19,6 +19,9 @@
 #include <vector>
 
 namespace carom {
+
+/// Brings rows to a configuration; a motion that is not finite there fails the step.
+CAROM_API void update_rows(JointConstraints& rows, const JointView& at, const StepInput& in);
 
 /// Rows along which the joints of a component push.
 enum class Reactions : std::uint8_t {
@@ -37,10 +40,8 @@ public:
   /// Begins a step at its first iterate where no row is near to following from others: start(), place(), and
   /// the factors of the rows at the end. False where one is.
   [[nodiscard]] bool begin_regular(const StepInput& in, bool mean, StepTrial& trial);
-  /// Brings the rows at the start to it; evaluates rotations there. Throws SolverError where a prescribed
-  /// motion is not finite, as the others.
-  void place_start(const StepInput& in, StepTrial& trial);
   /// Brings the rows at the end, and of the reactions, to the iterate, with rotations there and halfway.
+  /// Throws SolverError where a prescribed motion is not finite, as the others.
   void place(const StepInput& in, StepTrial& trial);
   /// Brings the midpoint of the trial to the iterate, with the rotations of the rows halfway.
   void place_midpoint(const StepInput& in, StepTrial& trial) const;
@@ -63,11 +64,9 @@ public:
 
   /// Rows of the reactions that answer a displacement at the end.
   [[nodiscard]] JointConstraints& pushing() { return reactions_ == Reactions::mixed ? midpoint_ : end_; }
-  [[nodiscard]] JointConstraints& at_start() { return start_; }        ///< G0
   [[nodiscard]] JointConstraints& at_midpoint() { return midpoint_; }  ///< Gm
   [[nodiscard]] JointConstraints& at_end() { return end_; }            ///< G1
   [[nodiscard]] const JointConstraints& at_end() const { return end_; }
-  [[nodiscard]] const JointConstraints& at_start() const { return start_; }
   /// Rows along which reactions act.
   [[nodiscard]] Reactions reactions() const { return reactions_; }
   /// True if they are mean rows.
@@ -84,7 +83,7 @@ private:
   void look_ahead(std::size_t row, double halfway, double start);
 
   Index component_;
-  JointConstraints end_, midpoint_, start_;
+  JointConstraints end_, midpoint_;
   MixedConstraints mixed_;
   Reactions reactions_ = Reactions::halfway;
   double roundoff_growth_ = 1.0;

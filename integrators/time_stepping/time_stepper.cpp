@@ -22,7 +22,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       couplings_(assembly),
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
-  if (parts_.ends_at_closings()) turning_ = std::make_unique<ContactTurning>(assembly, detector());
+  if (parts_.ends_at_closings())
+    turning_ = std::make_unique<ContactTurning>(assembly, detector(), parts_.joints);
   if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
     if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
@@ -104,11 +105,14 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   if (turning_ != nullptr) turning_->begin(islands, parts_.located.on());
   advance_all(in);
-  while (turning_ != nullptr && turning_->turn(in, parts_.trial, islands)) {
+  passes_ = 1;
+  while (turning_ != nullptr &&
+         turning_->turn(in, parts_.trial, islands, balance_.result().tally.worst_residual)) {
     balance_.begin(in);
     capped_.begin();
     memory_.iterations.clear();
     advance_all(in);
+    ++passes_;
   }
   return balance_.finish(in);  // works of what acted, records
 }
@@ -175,6 +179,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
     if (tried > 0) {
       parts_.constraints.restore(in, island, parts_.trial);
       if (impacts_ != nullptr) StepImpacts::remove_restitution({&island, 1});
+      if (turning_ != nullptr) turning_->restore(island);
     }
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;

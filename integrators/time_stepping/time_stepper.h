@@ -54,6 +54,8 @@ public:
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
   /// True if a step is to end where contacts close, so that its rest begins with the impact (parted_steps.h).
   [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
+  /// How often the last step was made: again where contacts turn in it (contact_turning.h).
+  [[nodiscard]] int passes() const { return passes_; }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
@@ -82,6 +84,7 @@ private:
   std::unique_ptr<StepImpacts> impacts_;  // null where all impacts are those of the step
   std::unique_ptr<ContactTurning>
       turning_;                // null where contacts act along their rows at the start of a step
+  int passes_ = 1;             // of the last step
   bool struck_ = false;        // there were impacts at the start of the step at hand
   PresentLoads loads_before_;  // these
   PrescribedJoints prescribed_;

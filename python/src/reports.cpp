@@ -95,8 +95,8 @@ void bind_steps(nb::module_& core) {
   bind_record<StepReport>(core, "StepReport", report, false, [](auto& fields) {
     using P = StepReport;
     fields("time", &P::time)("step", &P::step)("energy_gain", &P::energy_gain)(
-        "lasting_gain", &P::lasting_gain)("projected", &P::projected)("control", &P::control)(
-        "iteration", &P::iteration)("fallbacks", &P::fallbacks)("sweeps", &P::sweeps)(
+        "lasting_gain", &P::lasting_gain)("steps_made", &P::steps_made)("projected", &P::projected)(
+        "control", &P::control)("iteration", &P::iteration)("fallbacks", &P::fallbacks)("sweeps", &P::sweeps)(
         "local_sweeps", &P::local_sweeps)("contraction", &P::contraction)(
         "worst_coupling", &P::worst_coupling)("worst_coupling_rate", &P::worst_coupling_rate)(
         "contacts", &P::contacts)("joint_impulses", &P::joint_impulses)("findings", &P::findings)(

@@ -115,7 +115,7 @@ TEST_F(BodyContactRows, AMemoryOfTheSearchBeforeChangesNothing) {
   for (int i = 0; i < 40; ++i) {
     if (i % 4 != 0) shake(i % 8 == 3 ? 0.05 : 1e-6);  // contacts change, or stay
     LastingContacts lasting;
-    detector_.remember(before, 1e-3, 0.0, lasting);
+    detector_.remember(before, 1e-3, {}, lasting);
     const LastingContacts* const known = lasting.empty() ? nullptr : &lasting;
     BodyContactSearch fresh;
     std::vector<Constraint> with, without;

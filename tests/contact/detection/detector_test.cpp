@@ -102,7 +102,7 @@ TEST(Detector, RemembersContactsThatTurningMayOpen) {
     const std::vector<std::pair<ConstraintKey, ContactMode>> modes{
         {of_ball, ContactMode::stick}, {{centre, gone}, ContactMode::stick}, {of_tip, ContactMode::stick}};
     LastingContacts lasting;
-    detector.remember(modes, 1e-3, 0.0, lasting);
+    detector.remember(modes, 1e-3, {}, lasting);
     EXPECT_EQ(lasting.step(), 1e-3);
     EXPECT_TRUE(lasting.contains(of_tip));
     EXPECT_EQ(lasting.contains(of_ball), sways);
