@@ -145,9 +145,10 @@ std::size_t Lemke::blocking_row(std::size_t column) const {
   return best;
 }
 
-// Recomputes the tableau of the present basis from the problem's data: solves B [value, tableau] = [q, N]
-// with the columns of  I w - M z - d z0 = q.
-void Lemke::rebuild_tableau() {
+// Recomputes values and columns [first, last) of the tableau of the present basis from the problem's data:
+// solves B [value, tableau] = [q, N] with the columns of  I w - M z - d z0 = q. False, without a change, of a
+// singular basis.
+bool Lemke::rebuild_tableau(std::size_t first, std::size_t last) {
   const auto fill_column = [&](std::size_t variable, std::size_t stride, double* out) {
     for (std::size_t i = 0; i < n_; ++i) {
       out[i * stride] = variable < n_       ? (variable == i ? 1.0 : 0.0)
@@ -160,13 +161,22 @@ void Lemke::rebuild_tableau() {
   unknown_.resize(n_);
   for (std::size_t j = 0; j < n_; ++j) fill_column(basic_[j], n_, system_.data() + j);
   qr_.factor(system_, n_, n_, basis_rank_tolerance);
-  if (qr_.rank() < n_) return;
+  if (qr_.rank() < n_) return false;
   qr_.solve(scaled_.q, value_);
-  for (std::size_t j = 0; j <= n_; ++j) {
+  for (std::size_t j = first; j < last; ++j) {
     fill_column(nonbasic_[j], 1, rhs_.data());
     qr_.solve(rhs_, unknown_);
     for (std::size_t i = 0; i < n_; ++i) entry(i, j) = -unknown_[i];
   }
+  return true;
+}
+
+// Whether the ray at which a pass ended is one of the problem, to the last digits: all basic variables are
+// there, and none falls along it.
+bool Lemke::confirms_ray() {
+  if (!rebuild_tableau(ray_, ray_ + 1) || blocking_row(ray_) != none) return false;
+  const double rounding = lemke_pivot_threshold * std::max(1.0, largest_magnitude(value_));
+  return std::all_of(value_.begin(), value_.end(), [&](double value) { return value >= -rounding; });
 }
 
 LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
@@ -180,11 +190,13 @@ LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
     ++pivots;
     if (leaving == 2 * n_) return LcpStatus::solved;
     if (count >= most_pivots) return LcpStatus::pivot_bound;
-    if (rebuild && count % rebuild_interval == 0) rebuild_tableau();
+    if (rebuild && count % rebuild_interval == 0) rebuild_tableau(0, n_ + 1);
     // The complement of what left enters.
     column = place_[leaving < n_ ? leaving + n_ : leaving - n_] - n_;
     row = blocking_row(column);
-    if (row == none) return LcpStatus::secondary_ray;
+    if (row != none) continue;
+    ray_ = column;
+    return LcpStatus::secondary_ray;
   }
 }
 
@@ -212,7 +224,7 @@ void Lemke::read_solution(const Lcp& problem, std::span<double> z) {
   for (std::size_t i = 0; i < k; ++i) z[support_[i]] = std::max(unknown_[i], 0.0);
 }
 
-LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots) {
+LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots, LemkeRay ray) {
   if (most_pivots == 0) most_pivots = 100 + 30 * problem.size;
   scale(problem);
   LcpAnswer answer;
@@ -221,8 +233,10 @@ LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots)
   double error = lcp_residual(problem, z);
   LcpStatus status = first;
   // Answers that are accepted are not repeated: most often that ends in the same basis, at many times the
-  // cost.
-  if (error > lcp_accuracy && first != LcpStatus::pivot_bound) {
+  // cost. Nor is a path to a ray that is one.
+  const bool ends = first == LcpStatus::secondary_ray && ray == LemkeRay::confirmed && error > lcp_accuracy &&
+                    confirms_ray();
+  if (error > lcp_accuracy && first != LcpStatus::pivot_bound && !ends) {
     // The tableau has lost digits, or has pivoted on rounding: once more, with a tableau that has not.
     best_.assign(z.begin(), z.end());
     status = run(true, most_pivots, answer.pivots);

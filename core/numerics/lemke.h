@@ -8,6 +8,7 @@
 #include <carom/core/numerics/rank_revealing_qr.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,12 @@ inline constexpr double lemke_pivot_threshold = 1e-10;
 /// Basic variables that reach zero within this part of the largest basic value (at least max |q|) tie; the
 /// lexicographic rule decides among them.
 inline constexpr double lemke_tie_threshold = 1e-12;
+
+/// What follows where a path ends at a ray.
+enum class LemkeRay : std::uint8_t {
+  repeated,  ///< the second pass: the problem has a solution by theory, so that digits must have been lost
+  confirmed  ///< likewise, unless the ray is one in a tableau made anew: the problem need not have a solution
+};
 
 /// Complementary pivoting after Lemke with the lexicographic rule (Cottle, Pang, Stone, The Linear
 /// Complementarity Problem, 1992, algorithms 4.4.1 and 4.4.9; covering vector of ones), on the problem with
@@ -34,14 +41,16 @@ public:
   /// Writes z (size n). Statuses: solved (lcp_residual below lcp_accuracy), secondary_ray, pivot_bound,
   /// inaccurate; z is the last point reached where it is not solved. A pass ends after `most_pivots`
   /// pivots (0: 100 + 30 n).
-  [[nodiscard]] LcpAnswer solve(const Lcp& problem, std::span<double> z, int most_pivots = 0);
+  [[nodiscard]] LcpAnswer solve(const Lcp& problem, std::span<double> z, int most_pivots = 0,
+                                LemkeRay ray = LemkeRay::repeated);
 
 private:
   LcpStatus run(bool rebuild, int most_pivots, int& pivots);
   void start();
   void scale(const Lcp& problem);
   void pivot(std::size_t row, std::size_t column);
-  void rebuild_tableau();
+  bool rebuild_tableau(std::size_t first, std::size_t last);
+  [[nodiscard]] bool confirms_ray();
   [[nodiscard]] std::size_t first_row() const;
   [[nodiscard]] std::size_t blocking_row(std::size_t column) const;
   [[nodiscard]] bool lexicographically_less(std::size_t row, std::size_t other, std::size_t column) const;
@@ -64,7 +73,7 @@ private:
     std::vector<double> row_scale, column_scale;
   };
 
-  std::size_t n_ = 0;
+  std::size_t n_ = 0, ray_ = 0;  // size; column in which the last pass ended at a ray
   Scaled scaled_;
   std::vector<double> tableau_, value_;
   std::vector<std::size_t> basic_, nonbasic_;  // variable in each row, in each column

@@ -22,11 +22,14 @@ Decision ModeDecision::decide(SmoothMotion& motion, MotionSample& now, std::span
   slips_.start(candidates);
   zero_.resize(now.acceleration.size());  // never written
   acceleration_.resize(now.acceleration.size());
-  const Decision decision = repeat(&ModeDecision::solve, motion, now, candidates, chain);
-  // Few contacts are enumerated: what is neither solved nor refuted there is for the caller to decide.
   const bool enumerated = groups_of(candidates) <= static_cast<std::size_t>(enumeration_groups);
-  if (decision != Decision::failed || enumerated) return decision;
-  return repeat(&ModeDecision::solve_as_limit, motion, now, candidates, chain);
+  for (bool assumes_ends = true;; assumes_ends = false) {
+    const Decision decision = repeat(&ModeDecision::solve, motion, now, candidates, chain);
+    // Few contacts are enumerated: what is neither solved nor refuted there is for the caller to decide.
+    if (decision != Decision::failed || enumerated) return decision;
+    const Decision limit = repeat(&ModeDecision::solve_as_limit, motion, now, candidates, chain);
+    if (limit != Decision::failed || !assumes_ends || !slips_.forget_ends(candidates)) return limit;
+  }
 }
 
 /// Solves until the answer changes nothing any more.

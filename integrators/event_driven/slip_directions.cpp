@@ -27,6 +27,18 @@ void SlipDirections::start(std::span<const Candidate> candidates) {
   }
 }
 
+bool SlipDirections::forget_ends(std::span<const Candidate> candidates) {
+  bool changed = false;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    SlipDirection& slip = slips_[i];
+    const bool begins = slip.sign != 0.0 && candidates[i].slip == 0.0 && !candidates[i].frictionless;
+    if (!begins && !slip.open) continue;
+    slip = {.sign = begins ? 0.0 : slip.sign, .reverted = true};
+    changed = true;
+  }
+  return changed;
+}
+
 bool SlipDirections::revise(std::span<const Candidate> candidates, const ContactProblem& problem, double size,
                             const double* acceleration) {
   bool changed = false;

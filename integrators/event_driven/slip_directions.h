@@ -72,6 +72,12 @@ public:
   [[nodiscard]] bool revise(std::span<const Candidate> candidates, const ContactProblem& problem, double size,
                             const double* acceleration);
 
+  /// Lets all that has no velocity stick or slip, and stay closed or open, as the law of contact has it:
+  /// contacts that an event brought to the end of their modes, all of them together, may leave no forces,
+  /// since impulses of contacts that jam do work on slips that no velocities of bodies have. The law without
+  /// such assumptions has an answer. True if something was assumed.
+  [[nodiscard]] bool forget_ends(std::span<const Candidate> candidates);
+
 private:
   std::vector<SlipDirection> slips_;
 };

@@ -97,6 +97,21 @@ TEST(LcpCases, LemkeEndsAsRecorded) {
   EXPECT_EQ(solved + rays + bounds, 57);
 }
 
+// w = -1 - z has no solution: the path ends after one pivot, at a ray that is one.
+TEST(LcpCases, LemkeDoesNotRepeatAPathToARayThatIsConfirmed) {
+  Lcp lcp;
+  lcp.reset(1);
+  lcp.at(0, 0) = lcp.q[0] = -1.0;
+  std::vector<double> z(1);
+  Lemke lemke;
+  const LcpAnswer repeated = lemke.solve(lcp, z, 0, LemkeRay::repeated);
+  EXPECT_EQ(repeated.status, LcpStatus::secondary_ray);
+  EXPECT_EQ(repeated.pivots, 2);
+  const LcpAnswer confirmed = lemke.solve(lcp, z, 0, LemkeRay::confirmed);
+  EXPECT_EQ(confirmed.status, LcpStatus::secondary_ray);
+  EXPECT_EQ(confirmed.pivots, 1);
+}
+
 TEST(LcpCases, PrincipalPivotingEndsAsRecorded) {
   int solved = 0, vanishing = 0, bounds = 0, recorded_ones = 0;
   const auto data = carom_test::reference_data("lcp_cases.json");

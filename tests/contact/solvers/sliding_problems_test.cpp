@@ -1,8 +1,10 @@
 // Several contacts, of which some slip in a known direction and others may stick.
 
+#include <carom/contact/solvers/lcp_forms.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/numerics/lemke.h>
 
 #include "tests/contact/brute_force.h"
 #include "tests/contact/random_problems.h"
@@ -168,6 +170,29 @@ TEST(SlidingProblems, ARayProvesNothingWhereContactsSlide) {
   }
   EXPECT_GT(rays, 100);
   EXPECT_GT(solvable_rays, 0);
+}
+
+// A ray that is confirmed is not followed again: no solution is lost by that.
+TEST(SlidingProblems, PathsToConfirmedRaysEndThereAgain) {
+  CopositiveForm form;
+  Lemke lemke;
+  Lcp lcp;
+  int rays = 0, shorter = 0;
+  for (const int contacts : {3, 6, 12}) {
+    for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+      const ContactProblem problem = contact_test::random_sliding_problem(seed, contacts, 1.0, 4.0);
+      ASSERT_TRUE(form.build(problem, lcp));
+      std::vector<double> z(lcp.q.size());
+      const LcpAnswer confirmed = lemke.solve(lcp, z, 0, LemkeRay::confirmed);
+      if (confirmed.status != LcpStatus::secondary_ray) continue;
+      const LcpAnswer repeated = lemke.solve(lcp, z, 0, LemkeRay::repeated);
+      EXPECT_EQ(repeated.status, LcpStatus::secondary_ray) << contacts << " contacts, seed " << seed;
+      ++rays;
+      shorter += confirmed.pivots < repeated.pivots ? 1 : 0;
+    }
+  }
+  EXPECT_GT(rays, 300);
+  EXPECT_EQ(shorter, rays);
 }
 
 // A contact in space that slips in a known direction, beside one that may stick: two proportional rows.

@@ -284,6 +284,14 @@ TEST(EventPiles, ForcesThatSayNothingAreNoAnswer) {
   EXPECT_EQ(runs.failed, 0);
 }
 
+// Friction of four contacts of a pile that rolls is exhausted at once, one of them that of a disc wedged in
+// the V: sliding at all of them leaves no forces, and nothing slides yet.
+TEST(EventPiles, ContactsThatCannotAllStartToSlideTogetherGoOn) {
+  Runs runs;
+  run({8, true, 1.2, 0.3, 49}, 0.8, runs);
+  EXPECT_EQ(runs.failed, 0);
+}
+
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
   run_all({.bodies = 6}, 1, 6, 1.5, runs);
