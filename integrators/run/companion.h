@@ -53,7 +53,7 @@ struct Companion {
   double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;  ///< n
   double next_step = 0.0;       ///< of step control; 0: as described [s]
-  std::int64_t steps_owed = 0;  ///< that were made to find closings, beyond TimeStepping::steps_per_step
+  std::int64_t steps_owed = 0;  ///< that were made to find closings, beyond PartedSteps::steps_per_step
   PresentLoads loads;           ///< at the state
   std::vector<std::pair<ConstraintKey, ContactMode>> modes;  ///< contacts of the last step, by key
   ContactHistory contacts;                                   ///< impulses of the last step in large islands

@@ -87,9 +87,9 @@ struct StepNumbers : IterationReport {
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
   double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
-  int steps_made = 1;      ///< of the whole model, where it ends at closings (TimeStepping::steps_per_step)
-  double projected = 0.0;  ///< largest displacement by which a body was moved out of shapes [m]
-  ControlReport control;   ///< of step control
+  int steps_made = 1;         ///< of the whole model, where it ends at closings (PartedSteps::steps_per_step)
+  double projected = 0.0;     ///< largest displacement by which a body was moved out of shapes [m]
+  ControlReport control;      ///< of step control
 };
 
 /// The last accepted step.

@@ -100,11 +100,6 @@ struct TimeStepping {
   /// contacts that close act to the end of the step as they do where impacts are not located; so the step
   /// ends although bounces may accumulate in it.
   int most_impacts = 10;
-  /// Likewise, where steps end at closings (bodies that touch each other, joints): steps of the whole model
-  /// that finding these may take for one step, on average over a run, >= 1. Steps that take fewer save for
-  /// others, up to 50 times as many in all (PartedSteps::saved_steps); when nothing is left, what closes in a
-  /// step acts from the next one on, as where impacts are not located.
-  int steps_per_step = 10;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements
   /// Solution of the implicit equations of a step. One that is named is used alone: where it fails, so does

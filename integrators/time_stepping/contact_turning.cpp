@@ -120,7 +120,7 @@ double ContactTurning::reach(const StepInput& in) const {
     largest = std::max(largest, std::max(at.gap, 0.0) + opens);
   }
   for (const Index component : mechanisms_)
-    largest = std::max(largest, joints_->of(component)->largest_displacement());
+    largest = std::max(largest, joints_->of(component)->iterate().largest_displacement());
   return more * largest;
 }
 

@@ -141,6 +141,14 @@ double JointIterate::violation(const State& end) {
   return largest / rounding;
 }
 
+double JointIterate::largest_displacement() const {
+  const Range v = this->v();
+  double largest = 0.0;
+  for (Index i = v.begin; i < v.end; ++i)
+    largest = std::max(largest, arrays->lengths[i] * std::abs(arrays->displacement[i]));
+  return largest;
+}
+
 double JointIterate::work(const StepTrial& trial) {
   const Range v = this->v();
   std::vector<double>& masses = arrays->scratch;

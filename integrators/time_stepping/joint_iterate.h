@@ -59,6 +59,8 @@ struct CAROM_API JointIterate {
   /// Distance of velocities and positions from obeying the joints, with the rows at the end there, in units
   /// of that.
   [[nodiscard]] double violation(const State& end);
+  /// Largest displacement of a body back onto the joints; angles times the radius of gyration [m].
+  [[nodiscard]] double largest_displacement() const;
   /// Work of the impulses along the mean velocities [J].
   [[nodiscard]] double work(const StepTrial& trial);
 

@@ -250,15 +250,6 @@ double JointStage::project_velocities(StepTrial& trial) {
   return before - kinetic();
 }
 
-double JointStage::largest_displacement() const {
-  const JointArrays& arrays = *joints_.arrays;
-  const Range v = joints_.v();
-  double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i)
-    largest = std::max(largest, arrays.lengths[i] * std::abs(arrays.displacement[i]));
-  return largest;
-}
-
 double JointStage::violation(const StepInput& in, StepTrial& trial) {
   if (guessed_) return untouched_.violation();
   joints_.rows.place_end(in, trial);

@@ -101,9 +101,6 @@ public:
   [[nodiscard]] JointAnswer& answer() { return answer_; }
   /// Makes velocities obey its condition.
   void allow_answered(double* velocity) { answer_.allow(joints_.rows.at_end(), velocity, joints_.left); }
-  /// Largest displacement of a body back onto the joints in the last sweep; angles times the radius of
-  /// gyration [m].
-  [[nodiscard]] double largest_displacement() const;
   /// Velocities at the end as contact sees them.
   [[nodiscard]] const double* velocities_of_contact(StepTrial& trial);
 

@@ -56,7 +56,7 @@ void PartedSteps::keep_impulses() {
 
 /// True if closings are looked for in what is left of the step.
 bool PartedSteps::may_search() const {
-  const std::int64_t most = stepper_->options().steps_per_step * std::int64_t{saved_steps};
+  const std::int64_t most = steps_per_step * std::int64_t{saved_steps};
   return done_.companion.steps_owed + made_ < most;
 }
 
@@ -121,7 +121,7 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   sum_.step = step;
   sum_.steps_made = made_;
   std::int64_t& owed = done_.companion.steps_owed;
-  owed = std::max(owed + made_ - stepper_->options().steps_per_step, std::int64_t{0});
+  owed = std::max(owed + made_ - steps_per_step, std::int64_t{0});
   sum_.findings.swap(report.findings);
   std::swap(report, sum_);
   std::swap(state, done_.state);

@@ -7,7 +7,7 @@
 ///
 /// Every closing takes some steps of the whole model. In a heap something closes all the time: so the steps
 /// that are made are counted, those repeated because contacts turn included, and with s of them allowed for
-/// each (TimeStepping::steps_per_step) n steps take at most (n + 50) s and one search, if one by itself takes
+/// each (steps_per_step) n steps take at most (n + 50) s and one search, if one by itself takes
 /// no more than s. What is not searched for any more acts when the next step begins, by the same laws.
 
 #include <carom/core/assembly.h>
@@ -27,7 +27,9 @@ class CAROM_API PartedSteps {
 public:
   /// Parts of one step at the most: more are needed only where something flies to and fro in it for ever.
   static constexpr int most_parts = 10000;
-  /// Steps that may be saved for searches of closings, times TimeStepping::steps_per_step.
+  /// Steps of the whole model that finding closings may take for one step, on average over a run.
+  static constexpr int steps_per_step = 10;
+  /// Steps that may be saved for that, times steps_per_step.
   static constexpr int saved_steps = 50;
 
   /// All must outlive it.

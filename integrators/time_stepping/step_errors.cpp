@@ -87,7 +87,6 @@ void check_options(const TimeStepping& options) {
     refuse("impacts", static_cast<double>(options.impacts), "at_step_start (0) or located (1)");
   }
   if (options.most_impacts < 1) refuse("most_impacts", options.most_impacts, "at least 1");
-  if (options.steps_per_step < 1) refuse("steps_per_step", options.steps_per_step, "at least 1");
   if (options.max_sweeps < 2) refuse("max_sweeps", options.max_sweeps, "at least 2");
   if (options.threads < 1) refuse("threads", options.threads, "at least 1");
   if (options.threads > 1 && !Workers::several_available()) {

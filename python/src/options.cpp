@@ -28,10 +28,10 @@ void bind_options(nb::module_& core) {
     using T = TimeStepping;
     fields("step", &T::step)("tolerance", &T::tolerance)("max_sweeps", &T::max_sweeps)(
         "capture_speed", &T::capture_speed)("impact_rules", &T::impact_rules)("impacts", &T::impacts)(
-        "most_impacts", &T::most_impacts)("steps_per_step", &T::steps_per_step)("force_rule", &T::force_rule)(
-        "iteration", &T::iteration)("project_gaps", &T::project_gaps)("control", &T::control)(
-        "threads", &T::threads)("failure_directory", &T::failure_directory)(
-        "contact_budget", &T::contact_budget)("overlaps", &T::overlaps);
+        "most_impacts", &T::most_impacts)("force_rule", &T::force_rule)("iteration", &T::iteration)(
+        "project_gaps", &T::project_gaps)("control", &T::control)("threads", &T::threads)(
+        "failure_directory", &T::failure_directory)("contact_budget", &T::contact_budget)("overlaps",
+                                                                                          &T::overlaps);
   });
   bind_record<EventDriven>(core, "EventDriven", {"EventDriven"}, true, [](auto& fields) {
     using T = EventDriven;

@@ -83,7 +83,6 @@ std::vector<Value<TimeStepping>> time_stepping_values(const std::string& folder)
       {"max_sweeps", [](Options& o) { o.max_sweeps = 60; }},
       {"impacts", [](Options& o) { o.impacts = ImpactTimes::located; }},
       {"most_impacts", [](Options& o) { o.most_impacts = 1; }},
-      {"steps_per_step", [](Options& o) { o.steps_per_step = 1; }},
       {"capture_speed", [](Options& o) { o.capture_speed = 1e-4; }},
       {"force_rule", [](Options& o) { o.force_rule = ForceRule::energy_momentum; }},
       {"iteration", [](Options& o) { o.iteration = Iteration::fixed_point; }},
