@@ -45,8 +45,6 @@ public:
   [[nodiscard]] double now() const { return parts_.clock.now; }
   /// Writes the group's part of the state at the time last advanced to, and the modes of closed contacts.
   void write(State& state, ContactModes& modes) const;
-  /// Error that a step may have left in the places of that state [m].
-  [[nodiscard]] double error_of_places() const { return parts_.motion.error_of_places(parts_.output.y()); }
   /// Reaction of a joint of the group at the time last advanced to.
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
   /// Appends the forces of its closed contacts, likewise.

@@ -100,15 +100,11 @@ std::size_t EventDriver::advance(State& state, Companion& companion, double targ
   advance_groups(target);
   trial_.time = target;
   modes_.clear();
-  double error = 0.0;
-  groups_.for_each([&](const ClockGroup& group) {
-    group.write(trial_, modes_);
-    error = std::max(error, group.error_of_places());
-  });
+  groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
   // No event is looked at any more.
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
   if (!std::isfinite(stored.total())) fail_energy(state.time, target);
-  demand_apart(error, state.time);
+  demand_apart(state.time);
   balance_.finish();
   write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
@@ -162,9 +158,9 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
   out.projected = balance_.shift;
 }
 
-void EventDriver::demand_apart(double error, double from) {
+void EventDriver::demand_apart(double from) {
   try {
-    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, error, from);
+    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, from);
   } catch (...) {
     abandon();
     throw;

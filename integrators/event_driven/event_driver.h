@@ -62,7 +62,7 @@ private:
   void count(Companion& companion);
   void advance_groups(double to);
   void write_report(double from, double to, StepReport& out) const;
-  void demand_apart(double error, double from);
+  void demand_apart(double from);
   void abandon();
   [[noreturn]] void fail_energy(double from, double to);
 

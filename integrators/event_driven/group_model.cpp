@@ -117,11 +117,8 @@ std::vector<Discontinuity> discontinuities_of(const Assembly& assembly, std::spa
   return all;
 }
 
-/// Errors of works count relative to the mass, those of angles by the radius of gyration. Relative tolerances
-/// of the places of a body are also of the length that it has by itself, wherever it is: the radius of
-/// gyration, and a radian of its angle.
-std::vector<double> tolerances_of(const GroupModel& model, const EventDriven& options) {
-  const double tolerance_of_places = options.absolute_tolerance;
+/// Errors of works count relative to the mass, those of angles by the radius of gyration.
+std::vector<double> tolerances_of(const GroupModel& model, double tolerance_of_places) {
   const MotionUnknowns& unknowns = model.unknowns;
   std::vector<double> tolerances(unknowns.size(), tolerance_of_places);
   double mass = 0.0;
@@ -130,15 +127,12 @@ std::vector<double> tolerances_of(const GroupModel& model, const EventDriven& op
         for (Index slot = slots.begin; slot < slots.end; ++slot) {
           mass += kind.mass(slot);
           const Index body = slot - slots.begin;
-          const double reach = kind.has_orientation() ? kind.length_scale(slot, kind.v_size() - 1) : 0.0;
           for (Index i = 0; i < kind.v_size(); ++i) {
-            const double length = kind.length_scale(slot, i);
-            const double tolerance = tolerance_of_places / length;
+            const double tolerance = tolerance_of_places / kind.length_scale(slot, i);
             tolerances[part.v + (v - part.ranges.v.begin) + body * kind.v_size() + i] = tolerance;
             // Orientations come last in both and are measured alike in the plane.
             if (i < kind.q_size()) {
-              tolerances[part.q + (q - part.ranges.q.begin) + body * kind.q_size() + i] =
-                  tolerance + options.relative_tolerance * reach / length;
+              tolerances[part.q + (q - part.ranges.q.begin) + body * kind.q_size() + i] = tolerance;
             }
           }
         }
@@ -159,7 +153,8 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
       unknowns(assembly_in, group.components, works_of(detector_in, group)),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
       bounds(bounds_of(assembly_in, detector_in, pairs)),
-      tolerances(std::make_shared<const std::vector<double>>(tolerances_of(*this, *options))) {
+      tolerances(
+          std::make_shared<const std::vector<double>>(tolerances_of(*this, options->absolute_tolerance))) {
   if (!bounds.empty()) bound_places_.assign(pairs.size(), none);
   for (Index i = 0; i < bounds.size(); ++i) bound_places_[bounds[i].pair] = i;
   const bool ground_moves = !pairs.empty() && detector->has_moving_ground();

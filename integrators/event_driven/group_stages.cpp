@@ -151,7 +151,6 @@ Phase::Kind start_flow(GroupParts& group, EventInstant& at) {
     group.failure.fail(tell_without_direction(*model.assembly, lost), {model.assembly->system().name(lost)});
   }
   if (is_at_rest(group, now)) return Phase::at_rest;
-  group.motion.begin_phase(group.y);
   group.detector.begin_phase(at.time, group.y.data(), at.scales);
   // A method of many steps is not helped by the length that the last step had.
   const FlowMethod method = model.options->method;

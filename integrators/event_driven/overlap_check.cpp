@@ -2,7 +2,6 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/errors.h>
-#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/overlap_check.h>
 
 #include <algorithm>
@@ -19,12 +18,12 @@ OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, c
   found_.reserve(few);
 }
 
-double allowed_overlap(const EventDriven& options, std::span<const double> places, double error) {
+double allowed_overlap(const EventDriven& options, std::span<const double> places) {
   constexpr double tolerances = 10.0;  // output within a step is less exact than its end
-  constexpr double roundings = 4.0;    // up to there gaps touch
   double size = 0.0;
   for (const double place : places) size = std::max(size, std::abs(place));
-  return tolerances * (options.gap_tolerance + error) + roundings * gap_noise_of(size);
+  const double of_integrator = options.relative_tolerance * size + options.absolute_tolerance;
+  return tolerances * (options.gap_tolerance + of_integrator);
 }
 
 namespace {
@@ -54,16 +53,15 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
     deepest = &contact;
   }
   if (deepest == nullptr || deepest->gap >= -model.options->gap_tolerance) return;
-  const double allowed =
-      -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()), at.motion.error_of_places(at.y));
+  const double allowed = -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()));
   if (deepest->gap >= allowed) return;
   const std::string name = failure.name(*deepest);
   failure.fail(tell_overlap(name, deepest->gap, allowed), {name});
 }
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
-void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double error, double from) {
-  const double allowed_gap = -allowed_overlap(*options_, state.q, error);
+void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
+  const double allowed_gap = -allowed_overlap(*options_, state.q);
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();

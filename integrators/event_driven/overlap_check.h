@@ -21,11 +21,9 @@
 
 namespace carom {
 
-/// How deep shapes may be in each other [m]: ten times the tolerance of gaps and what the integrator may have
-/// done wrong, and rounding. \param places coordinates of bodies \param error of a place by the integrator
-/// [m]
-[[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places,
-                                               double error);
+/// How deep shapes may be in each other [m]: ten times the tolerance of gaps, and what the tolerances of the
+/// integrator leave of a place. \param places coordinates of bodies
+[[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places);
 /// Throws SolverError naming the deepest contact of a clock group at an event where one is deeper. \param at
 /// brought to the state
 CAROM_API void demand_apart(const EventInstant& at, const GroupFailure& failure);
@@ -37,9 +35,8 @@ public:
   OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options);
 
   /// Throws SolverError naming the deepest contact where one is deeper.
-  /// \param evaluation position group up to date \param error of a place by the integrator [m] \param from
-  /// begin of the step, the last good state [s]
-  void demand_apart(const State& state, const Evaluation& evaluation, double error, double from);
+  /// \param evaluation position group up to date \param from begin of the step, the last good state [s]
+  void demand_apart(const State& state, const Evaluation& evaluation, double from);
 
 private:
   const Assembly* assembly_;

@@ -14,7 +14,8 @@ constexpr double shortest = 1e-9;     // steps against the scale of time: what i
 
 /// How far off the path a coordinate may be.
 double allowed_off_path(const SmoothMotion& motion, std::size_t i, double coordinate) {
-  return noticeable * motion.tolerance().at(i, coordinate);
+  return noticeable * (motion.model().options->relative_tolerance * std::abs(coordinate) +
+                       motion.absolute_tolerances()[i]);
 }
 
 /// Writes the path at a time into the memory; number of coordinates.

@@ -21,26 +21,6 @@ SmoothMotion::SmoothMotion(const Assembly& assembly, const Detector& detector, c
   if (!joints_.friction_bounds().empty()) active_.ask_least();  // bounds of friction follow from forces
 }
 
-void SmoothMotion::begin_phase(std::span<const double> y) {
-  origins_.clear();
-  if (!is_ballistic())
-    origins_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(model_.unknowns.q_size()));
-}
-
-double SmoothMotion::error_of_places(std::span<const double> y) const {
-  double largest = model_.options->absolute_tolerance;
-  const ErrorTolerance allowed = tolerance();
-  for (const MotionUnknowns::Part& part : model_.parts()) {
-    if (origins_.empty()) break;  // known exactly
-    const Range v = part.ranges.v;
-    const Index count = std::min(part.ranges.q.size(), v.size());
-    for (Index i = 0; i < count; ++i) {
-      largest = std::max(largest, allowed.at(part.q + i, y[part.q + i]) * memory_->lengths[v.begin + i]);
-    }
-  }
-  return largest;
-}
-
 void SmoothMotion::contact(std::size_t pair, const MotionSample& at, Constraint& out) const {
   model_.detector->contact(model_.pairs[pair], at.view(), at.evaluation, at.places, out);
 }

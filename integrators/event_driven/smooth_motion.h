@@ -17,7 +17,6 @@
 #include <carom/integrators/event_driven/motion_jacobian.h>
 #include <carom/integrators/event_driven/motion_memory.h>
 #include <carom/integrators/event_driven/motion_sample.h>
-#include <carom/integrators/flow/error_tolerance.h>
 #include <carom/integrators/flow/flow.h>
 #include <carom/integrators/run/event_driven.h>
 
@@ -38,12 +37,6 @@ public:
   [[nodiscard]] std::size_t size() const override { return model_.unknowns.size(); }
   void rates(double time, const double* y, double* rates) override;
   [[nodiscard]] std::span<const double> absolute_tolerances() const override { return *model_.tolerances; }
-  /// Coordinates at the start of the phase; none of flights that are known exactly.
-  [[nodiscard]] std::span<const double> origins() const override { return origins_; }
-  /// Begins a phase at y, with the closed contacts as they are: coordinates are measured from there.
-  void begin_phase(std::span<const double> y);
-  /// What steps may do wrong in this phase.
-  [[nodiscard]] ErrorTolerance tolerance() const { return {*this, model_.options->relative_tolerance}; }
 
   /// Where coordinates and velocities correspond one to one.
   [[nodiscard]] bool has_jacobian() const override {
@@ -58,10 +51,6 @@ public:
   [[nodiscard]] bool is_ballistic() const override {
     return model_.loads.are_constant && has_jacobian() && joints_.rows().empty() && active_.list().empty();
   }
-
-  /// Largest error that a step may have made in the places of this phase, angles as far as they move what is
-  /// as far from the centre as the radius of gyration [m].
-  [[nodiscard]] double error_of_places(std::span<const double> y) const;
 
   /// Evaluates one state. The rows of joints and the forces of closed contacts are those of this state then.
   void sample(double time, const double* y, Forces forces, MotionSample& out);
@@ -108,7 +97,6 @@ private:
   GroupModel model_;
   ActiveSet active_;
   GroupGuards guards_;
-  std::vector<double> origins_;
   std::unique_ptr<MotionJacobian> jacobian_;  // null until asked for
 };
 

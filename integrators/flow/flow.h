@@ -40,9 +40,6 @@ public:
   virtual void rates(double time, const double* y, double* rates) = 0;
   /// Absolute tolerance of each unknown, > 0.
   [[nodiscard]] virtual std::span<const double> absolute_tolerances() const = 0;
-  /// Values of the first unknowns from which their sizes are measured, for relative tolerances: places, whose
-  /// zero means nothing. All others are measured from zero. Constant between two calls of Flow::start().
-  [[nodiscard]] virtual std::span<const double> origins() const { return {}; }
   /// True if jacobian() is there. Otherwise bdf finds all of df/dy by differences, size() evaluations.
   [[nodiscard]] virtual bool has_jacobian() const { return false; }
   /// Number n of unknowns that jacobian() knows to be integrals:  dy_i/dt = y_(n+i)  for i < n.
@@ -131,9 +128,9 @@ public:
 };
 
 /// Makes a flow; of a ballistic problem a BallisticFlow, whatever the method. The estimated error of a step
-/// is at most relative_tolerance |y_i| + absolute tolerance, in each unknown; of places as ErrorTolerance
-/// says. `problem` must outlive the flow's use of it. ModelError: a tolerance that is not finite and > 0, no
-/// unknowns. \param relative_tolerance > 0
+/// is at most relative_tolerance |y_i| + absolute tolerance, in each unknown. `problem` must outlive the
+/// flow's use of it. ModelError: a tolerance that is not finite and > 0, no unknowns. \param
+/// relative_tolerance > 0
 [[nodiscard]] CAROM_API std::unique_ptr<Flow> make_flow(FlowMethod method, FlowProblem& problem,
                                                         double relative_tolerance);
 

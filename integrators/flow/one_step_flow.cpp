@@ -2,7 +2,6 @@
 // pair of orders 5 and 4 by Dormand and Prince (1980), the last stage being the first of the next step.
 
 #include <carom/integrators/flow/dormand_prince.h>
-#include <carom/integrators/flow/error_tolerance.h>
 #include <carom/integrators/flow/flow_checks.h>
 #include <carom/integrators/flow/one_step_flow.h>
 
@@ -53,13 +52,14 @@ void OneStepFlow::make_step(double time, double length, const std::vector<double
 /// Largest estimated error of the trial against the tolerance.
 double OneStepFlow::error(double length) const {
   const std::size_t n = state_.size();
-  const ErrorTolerance tolerance(*problem_, relative_tolerance_);
+  const auto tolerances = problem_->absolute_tolerances();
   const double* const slopes = stage(0);
   double worst = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < stages; ++k) sum += e[k] * slopes[k * n + i];
-    const double allowed = std::max(tolerance.at(i, state_[i]), tolerance.at(i, trial_[i]));
+    const double allowed =
+        tolerances[i] + relative_tolerance_ * std::max(std::abs(state_[i]), std::abs(trial_[i]));
     const double part = std::abs(length * sum) / allowed;
     if (!(part <= worst)) worst = part;  // a NaN is kept
   }
@@ -68,9 +68,14 @@ double OneStepFlow::error(double length) const {
 
 /// So long that a change of first order is a hundredth of the unknowns, where nothing better is known.
 double OneStepFlow::first_guess() const {
-  const ErrorTolerance tolerance(*problem_, relative_tolerance_);
-  const double size = tolerance.size(state_);
-  const double rate = tolerance.size({stage(0), state_.size()}, state_);
+  const auto tolerances = problem_->absolute_tolerances();
+  const double* const slopes = stage(0);
+  double size = 0.0, rate = 0.0;
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    const double weight = tolerances[i] + relative_tolerance_ * std::abs(state_[i]);
+    size = std::max(size, std::abs(state_[i]) / weight);
+    rate = std::max(rate, std::abs(slopes[i]) / weight);
+  }
   return rate > 0.0 && size > 0.0 ? 0.01 * size / rate : 1e-3;
 }
 

@@ -107,6 +107,15 @@ SundialsVector SundialsLink::vector(double* numbers) const {
   return made;
 }
 
+double SundialsLink::in_tolerances(const double* x, const double* y) const {
+  const double* const absolute = problem_->absolute_tolerances().data();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < size_; ++i) {
+    largest = std::max(largest, std::abs(x[i]) / (relative_tolerance_ * std::abs(y[i]) + absolute[i]));
+  }
+  return largest;
+}
+
 bool SundialsLink::evaluate(double time, const double* y, double* rates) {
   ++evaluations_;
   problem_->rates(time, y, rates);
@@ -135,13 +144,8 @@ int SundialsLink::rates(sunrealtype time, N_Vector y, N_Vector rates, void* link
 int SundialsLink::weights(N_Vector y, N_Vector weights, void* link) noexcept {
   const auto& self = *static_cast<SundialsLink*>(link);
   try {
-    const double* const absolute = self.problem_->absolute_tolerances().data();
-    const std::span<const double> origins = self.problem_->origins();
-    const std::size_t places = origins.size();
-    loops::place_weights(places, self.relative_tolerance_, coordinate_rounding, NV_DATA_S(y), origins.data(),
-                         absolute, NV_DATA_S(weights));
-    loops::tolerance_weights(self.size_ - places, self.relative_tolerance_, NV_DATA_S(y) + places,
-                             absolute + places, NV_DATA_S(weights) + places);
+    loops::tolerance_weights(self.size_, self.relative_tolerance_, NV_DATA_S(y),
+                             self.problem_->absolute_tolerances().data(), NV_DATA_S(weights));
     loops::scale(self.size_, 1.0 / self.part_, NV_DATA_S(weights), NV_DATA_S(weights));
     return 0;
   } catch (...) {

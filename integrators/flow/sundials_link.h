@@ -4,7 +4,6 @@
 /// FlowProblem as SUNDIALS sees it: a context, vectors with loops of our own, functions in C that call the
 /// problem. Differences between the versions 6.4 and 7 live here and in sundials_link.cpp.
 
-#include <carom/integrators/flow/error_tolerance.h>
 #include <carom/integrators/flow/flow.h>
 #include <carom/integrators/flow/newton_matrix.h>
 #include <carom/integrators/flow/sundials_errors.h>
@@ -62,8 +61,8 @@ public:
 
   /// Holds the errors of steps to this part of the tolerances, > 0.
   void tighten(double part) { part_ = part; }
-  /// What steps may do wrong, before tighten().
-  [[nodiscard]] ErrorTolerance tolerance() const { return {*problem_, relative_tolerance_}; }
+  /// Largest component of x, each measured by its tolerance at y.
+  [[nodiscard]] double in_tolerances(const double* x, const double* y) const;
   /// Evaluates f outside SUNDIALS. False: not finite.
   [[nodiscard]] bool evaluate(double time, const double* y, double* rates);
 

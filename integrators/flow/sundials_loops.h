@@ -108,14 +108,6 @@ inline void tolerance_weights(std::size_t n, double relative, const double* y, c
   for (std::size_t i = 0; i < n; ++i) w[i] = 1.0 / (relative * std::abs(y[i]) + absolute[i]);
 }
 
-/// The same of places, measured from their origins, with a part of |y| for rounding (ErrorTolerance).
-inline void place_weights(std::size_t n, double relative, double rounding, const double* y,
-                          const double* origin, const double* absolute, double* w) {
-  for (std::size_t i = 0; i < n; ++i) {
-    w[i] = 1.0 / (relative * std::abs(y[i] - origin[i]) + absolute[i] + rounding * std::abs(y[i]));
-  }
-}
-
 /// z = sum of c[j] x(j), j < count. `x` gives the array of vector j.
 template <class Arrays>
 void combine(std::size_t n, std::size_t count, const double* c, Arrays&& x, double* z) {

@@ -62,13 +62,12 @@ private:
 // E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4. ARKODE's own
 // guess is that of a method of order 1 and costs eight steps more.
 double RungeKuttaFlow::guess_first_step(double longest) {
-  const std::span<const double> y = begin_state_;
+  const double* const y = begin_state_.data();
   double* const first = scratch(0);
   double* const second = scratch(1);
   double* const place = scratch(2);
-  if (!link_.evaluate(begin_, y.data(), first)) return longest;  // the step will meet it again
-  const ErrorTolerance tolerance = link_.tolerance();
-  const double size = tolerance.size(y), speed = tolerance.size({first, y.size()}, y);
+  if (!link_.evaluate(begin_, y, first)) return longest;  // the step will meet it again
+  const double size = link_.in_tolerances(y, y), speed = link_.in_tolerances(first, y);
   // An explicit Euler step that changes y by a hundredth.
   const double small = std::min(longest, size > 1e-5 && speed > 1e-5 ? 0.01 * size / speed : 1e-6);
   for (std::size_t i = 0; i < link_.size(); ++i) place[i] = y[i] + small * first[i];
@@ -77,7 +76,7 @@ double RungeKuttaFlow::guess_first_step(double longest) {
     return small;
   }
   for (std::size_t i = 0; i < link_.size(); ++i) second[i] -= first[i];
-  const double bend = tolerance.size({second, y.size()}, y) / small;
+  const double bend = link_.in_tolerances(second, y) / small;
   const double largest = std::max(speed, bend);
   const double guess = largest > 1e-15 ? std::pow(0.01 / largest, 1.0 / 5.0) : std::max(1e-6, 1e-3 * small);
   return std::min({100.0 * small, guess, longest});

@@ -39,9 +39,7 @@ private:
 /// Smooth phases by an integrator of variable step; the times of contact events are located, and impacts and
 /// changes of contact modes are solved at these times. docs/events.md has a table of these options.
 struct EventDriven {
-  /// Largest error of a step relative to each unknown, > 0: of positions to how far the body has come since
-  /// the last event of its group, and its radius of gyration; of angles likewise, and 1 rad.
-  double relative_tolerance = 1e-9;
+  double relative_tolerance = 1e-9;  ///< largest error of a step relative to each unknown, > 0
   /// Largest absolute error of a step, > 0: of positions [m] and velocities [m/s]; angles count times the
   /// radius of gyration, works relative to the mass of their component times 1 m^2/s^2.
   double absolute_tolerance = 1e-11;

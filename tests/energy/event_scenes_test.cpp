@@ -152,13 +152,6 @@ TEST(EventScenesLong, LikewiseWithEachMethod) {
 
 // Scenes that failed once.
 
-// The ledger was open by 1.2e-6 while errors of places were relative to the places.
-TEST(EventScenes, AdamsClosesTheAccount) {
-  Findings findings;
-  run_scene(2244, {.method = FlowMethod::adams}, residual_at_default, findings);
-  for (const std::string& failure : findings.failures) ADD_FAILURE() << failure;
-}
-
 void expect_sound_scenes(std::initializer_list<std::uint64_t> seeds) {
   for (const EventDriven& options : {EventDriven{}, tight}) {
     Findings findings;

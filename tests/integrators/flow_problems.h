@@ -39,11 +39,8 @@ public:
     jacobian_(time, y, out);
   }
 
-  [[nodiscard]] std::span<const double> origins() const override { return places; }
-
   int evaluations = 0;
   int jacobians = 0;
-  std::vector<double> places;  // of the first unknowns
 
 private:
   std::vector<double> tolerances_;

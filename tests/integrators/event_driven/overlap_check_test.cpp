@@ -39,7 +39,7 @@ public:
     Evaluation evaluation = make_evaluation(assembly);
     evaluate_positions(assembly, start.state().view(), evaluation);
     try {
-      check.demand_apart(start.state(), evaluation, options.absolute_tolerance, -0.25);
+      check.demand_apart(start.state(), evaluation, -0.25);
     } catch (const SolverError& error) {
       EXPECT_EQ(error.failure().time, -0.25);
       EXPECT_EQ(error.failure().step, 0.25);
@@ -80,7 +80,7 @@ private:
 TEST(OverlapCheck, LeavesAloneWhatTouchesOrIsApart) {
   EXPECT_EQ(TwoBoxes(0.01, 0.01).told(), "");
   EXPECT_EQ(TwoBoxes(0.0, 0.0).told(), "");
-  // 10 (gap_tolerance + absolute_tolerance) = 1.01e-8 m.
+  // 10 (gap_tolerance + relative_tolerance * 0.1 m + absolute_tolerance) = 1.1e-8 m.
   EXPECT_EQ(TwoBoxes(-1.0e-8, 0.0).told(), "");
 }
 
