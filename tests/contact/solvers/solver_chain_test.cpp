@@ -175,7 +175,9 @@ TEST(SolverChain, StatisticsThatAreTakenAddUpToTheSame) {
     std::vector<double> p(static_cast<std::size_t>(problem.rows()));
     static_cast<void>(kept.solve(problem, p));
     static_cast<void>(taken.solve(problem, p));
-    if (seed % 7 == 0) EXPECT_EQ(kept.statistics().problems, static_cast<std::int64_t>(seed) + 1);
+    if (seed % 7 == 0) {
+      EXPECT_EQ(kept.statistics().problems, static_cast<std::int64_t>(seed) + 1);
+    }
     if (seed % 2 == 0) taken.take_statistics(sum);
   }
   taken.take_statistics(sum);
