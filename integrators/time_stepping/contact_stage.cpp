@@ -36,6 +36,33 @@ private:
   Index next_ = 0;  // most contacts are those of the step before, in the same order
 };
 
+/// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
+/// known when this is compiled \param loads0 over all velocities, at the start \param loads1 at the end
+template <std::size_t N>
+void free_body(const StepInput& in, const double* loads0, const double* loads1, const BodySlot& body,
+               StepTrial& trial) {
+  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(body.v_size);
+  const double half = 0.5 * in.step;
+  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
+  const double *const load0 = loads0 + body.v, *const load1 = loads1 + body.v;
+  const double* const start = in.start.v.data() + body.v;
+  const float* const rounding = in.companion.rounding.data() + body.v;
+  for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
+  in.assembly.body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
+  for (std::size_t k = 0; k < size; ++k) {
+    free[k] += static_cast<double>(rounding[k]) + start[k];
+    dv[k] = 0.0;
+  }
+}
+
+void free_body(const StepInput& in, const double* loads0, const double* loads1, Index body,
+               StepTrial& trial) {
+  constexpr Index of_planar_body = 3;
+  const BodySlot slot = in.assembly.layout()->bodies()[body];
+  if (slot.v_size == of_planar_body) return free_body<of_planar_body>(in, loads0, loads1, slot, trial);
+  free_body<0>(in, loads0, loads1, slot, trial);
+}
+
 /// Impulses against the velocities of free bodies, which are known. False if there are none.
 bool solve_against_free(IslandProblem& problem, SolverChain& chain, StepTrial& trial) {
   problem.set_free_velocity(trial.free.data());
@@ -242,38 +269,12 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
   return nullptr;
 }
 
-/// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
-/// known when this is compiled
-template <std::size_t N>
-void ContactStage::free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body,
-                             StepTrial& trial) const {
-  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(body.v_size);
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
-  const double *const load0 = loads.start + body.v, *const load1 = loads.end + body.v;
-  const double* const start = in.start.v.data() + body.v;
-  const float* const rounding = in.companion.rounding.data() + body.v;
-  for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
-  assembly_->body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
-  for (std::size_t k = 0; k < size; ++k) {
-    free[k] += static_cast<double>(rounding[k]) + start[k];
-    dv[k] = 0.0;
-  }
-}
-
-void ContactStage::free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const {
-  constexpr Index of_planar_body = 3;
-  const BodySlot slot = assembly_->layout()->bodies()[body];
-  if (slot.v_size == of_planar_body) return free_body<of_planar_body>(in, loads, slot, trial);
-  free_body<0>(in, loads, slot, trial);
-}
-
 /// Likewise of the only body that has constraints, under constant loads.
 void ContactStage::free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
                               StepTrial& trial) const {
   const BodyMasses masses = masses_.alone(body.body);
   if (masses.layout != BodyMasses::Layout::planar_bodies)
-    return free_body(in, {loads, loads}, body.body, trial);
+    return free_body(in, loads, loads, body.body, trial);
   const double half = 0.5 * in.step;
   double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
   const double *const load = loads + body.v, *const start = in.start.v.data() + body.v;
@@ -296,7 +297,7 @@ void ContactStage::free_struck(const StepInput& in, const double* loads, StepTri
     const Index begin = struck_[first];
     while (last < struck_.size() && struck_[last] - begin == last - first) ++last;
     if (last - first == 1) {
-      free_body(in, {loads, loads}, begin, trial);
+      free_body(in, loads, loads, begin, trial);
       continue;
     }
     const Range bodies{begin, begin + static_cast<Index>(last - first)};
@@ -317,10 +318,10 @@ bool ContactStage::solve(const StepInput& in, const EndLoads& loads, IslandProbl
                          SolverChain& chain, StepTrial& trial) {
   const std::span<const Constraint> constraints = problem.constraints();
   if (constraints.size() == 1 && constraints.front().bodies == 1) {
-    free_body(in, loads, constraints.front().body(), trial);
+    free_body(in, loads.start, loads.end, constraints.front().body(), trial);
   } else {
     problem.map().for_bodies(
-        [&](const Constraint::Block& block) { free_body(in, loads, block.body, trial); });
+        [&](const Constraint::Block& block) { free_body(in, loads.start, loads.end, block.body, trial); });
   }
   return solve_against_free(problem, chain, trial);
 }

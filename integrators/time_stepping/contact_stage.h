@@ -83,9 +83,6 @@ private:
   void put_struck_in_order();
   void share_out(const StepIsland& island, StepTrial& trial);
   [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
-  template <std::size_t N>
-  void free_body(const StepInput& in, const EndLoads& loads, const BodySlot& body, StepTrial& trial) const;
-  void free_body(const StepInput& in, const EndLoads& loads, Index body, StepTrial& trial) const;
   void free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
                   StepTrial& trial) const;
   void free_struck(const StepInput& in, const double* loads, StepTrial& trial) const;

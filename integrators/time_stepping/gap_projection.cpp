@@ -48,7 +48,7 @@ void GapProjection::find(const Bodies& bodies, const Which& which, double margin
   if (which.of_bodies) bodies.detector.bodies().find(query, search_, contacts_);
   if (which.all) return;
   std::erase_if(contacts_, [&](const Constraint& contact) {
-    return !std::binary_search(wanted_.begin(), wanted_.end(), pair_of(contact.key));
+    return !std::binary_search(keys_.wanted.begin(), keys_.wanted.end(), pair_of(contact.key));
   });
 }
 
@@ -63,10 +63,10 @@ void GapProjection::start(const Bodies& bodies, const Which& which, Range v, con
   towards_.resize(state.v.size());
   std::copy(state.q.begin() + first, state.q.begin() + end, unmoved_.begin() + first);
   std::fill(displacement_.begin() + v.begin, displacement_.begin() + v.end, 0.0);
-  pushed_.clear();
-  wanted_.clear();
-  for (const Constraint& contact : which.taking_part) wanted_.push_back(pair_of(contact.key));
-  std::sort(wanted_.begin(), wanted_.end());
+  keys_.pushed.clear();
+  keys_.wanted.clear();
+  for (const Constraint& contact : which.taking_part) keys_.wanted.push_back(pair_of(contact.key));
+  std::sort(keys_.wanted.begin(), keys_.wanted.end());
 }
 
 GapProjection::Result GapProjection::project(const Bodies& bodies, const Which& which, SolverChain& chain,
@@ -160,16 +160,16 @@ bool GapProjection::has_moved(const Bodies& bodies, std::span<const Constraint> 
 
 /// True if a contact pushed in the last pass that moved its bodies.
 bool GapProjection::has_pushed(const ConstraintKey& key) const {
-  return std::binary_search(pushed_.begin(), pushed_.end(), key);
+  return std::binary_search(keys_.pushed.begin(), keys_.pushed.end(), key);
 }
 
 /// Notes which contacts push, by their multipliers.
 void GapProjection::note_pushes(std::span<const Constraint> contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const auto place = std::lower_bound(pushed_.begin(), pushed_.end(), contacts[i].key);
-    const bool is_there = place != pushed_.end() && *place == contacts[i].key;
-    if (multipliers_[i] > 0.0 && !is_there) pushed_.insert(place, contacts[i].key);
-    if (!(multipliers_[i] > 0.0) && is_there) pushed_.erase(place);
+    const auto place = std::lower_bound(keys_.pushed.begin(), keys_.pushed.end(), contacts[i].key);
+    const bool is_there = place != keys_.pushed.end() && *place == contacts[i].key;
+    if (multipliers_[i] > 0.0 && !is_there) keys_.pushed.insert(place, contacts[i].key);
+    if (!(multipliers_[i] > 0.0) && is_there) keys_.pushed.erase(place);
   }
 }
 

@@ -74,8 +74,11 @@ private:
 
   std::vector<Constraint> contacts_;
   BodyContactSearch search_;
-  std::vector<ConstraintKey> wanted_;  // of contacts that take part, ascending
-  std::vector<ConstraintKey> pushed_;  // of contacts that pushed in the last pass, ascending
+  // Of contacts, ascending.
+  struct {
+    std::vector<ConstraintKey> wanted;  // those that take part
+    std::vector<ConstraintKey> pushed;  // those that pushed in the last pass
+  } keys_;
   IslandPartition partition_;
   std::vector<ImpulseDirection> normals_;
   Delassus delassus_;

@@ -65,12 +65,11 @@ void StepConstraints::place_surfaces(const StepInput& in) {
   detector_.demand_continuous(places_, places_after_);
 }
 
-/// \param step length of a step that gaps may come from [s]
-OpeningSlack StepConstraints::slack_of(double step) const {
-  OpeningSlack slack{rules_.slack, rules_.slack};
-  if (rules_.parting == Parting::is_free) slack.of_pressed = step * rules_.capture_speed;
-  if (rules_.keeps_pressed) slack.of_pressed = std::numeric_limits<double>::infinity();
-  return slack;
+OpeningSlack StepConstraints::Rules::slack_of(double step) const {
+  OpeningSlack openings{slack, slack};
+  if (parting == Parting::is_free) openings.of_pressed = step * capture_speed;
+  if (keeps_pressed) openings.of_pressed = std::numeric_limits<double>::infinity();
+  return openings;
 }
 
 /// A gap was opened by the step before, which this one may be a small part of.
@@ -79,7 +78,7 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
     const double step = std::max(in.step, last_step);
-    detector_.remember(in.companion.modes, step, slack_of(step), lasting_);
+    detector_.remember(in.companion.modes, step, rules_.slack_of(step), lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
@@ -179,7 +178,7 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
 
 std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
                                                  const StepTrial& trial) {
-  if (finds_plain()) {
+  if (rules_.finds_plain()) {
     plain_.clear();
     detector_.ground().find(components, query(in, trial), plain_);
     return plain_.all();

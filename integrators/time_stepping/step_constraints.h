@@ -63,7 +63,7 @@ public:
   }
   /// False if surely some components have no contact, after begin(), or those of such an island.
   [[nodiscard]] bool may_touch(const StepInput& in, Range components, const StepTrial& trial) const {
-    return !finds_plain() || detector_.ground().any_near(components, query(in, trial));
+    return !rules_.finds_plain() || detector_.ground().any_near(components, query(in, trial));
   }
   /// Finds the contacts of some components, likewise. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
@@ -74,7 +74,6 @@ public:
 private:
   void remember(const StepInput& in, double last_step);
   void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
-  [[nodiscard]] bool finds_plain() const { return rules_.plain && rules_.parting == Parting::acts; }
   [[nodiscard]] bool goes_in_parts(Range batch) const {
     return rules_.by_part && batch.size() > rules_.part_size;
   }
@@ -85,11 +84,10 @@ private:
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
   void take_sticking(std::span<Constraint> found) const;
-  [[nodiscard]] OpeningSlack slack_of(double step) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
   Detector detector_;
-  struct {
+  struct Rules {
     double capture_speed;
     double slack;                     // opening of lasting contacts that is none [m]
     bool keeps_pressed;               // contacts with an impulse in the step before last
@@ -101,6 +99,10 @@ private:
     Index part_size = none;           // allow_parts()
     double margin = 0.0;              // gaps that count as closed [m]
     double slowest = 0.0;             // contacts that part more slowly do not part [m/s]
+
+    [[nodiscard]] bool finds_plain() const { return plain && parting == Parting::acts; }
+    // Of a step of that length [s], which gaps may come from.
+    [[nodiscard]] OpeningSlack slack_of(double step) const;
   } rules_;
   GroundPlaces places_, places_after_;   // at the start; at the end
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
