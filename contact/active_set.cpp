@@ -267,7 +267,8 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
   }
   memory_->delassus.add_response(unknown, acceleration);
   if (factors.rank() < n) memory_->margins.add(contacts_, first, last, rows, factors);
-  if (solved && n > 1) refine(size, acceleration);
+  // Where rows depend on others, what is left in them is not of rounding.
+  if (solved && n > 1 && factors.rank() == n) refine(size, acceleration);
   return solved;
 }
 
