@@ -22,7 +22,7 @@ inline constexpr double lemke_pivot_threshold = 1e-10;
 /// lexicographic rule decides among them.
 inline constexpr double lemke_tie_threshold = 1e-12;
 
-/// What follows where a path ends at a ray.
+/// Next step of a path that ends at a ray.
 enum class LemkeRay : std::uint8_t {
   repeated,  ///< the second pass: the problem has a solution by theory, so that digits must have been lost
   confirmed  ///< likewise, unless the ray is one in a tableau made anew: the problem need not have a solution

@@ -84,7 +84,7 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     if (contact.has_dry_friction() || bounces) continue;
     if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
-    // What does not slide is not to start by what stops others: accelerations decide about that.
+    // A contact at rest is not to start by what stops others: accelerations decide about that.
     const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();

@@ -106,7 +106,7 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
   if (!(pull > 0.0) || fastest == 0.0) return false;
-  // What slides hardly faster than rounding is asked once, too.
+  // Contacts that slide hardly faster than rounding are asked once, too.
   double change = longest * fastest;
   do {
     const double step = change / pull;

@@ -47,8 +47,8 @@ public:
   [[nodiscard]] JointConstraints& rows() { return rows_; }
   /// Makes velocities obey the condition. \param end the rows at the end \param left work, one number by row
   void allow(const JointConstraints& end, double* velocity, std::vector<double>& left);
-  /// What the condition at the start misses along the rows of the answer, A v_j - a + r0 + r1: half of it
-  /// times the multipliers of the answer is their work, but for that on drivers. \param out by row
+  /// Errors A v_j - a + r0 + r1 of the condition at the start along the rows of the answer: half of them
+  /// times the multipliers of the answer is its work, but for that on drivers. \param out by row
   void errors(const JointConstraints& end, const double* velocity_before, double* out) const;
   /// The rate r0 of a row at the start.
   [[nodiscard]] double rate_at_start(std::size_t row) const {

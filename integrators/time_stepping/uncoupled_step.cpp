@@ -126,7 +126,7 @@ Flight UncoupledStep::fly(const StepInput& in, State& state, Companion& companio
   trial.end.time = in.end_time;
   for (const LooseBatch& batch : batches_)
     parts_->rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
-  // What touches at the end hits within the step.
+  // Bodies that touch at the end hit within the step.
   if (parts_->located.on() && !is_free(trial.end, parts_->constraints.detector(), rows_))
     return Flight::moved;
   StoredEnergies stored;

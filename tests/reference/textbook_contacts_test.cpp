@@ -24,7 +24,7 @@ using carom_test::textbook_scenes;
 using carom_test::TextbookScene;
 using carom_test::tight;
 
-/// What the modes can do in a family.
+/// Errors of the modes in a family.
 struct Expected {
   const char* family;
   double q, v;                    // errors of the event-driven mode [m, rad] and [m/s, rad/s]

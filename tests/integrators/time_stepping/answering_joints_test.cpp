@@ -317,7 +317,7 @@ TEST(AnsweringJoints, GoOnBitForBitAfterACheckpoint) {
   }
 }
 
-// What couplings do to the contraction is rated now and then, which allocates; nothing else does.
+// The contraction by couplings is rated now and then, which allocates; nothing else does.
 TEST(AnsweringJoints, TakeNoMemoryOnceContactsLast) {
   for (const Scene& scene : {slider_crank(0.05, 0.0), driven_leg(), falling_guide()}) {
     Simulation simulation(scene.system, located(1e-3));

@@ -295,7 +295,7 @@ void expect_rest(int blocks) {
 
 TEST(Closings, StacksOfBlocksStayAtRest) { expect_rest(6); }
 
-// What touches to rounding at the start of a step lasts: no step of a stack is parted by corners that
+// Contacts closed to rounding at the start of a step last: no step of a stack is parted by corners that
 // rounding has opened, so none lists a contact twice.
 TEST(Closings, OfStacksAtRestAreNone) {
   for (const double restitution : {0.0, 0.5}) {

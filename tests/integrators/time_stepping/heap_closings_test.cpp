@@ -99,7 +99,7 @@ TEST(HeapClosings, OfAHighStackAreBounded) {
   EXPECT_GT(simulation.statistics().deepest_gap, -1e-4);
 }
 
-// What may still be spent is part of a checkpoint.
+// The steps still owed are part of a checkpoint.
 TEST(HeapClosings, GoOnBitForBitAfterACheckpoint) {
   const carom_test::TemporaryFolder folder;
   const System system = falling_discs(50);

@@ -76,7 +76,7 @@ TEST(ReturningContacts, OfStiffSpringsAddNoEnergy) {
 }
 
 TEST(ReturningContacts, OfStrainedSpringsAddNoEnergy) {
-  // What is left is the spring's own error of a step (coupling_discretisation), and rounding.
+  // The rest is the spring's own error of a step (coupling_discretisation), and rounding.
   for (const double restitution : {0.0, 0.5, 0.9}) {
     EXPECT_LT(most_gained(strained(restitution), TimeStepping{.step = 1e-3}, 0.3), 1e-3) << restitution;
   }
