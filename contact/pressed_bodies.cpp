@@ -26,12 +26,12 @@ std::string pressed_by(const System& system, const IslandProblem& problem) {
 }
 
 std::string uneven_masses(const IslandProblem& problem) {
-  return uneven_masses(1.0, problem.map().mass_ratio());
+  return uneven_masses(MassRange{1.0, problem.map().mass_ratio()});
 }
 
-std::string uneven_masses(double least, double most) {
+std::string uneven_masses(const MassRange& masses) {
   constexpr double uneven = 1e8;
-  const double ratio = most / least;
+  const double ratio = masses.most / masses.least;
   if (!(ratio > uneven)) return {};
   const double digits =
       std::max(std::floor(-std::log10(std::numeric_limits<double>::epsilon() * ratio)), 0.0);

@@ -2,15 +2,30 @@
 
 /// \file
 /// Causes of a contact problem without an answer, for errors of both modes: obstacles whose motion leaves
-/// bodies no room, masses that differ by more than numbers have digits for.
+/// bodies no room, masses that differ by more than numbers have digits for, friction in joints that grows
+/// with the force that it causes.
 
 #include <carom/contact/island_problem.h>
 #include <carom/core/export.h>
 #include <carom/core/system.h>
 
+#include <algorithm>
+#include <limits>
 #include <string>
 
 namespace carom {
+
+/// Masses of some bodies, least and largest [kg].
+struct MassRange {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+
+  /// Takes one more.
+  void add(double mass) {
+    least = std::min(least, mass);
+    most = std::max(most, mass);
+  }
+};
 
 /// Text that an error adds of a contact problem without an answer: the obstacles in it that move along the
 /// normal of a contact, and the remedies; empty where none moves so.
@@ -18,8 +33,8 @@ namespace carom {
 /// Likewise: by how much the masses differ, where that leaves a light body between heavy ones few digits (its
 /// acceleration is the difference of forces that are as much larger); else empty.
 [[nodiscard]] CAROM_API std::string uneven_masses(const IslandProblem& problem);
-/// Likewise of the masses of some bodies, where an error may have come of that. \param least,most [kg]
-[[nodiscard]] CAROM_API std::string uneven_masses(double least, double most);
+/// Likewise of the masses of some bodies, where an error may have come of that.
+[[nodiscard]] CAROM_API std::string uneven_masses(const MassRange& masses);
 
 /// Says that bounds of friction in joints and the forces that they follow from come to no end, and why.
 inline constexpr const char* unsettled_friction =

@@ -17,14 +17,11 @@ namespace {
 
 /// Text about the masses of bodies that touch, where digits that they leave may be the cause.
 std::string uneven_masses_of(const GroupModel& model) {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  MassRange masses;
   model.for_bodies([&](const BodyKind& kind, Range slots, Index, Index, const MotionUnknowns::Part&) {
-    for (Index slot = slots.begin; slot < slots.end; ++slot) {
-      least = std::min(least, kind.mass(slot));
-      most = std::max(most, kind.mass(slot));
-    }
+    for (Index slot = slots.begin; slot < slots.end; ++slot) masses.add(kind.mass(slot));
   });
-  return most > 0.0 ? uneven_masses(least, most) : std::string{};
+  return uneven_masses(masses);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -29,13 +28,10 @@ double allowed_overlap(const EventDriven& options, std::span<const double> place
 namespace {
 
 std::string uneven_masses_of(const Assembly& assembly) {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (const BodySlot& slot : assembly.layout()->bodies()) {
-    const double mass = assembly.body_kinds()[slot.kind]->mass(slot.slot);
-    least = std::min(least, mass);
-    most = std::max(most, mass);
-  }
-  return uneven_masses(least, most);
+  MassRange masses;
+  for (const BodySlot& slot : assembly.layout()->bodies())
+    masses.add(assembly.body_kinds()[slot.kind]->mass(slot.slot));
+  return uneven_masses(masses);
 }
 
 std::string tell_overlap(const std::string& contact, double gap, double allowed) {

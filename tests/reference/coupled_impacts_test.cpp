@@ -7,6 +7,7 @@
 #include "tests/analytic/convergence.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/event_run.h"
+#include "tests/reference/largest_difference.h"
 
 #include <gtest/gtest.h>
 
@@ -20,22 +21,15 @@ namespace {
 using namespace carom;
 using carom_test::coupled_scenes;
 using carom_test::CoupledScene;
+using carom_test::largest_difference;
 using carom_test::tight;
-
-double distance(const std::vector<double>& found, const std::vector<double>& known) {
-  EXPECT_EQ(found.size(), known.size());
-  double most = 0.0;
-  for (std::size_t i = 0; i < std::min(found.size(), known.size()); ++i)
-    most = std::max(most, std::abs(found[i] - known[i]));
-  return most;
-}
 
 /// Error of the coordinates at the end. The ledger must close.
 double error_of(const CoupledScene& scene, const TimeStepping& options) {
   Simulation simulation(scene.system, options);
   simulation.run_until(scene.end);
   EXPECT_TRUE(carom_test::ledger_closes(simulation.energy())) << scene.name << ", step " << options.step;
-  return distance(simulation.state().q, scene.q);
+  return largest_difference(simulation.state().q, scene.q);
 }
 
 double shortest_interval(const CoupledScene& scene) {
@@ -61,8 +55,8 @@ TEST_P(CoupledImpacts, EventsAreExact) {
         EXPECT_EQ(to_string(impacts[i].mode), scene.modes[i]) << scene.name << ", impact " << i;
       }
     }
-    EXPECT_LT(distance(simulation.state().q, scene.q), 1e-10) << scene.name;
-    EXPECT_LT(distance(simulation.state().v, scene.v), 1e-9) << scene.name;
+    EXPECT_LT(largest_difference(simulation.state().q, scene.q), 1e-10) << scene.name;
+    EXPECT_LT(largest_difference(simulation.state().v, scene.v), 1e-9) << scene.name;
     EXPECT_TRUE(watch.closes()) << scene.name;
   }
 }

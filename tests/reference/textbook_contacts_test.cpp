@@ -8,6 +8,7 @@
 #include "tests/analytic/convergence.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/event_run.h"
+#include "tests/reference/largest_difference.h"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,7 @@
 namespace {
 
 using namespace carom;
+using carom_test::largest_difference;
 using carom_test::textbook_scenes;
 using carom_test::TextbookScene;
 using carom_test::tight;
@@ -37,14 +39,6 @@ void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.fam
 
 constexpr double trapezoidal_rounding = 1e-12;  // 3,000 steps of a few eps, of coordinates up to 100
 
-double distance(const std::vector<double>& found, const std::vector<double>& known) {
-  EXPECT_EQ(found.size(), known.size());
-  double most = 0.0;
-  for (std::size_t i = 0; i < std::min(found.size(), known.size()); ++i)
-    most = std::max(most, std::abs(found[i] - known[i]));
-  return most;
-}
-
 /// Largest error of the coordinates at the known times. The ledger must close.
 double error_of(const TextbookScene& scene, TimeStepping options) {
   options.impact_rules = scene.rules;
@@ -52,7 +46,7 @@ double error_of(const TextbookScene& scene, TimeStepping options) {
   double most = 0.0;
   for (const carom_test::KnownState& known : scene.states) {
     simulation.run_until(known.time);
-    most = std::max(most, distance(simulation.state().q, known.q));
+    most = std::max(most, largest_difference(simulation.state().q, known.q));
   }
   EXPECT_TRUE(carom_test::ledger_closes(simulation.energy())) << scene.name << ", step " << options.step;
   return most;
@@ -68,8 +62,10 @@ TEST_P(TextbookContacts, EventDrivenIsExact) {
     const carom_test::LedgerWatch watch(simulation, 5.0);
     for (const carom_test::KnownState& known : scene.states) {
       simulation.run_until(known.time);
-      EXPECT_LT(distance(simulation.state().q, known.q), GetParam().q) << scene.name << ", " << known.time;
-      EXPECT_LT(distance(simulation.state().v, known.v), GetParam().v) << scene.name << ", " << known.time;
+      EXPECT_LT(largest_difference(simulation.state().q, known.q), GetParam().q)
+          << scene.name << ", " << known.time;
+      EXPECT_LT(largest_difference(simulation.state().v, known.v), GetParam().v)
+          << scene.name << ", " << known.time;
     }
     EXPECT_TRUE(watch.closes()) << scene.name;
     std::vector<EventRecord> events = simulation.events();
@@ -159,8 +155,8 @@ TEST(TextbookBreak, VelocitiesAreExactInAllModes) {
     Simulation exact(scene.system, events);
     exact.run_until(known.time);
     // Rounding.
-    EXPECT_LT(distance(exact.state().q, known.q), 2e-14) << scene.name;
-    EXPECT_LT(distance(exact.state().v, known.v), 2e-14) << scene.name;
+    EXPECT_LT(largest_difference(exact.state().q, known.q), 2e-14) << scene.name;
+    EXPECT_LT(largest_difference(exact.state().v, known.v), 2e-14) << scene.name;
     for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
       for (const ImpactTimes times : {ImpactTimes::at_step_start, ImpactTimes::located}) {
         constexpr double step = 1e-3;
@@ -175,8 +171,9 @@ TEST(TextbookBreak, VelocitiesAreExactInAllModes) {
             expected[i] -= 0.5 * step * (known.v[i] - before[i]);
         }
         const std::string name = scene.name + ", " + std::string(to_string(times));
-        EXPECT_LT(distance(simulation.state().q, expected), 1e-13) << name;  // rounding of 500 steps
-        EXPECT_LT(distance(simulation.state().v, known.v), 2e-14) << name;
+        EXPECT_LT(largest_difference(simulation.state().q, expected), 1e-13)
+            << name;  // rounding of 500 steps
+        EXPECT_LT(largest_difference(simulation.state().v, known.v), 2e-14) << name;
         EXPECT_TRUE(carom_test::ledger_closes(simulation.energy())) << name;
       }
     }

@@ -28,6 +28,7 @@ using namespace carom::planar;
 using carom_test::bits_of;
 using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::located;
 using carom_test::tight;
 
 constexpr double g = 9.81;
@@ -206,8 +207,6 @@ std::vector<Scene> scenes() {
           falling_guide(),
           driven_leg()};
 }
-
-TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
 
 struct Sinking {
   double deepest = 0.0;  // [m]

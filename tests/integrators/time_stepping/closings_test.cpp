@@ -27,12 +27,11 @@ using namespace carom::planar;
 using carom_test::bits_of;
 using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::located;
 using carom_test::run;
 using carom_test::tight;
 
 constexpr double g = 9.81;
-
-TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
 
 BodyId add_disc(System& system, const Vec<2>& position, const Vec<2>& velocity, double radius = 0.1,
                 double mass = 1.0) {

@@ -3,6 +3,7 @@
 
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/same_run.h"
+#include "tests/integrators/time_stepping/located_runs.h"
 #include "tests/temporary_folder.h"
 
 #include <carom/carom.h>
@@ -19,10 +20,9 @@ using namespace carom;
 using namespace carom::planar;
 using carom_test::bits_of;
 using carom_test::ledger_closes;
+using carom_test::located;
 
 constexpr double g = 9.81;
-
-TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
 
 /// Discs of 60 to 90 mm fall into a box 1 m wide.
 System falling_discs(int count) {

@@ -30,12 +30,11 @@ using namespace carom::planar;
 using carom_test::add_floor;
 using carom_test::distance;
 using carom_test::ledger_closes;
+using carom_test::located;
 using carom_test::run;
 using carom_test::tight;
 
 constexpr double g = 9.81;
-
-TimeStepping located(double step) { return {.step = step, .impacts = ImpactTimes::located}; }
 
 System ball(double height, double speed, double e) {
   System system;

@@ -16,6 +16,10 @@
 
 namespace carom_test {
 
+inline carom::TimeStepping located(double step) {
+  return {.step = step, .impacts = carom::ImpactTimes::located};
+}
+
 /// The state at the end; in time stepping the account must close.
 inline carom::State run(const carom::System& system, const carom::Mode& mode, double end) {
   carom::Simulation simulation(system, mode);
