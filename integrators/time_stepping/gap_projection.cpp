@@ -104,7 +104,7 @@ GapProjection::Result GapProjection::project(const Bodies& bodies, const Which& 
       const bool deep = std::any_of(together.begin(), together.end(),
                                     [&](const Constraint& at) { return at.gap < -2.0 * depth; });
       // Contacts that push end closed: a pass that moves a body too far leaves them open by the square of
-      // the way, and the next step without it.
+      // the way, and the next step is made without them.
       const bool open = moved && std::any_of(together.begin(), together.end(), [&](const Constraint& at) {
                           return at.gap > 0.0 && has_pushed(at.key);
                         });
