@@ -27,9 +27,9 @@ void ContactSweeps::make_velocities() {
   made_anew_ = true;
 }
 
-SweepChange ContactSweeps::sweep() {
+ImpulseChange ContactSweeps::sweep() {
   made_anew_ = false;
-  SweepChange change = pack_kernel::sweep(packs_.packs(), velocity_.data());
+  ImpulseChange change = pack_kernel::sweep(packs_.packs(), velocity_.data());
   for (OddGroup& odd : packs_.odd()) {
     solve(odd, velocity_.data());
     for (const double g : odd.g) {

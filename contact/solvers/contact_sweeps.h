@@ -14,7 +14,7 @@
 namespace carom {
 
 /// Change g of all impulses in a sweep.
-struct SweepChange {
+struct ImpulseChange {
   double square = 0.0;   ///< |g|^2 [N^2 s^2]
   double largest = 0.0;  ///< |g|_inf [N s]
 };
@@ -25,7 +25,7 @@ public:
   /// Takes a problem in factors and impulses to start from.
   void begin(const ContactProblem& problem, std::span<const double> impulse);
   /// Solves all contacts one after the other. P is in its sets afterwards.
-  [[nodiscard]] SweepChange sweep();
+  [[nodiscard]] ImpulseChange sweep();
   /// d = g, the direction that the next steps begin with.
   void restart();
   /// P += beta d and u with it, d = beta d + g: the step of nonlinear conjugate gradients.

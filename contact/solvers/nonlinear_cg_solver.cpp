@@ -43,7 +43,7 @@ SolverAnswer NonlinearCgSolver::improve(const ContactProblem& problem, std::span
     return sweep < budget_.sweeps || (refused && sweep < most_times * budget_.sweeps);
   };
   while (goes_on() && best <= std::numeric_limits<double>::max()) {
-    const SweepChange change = sweeps_.sweep();
+    const ImpulseChange change = sweeps_.sweep();
     ++sweep;
     if (watch_) {
       watched_.resize(impulse.size());

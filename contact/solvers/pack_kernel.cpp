@@ -96,7 +96,7 @@ CAROM_INLINE void solve(const ContactPack& pack, const Lanes& xi_n, const Lanes&
   t = open ? zero : t;
 }
 
-CAROM_INLINE void sweep_all(std::span<ContactPack> packs, SlotVelocity* velocity, SweepChange& change) {
+CAROM_INLINE void sweep_all(std::span<ContactPack> packs, SlotVelocity* velocity, ImpulseChange& change) {
   Lanes square{}, largest{};
   for (ContactPack& pack : packs) {
     Gathered first, second;
@@ -163,7 +163,7 @@ CAROM_INLINE void judge_all(std::span<const ContactPack> packs, const SlotVeloci
 #if defined(__x86_64__) && defined(__GNUC__)
 // The same arithmetic, and the same bits, in registers of four numbers where the machine has them.
 #define CAROM_WIDE __attribute__((target("avx2")))
-CAROM_WIDE void sweep_wide(std::span<ContactPack> packs, SlotVelocity* velocity, SweepChange& change) {
+CAROM_WIDE void sweep_wide(std::span<ContactPack> packs, SlotVelocity* velocity, ImpulseChange& change) {
   sweep_all(packs, velocity, change);
 }
 CAROM_WIDE void push_wide(std::span<const ContactPack> packs, SlotVelocity* velocity) {
@@ -176,15 +176,15 @@ CAROM_WIDE void judge_wide(std::span<const ContactPack> packs, const SlotVelocit
 const bool wide = __builtin_cpu_supports("avx2") != 0;
 #else
 constexpr bool wide = false;
-void sweep_wide(std::span<ContactPack>, SlotVelocity*, SweepChange&) {}
+void sweep_wide(std::span<ContactPack>, SlotVelocity*, ImpulseChange&) {}
 void push_wide(std::span<const ContactPack>, SlotVelocity*) {}
 void judge_wide(std::span<const ContactPack>, const SlotVelocity*, double&, double&) {}
 #endif
 
 }  // namespace
 
-SweepChange sweep(std::span<ContactPack> packs, SlotVelocity* velocity) {
-  SweepChange change;
+ImpulseChange sweep(std::span<ContactPack> packs, SlotVelocity* velocity) {
+  ImpulseChange change;
   wide ? sweep_wide(packs, velocity, change) : sweep_all(packs, velocity, change);
   return change;
 }

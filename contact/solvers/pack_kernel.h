@@ -8,7 +8,7 @@
 #include <span>
 
 namespace carom {
-struct SweepChange;
+struct ImpulseChange;
 }
 
 namespace carom::pack_kernel {
@@ -16,7 +16,7 @@ namespace carom::pack_kernel {
 /// Solves each pack in turn for its own impulses, with the decision of solve_planar_contact(): open where no
 /// impulse is needed, else stick, W_ii dP = -xi, where that lies in the cone of friction, else slip along its
 /// edge. Writes P and g. \param velocity by slot, kept up to date
-[[nodiscard]] SweepChange sweep(std::span<ContactPack> packs, SlotVelocity* velocity);
+[[nodiscard]] ImpulseChange sweep(std::span<ContactPack> packs, SlotVelocity* velocity);
 
 /// u += H^T P. \param velocity by slot
 void push(std::span<const ContactPack> packs, SlotVelocity* velocity);
