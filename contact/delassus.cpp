@@ -2,32 +2,12 @@
 
 #include <carom/contact/delassus.h>
 #include <carom/contact/one_body_products.h>
-#include <carom/core/numerics/pair.h>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 namespace carom {
-
-namespace {
-
-/// Responses and W of a planar contact of one body that turns, as one_body::answer_alone() and
-/// multiply_symmetric() without loops, and without a way through memory between the two.
-void answer_contact(const Constraint& at, const BodyMasses& masses, double* x, double* matrix) {
-  const double *const n = at.jacobian.data(), *const t = n + one_body::of_planar_body;
-  const double mass = *masses.mass, inertia = *masses.inertia;
-  const Pair r01 = Pair{n[0], n[1]} / both(mass), r23 = Pair{n[2], t[0]} / Pair{inertia, mass},
-             r45 = Pair{t[1], t[2]} / Pair{mass, inertia};
-  store_pair(x, r01);
-  store_pair(x + 2, r23);
-  store_pair(x + 4, r45);
-  const double mixed = 0.0 + t[0] * r01[0] + t[1] * r01[1] + t[2] * r23[0];
-  store_pair(matrix, Pair{0.0 + n[0] * r01[0] + n[1] * r01[1] + n[2] * r23[0], mixed});
-  store_pair(matrix + 2, Pair{mixed, 0.0 + t[0] * r23[1] + t[1] * r45[0] + t[2] * r45[1]});
-}
-
-}  // namespace
 
 /// Responses of one body that answers for itself, the usual case, in a tight loop. Returns the number of its
 /// velocities, 0 if there is no such body.
@@ -63,7 +43,7 @@ bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions
   velocities_of_one_ = static_cast<int>(one_body::of_planar_body);
   common_ = {at.blocks[0].v, at.blocks[0].v + static_cast<Index>(one_body::of_planar_body)};
   responses_.resize(2 * one_body::of_planar_body);
-  answer_contact(at, masses, responses_.data(), matrix);
+  one_body::answer_contact(at, masses, responses_.data(), matrix);
   return true;
 }
 

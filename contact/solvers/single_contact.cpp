@@ -250,12 +250,16 @@ CertifiedImpulse solve_certified_contact(const PlanarContact& contact) {
   return answer;
 }
 
+CertifiedImpulse solve_regular_contact(const PlanarContact& contact) {
+  CertifiedImpulse answer;
+  (void)certified_regular<true>(contact, answer);
+  return answer;
+}
+
 CertifiedImpulse solve_regular_contact(const ContactProblem& problem) {
   const double* w = problem.matrix().data();
   const double* b = problem.vector().data();
-  CertifiedImpulse answer;
-  (void)certified_regular<true>({w[0], w[1], w[3], b[0], b[1], problem.sets()[1].coefficient}, answer);
-  return answer;
+  return solve_regular_contact(PlanarContact{w[0], w[1], w[3], b[0], b[1], problem.sets()[1].coefficient});
 }
 
 PlanarSolutions solve_planar_contact(const PlanarContact& contact) {

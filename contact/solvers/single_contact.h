@@ -90,6 +90,8 @@ struct CertifiedImpulse {
 /// which is nearly every impact, with its certificate; not `usable` otherwise (solve_planar_contact()). The
 /// problem has one group, of a normal and a friction row.
 [[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const ContactProblem& problem);
+/// Likewise from the numbers of a contact.
+[[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const PlanarContact& contact);
 
 /// Exact solver of problems with one contact: one lone row; one normal row with one friction row, of known
 /// direction (sliding_contact.h) or not; a normal row with a disc where the normal does not couple with an

@@ -4,6 +4,7 @@
 
 #include <carom/contact/solvers/exact_solvers.h>
 #include <carom/contact/solvers/large_problem_solver.h>
+#include <carom/contact/solvers/regular_counts.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/contact/solvers/warm_start.h>
 
@@ -23,24 +24,6 @@ void demand_grouped(const ContactProblem& problem, std::span<const double> impul
   if (rows == 0 || !problem.groups().empty()) return;
   throw std::invalid_argument("contact solver: the problem is not grouped");
 }
-
-/// Counts of regular contacts, which are all that most steps have: of one solver, with residuals of the first
-/// class.
-struct RegularCounts {
-  std::int64_t problems = 0, degenerate = 0;
-  double worst_residual = 0.0;
-
-  void add_to(ChainStatistics& sum) const {
-    static_assert(accepted_residual <= certified_residuals[0]);
-    constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);
-    sum.problems += problems;
-    sum.tried[id] += problems;
-    sum.accepted[id] += problems;
-    sum.certified[0] += problems;
-    sum.degenerate += degenerate;
-    sum.worst_residual = std::max(sum.worst_residual, worst_residual);
-  }
-};
 
 }  // namespace
 
@@ -95,9 +78,7 @@ bool SolverChain::Workspace::solve_regular(const ContactProblem& problem, std::s
   report.tried = 1u << id;
   report.solver = solver_names[id];
   report.reason = {};
-  ++regular.problems;
-  regular.degenerate += answer.degenerate ? 1 : 0;
-  regular.worst_residual = std::max(regular.worst_residual, answer.residual);
+  regular.count(answer.residual, answer.degenerate);
   return true;
 }
 

@@ -36,12 +36,27 @@ void TimeStepper::advance_loose(std::span<const LooseBodies> pieces, const StepI
   StepIsland part;
   for (const LooseBodies& piece : pieces) {
     part.constraints = parts_.constraints.find_part(in, piece.components, trial);
-    const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, trial);
-    if (failed != nullptr) fail_contact(*failed, in);
+    solve_part(part, in);
     uncoupled_->move(in, piece);
-    for (const IslandProblem& problem : parts_.contacts.problems()) {
-      book_contact_problem(problem, trial.end.v.data(), in.end_time, in);
-    }
+    book_part(in);
+  }
+}
+
+/// Contacts of bodies that nothing couples.
+void TimeStepper::solve_part(const StepIsland& part, const StepInput& in) {
+  // The problem of a gain that is refused is to be told: each contact has its own.
+  const bool refuses = parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
+  const IslandProblem* const failed = refuses ? parts_.contacts.solve_constant(in, part, parts_.trial)
+                                              : parts_.contacts.solve_part(in, part, parts_.trial);
+  if (failed != nullptr) fail_contact(*failed, in);
+}
+
+/// Their account, at the end of the step.
+void TimeStepper::book_part(const StepInput& in) {
+  const double* const after = parts_.trial.end.v.data();
+  balance_.book_lone(parts_.contacts.lone(), after, in, parts_.trial);
+  for (const IslandProblem& problem : parts_.contacts.problems()) {
+    book_contact_problem(problem, after, in.end_time, in);
   }
 }
 
@@ -81,12 +96,11 @@ void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput
     part.components = island.components.subspan(own.begin - components.begin, own.size());
     part.constraints = parts_.constraints.find_part(in, own, parts_.trial);
     parts_.trial.account.swept = false;
-    const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, parts_.trial);
-    if (failed != nullptr) fail_contact(*failed, in);
+    solve_part(part, in);
   };
   const auto book = [&](Range) {
     parts_.trial.account.swept = true;
-    book_contacts(part, in);
+    book_part(in);
   };
   parts_.schedule.run(stages, react, book, touch);
   if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);

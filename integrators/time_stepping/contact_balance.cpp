@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace carom {
@@ -34,34 +35,41 @@ struct BookedWork {
   bool impact = false;
 };
 
-/// Books the contacts and limits of one problem. Most problems have one: nothing is made ready for others.
+/// Answer of a contact or limit, as its problem gives it. Numbers by row.
+struct ContactAnswer {
+  const double* before;
+  const double* impulses;
+  ContactMode mode;
+  Outcome outcome;
+  double residual;
+  std::string_view solver;
+  double restitution_factor;
+};
+
+/// Books contacts and limits. Most problems have one: nothing is made ready for others.
 class ContactBooking {
 public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
-  ContactBooking(const Assembly& assembly, const IslandProblem& problem, const double* after, double time,
-                 const StepInput& in, StepResult& result)
-      : assembly_(assembly), problem_(problem), after_(after), time_(time), in_(in), result_(result) {}
+  ContactBooking(const Assembly& assembly, const double* after, double time, const StepInput& in,
+                 StepResult& result)
+      : assembly_(assembly), after_(after), time_(time), in_(in), result_(result) {}
 
-  /// \param contact number of its constraint \param first its first row
-  void book(std::size_t contact, std::size_t first, double capture_speed, BookedWork& work) const {
-    const std::span<const Constraint> constraints = problem_.constraints();
-    const Constraint& at = constraints[contact];
-    if (problem_.problem().is_factored()) fetch_contact_ahead(constraints, contact + ahead);
+  void book(const Constraint& at, const ContactAnswer& answer, double capture_speed, BookedWork& work) const {
     result_.fetch_records(ahead);
-    const double* const before = problem_.before().data() + first;
+    const double* const before = answer.before;
     const bool impact = before[0] < -capture_speed;
     work.impact = work.impact || impact;
     ContactTally& tally = result_.tally;
     tally.impacts += impact ? 1 : 0;
     tally.deepest_gap = std::min(tally.deepest_gap, at.gap);
     ContactRecord& entry = result_.next_record();
-    entry.mode = problem_.modes()[contact];
+    entry.mode = answer.mode;
     // Else an impact within the step, or contact up to it.
     if (!(time_ < in_.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
     entry.impact = impact;
     write_place(at, entry);
-    write_answer(entry);
-    book_rows(at, before, problem_.impulses().data() + first, work.sum, entry);
+    write_answer(answer, entry);
+    book_rows(at, before, answer.impulses, work.sum, entry);
   }
 
 private:
@@ -83,13 +91,12 @@ private:
 
   /// When it acted, and how its problem was solved. The rest of the note is of whole impacts, and of rows
   /// that come behind.
-  void write_answer(ContactRecord& entry) const {
-    const ContactReport& report = problem_.report();
+  void write_answer(const ContactAnswer& answer, ContactRecord& entry) const {
     entry.time = time_;
-    entry.outcome = report.outcome;
-    entry.residual = report.residual;
-    entry.solver = report.solver;
-    entry.restitution_factor = problem_.restitution_factor();
+    entry.outcome = answer.outcome;
+    entry.residual = answer.residual;
+    entry.solver = answer.solver;
+    entry.restitution_factor = answer.restitution_factor;
     entry.energy_gain = entry.rolling_moment = 0.0;
     entry.cut_sequence = entry.worst = false;
   }
@@ -133,7 +140,6 @@ private:
   }
 
   const Assembly& assembly_;
-  const IslandProblem& problem_;
   const double* after_;
   double time_;
   const StepInput& in_;
@@ -176,7 +182,8 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   BookedWork work;
   const std::size_t first = result_.recorded;
   const bool is_swept = problem.problem().is_factored();
-  const ContactBooking booking(*assembly_, problem, after, time, in, result_);
+  const ContactBooking booking(*assembly_, after, time, in, result_);
+  const ContactReport& report = problem.report();
   const std::span<const Constraint> constraints = problem.constraints();
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
@@ -187,7 +194,11 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     } else if (at.has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
-      booking.book(contact, row, capture_speed_, work);
+      if (is_swept) fetch_contact_ahead(constraints, contact + ahead);
+      booking.book(at,
+                   {problem.before().data() + row, problem.impulses().data() + row, problem.modes()[contact],
+                    report.outcome, report.residual, report.solver, problem.restitution_factor()},
+                   capture_speed_, work);
     }
   }
   tally(problem, static_cast<int>(result_.recorded - first));
@@ -196,11 +207,34 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   }
   if (problem.restitution_factor() == 0.0) ++result_.plastic_jams;
   if (!(work.sum.gain > 0.0)) return 0.0;
-  const double gain = book_gain(problem, work.sum, work.impact, trial);
+  const double gain = book_gain(constraints, problem.problem().vector().data(), problem.impulses().data(),
+                                work.sum, work.impact, trial);
   if (gain > 0.0) {
     for (ContactRecord& entry : result_.records().subspan(first)) entry.energy_gain = gain;
   }
   return gain;
+}
+
+void StepBalance::book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
+                            const StepTrial& trial) {
+  constexpr std::string_view solver = solver_names[static_cast<std::size_t>(SolverId::single_contact)];
+  const ContactBooking booking(*assembly_, after, in.end_time, in, result_);
+  const std::span<const Constraint> constraints = contacts.constraints();
+  double worst = result_.tally.worst_residual;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const LoneAnswer& answer = contacts.answers()[i];
+    BookedWork work;
+    booking.book(constraints[i],
+                 {answer.before.data(), answer.impulse.data(), answer.mode, Outcome::solved, answer.residual,
+                  solver, 1.0},
+                 capture_speed_, work);
+    worst = std::max(worst, answer.residual);
+    if (!(work.sum.gain > 0.0)) continue;
+    const double gain = book_gain(constraints.subspan(i, 1), answer.b.data(), answer.impulse.data(), work.sum,
+                                  work.impact, trial);
+    if (gain > 0.0) result_.records().back().energy_gain = gain;
+  }
+  result_.tally.worst_residual = worst;
 }
 
 /// Counts what the contacts of a problem have in common. \param contacts how many
@@ -245,16 +279,14 @@ void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is
 /// an error of the step: the law holds the velocity along the row at its start, which turns meanwhile.
-/// Returns what an impact gained.
-double StepBalance::book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
-                              const StepTrial& trial) {
+/// Returns what an impact gained. \param b,impulse of the problem, by row
+double StepBalance::book_gain(std::span<const Constraint> contacts, const double* b, const double* impulse,
+                              const ImpulseWork& work, bool impact, const StepTrial& trial) {
   ImpulseWork sum = work;
   if (!sum.is_gain()) return 0.0;
   if (!impact) {
     // Velocities of what lasts are small differences: of those that loads alone would lead to, of the
     // velocities of the bodies, of those of the surfaces.
-    const double *b = problem.problem().vector().data(), *impulse = problem.impulses().data();
-    const std::span<const Constraint> contacts = problem.constraints();
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       const Constraint& contact = contacts[c];
       fetch_contact_ahead(contacts, c + ahead);

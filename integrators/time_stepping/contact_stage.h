@@ -6,6 +6,7 @@
 
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/lone_contacts.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -37,7 +38,13 @@ public:
   /// or null.
   [[nodiscard]] const IslandProblem* solve_constant(const StepInput& in, const StepIsland& island,
                                                     StepTrial& trial);
-  /// Those of some bodies that have constraints, after solve_constant().
+  /// Likewise of a part of it, whose account is taken contact by contact: contacts that are alone on their
+  /// bodies have no problems().
+  [[nodiscard]] const IslandProblem* solve_part(const StepInput& in, const StepIsland& part,
+                                                StepTrial& trial);
+  /// The contacts that solve_part() found alone, where all of its part are.
+  [[nodiscard]] const LoneContacts& lone() const { return lone_; }
+  /// Those of some bodies that have constraints, after solve_constant() or solve_part().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
   [[nodiscard]] std::span<IslandProblem> problems() {
@@ -72,6 +79,7 @@ private:
     const double* end;
   };
   void begin(const StepIsland& island);
+  [[nodiscard]] bool begin_constant(const StepInput& in, const StepIsland& island, StepTrial& trial);
   IslandProblem& next_problem() {
     if (first_ + in_use_ >= problems_.size()) make_room();
     return problems_[first_ + in_use_++];
@@ -101,6 +109,7 @@ private:
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any
   std::vector<Index> struck_;          // ascending
   std::vector<char> is_struck_;
+  LoneContacts lone_;
   std::vector<SolverChain> chains_;  // one for each run of a component; the first for what is not shared out
 };
 

@@ -5,6 +5,7 @@
 /// result of the step, which its caller commits.
 
 #include <carom/contact/island_problem.h>
+#include <carom/contact/lone_contacts.h>
 #include <carom/core/energy_ledger.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
@@ -89,6 +90,9 @@ public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   double book_contacts(const IslandProblem& problem, const double* after, double time, const StepInput& in,
                        const StepTrial& trial);
+  /// Likewise of contacts that are alone, at the end of the step.
+  void book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
+                 const StepTrial& trial);
   /// Likewise those of an impact at the start of the step.
   double book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
                      const StepInput& in, const StepTrial& trial);
@@ -115,8 +119,8 @@ private:
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
   void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
-  double book_gain(const IslandProblem& problem, const ImpulseWork& work, bool impact,
-                   const StepTrial& trial);
+  double book_gain(std::span<const Constraint> contacts, const double* b, const double* impulse,
+                   const ImpulseWork& work, bool impact, const StepTrial& trial);
   void tally(const IslandProblem& problem, int contacts);
 
   const Assembly* assembly_;

@@ -72,6 +72,8 @@ private:
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
   void advance_part_by_part(const StepIsland& island, const StepInput& in);
+  void solve_part(const StepIsland& part, const StepInput& in);
+  void book_part(const StepInput& in);
   [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
   [[noreturn]] void fail_account(const StepInput& in, Range components);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);

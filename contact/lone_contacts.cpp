@@ -1,0 +1,71 @@
+// Problem: the law of contact and impact (island_problem.cpp) for contacts that have nothing in common, which
+// are all that bodies on a floor have.
+
+#include <carom/contact/contact_velocity.h>
+#include <carom/contact/lone_contacts.h>
+#include <carom/contact/one_body_products.h>
+#include <carom/contact/solvers/single_contact.h>
+
+namespace carom {
+
+namespace {
+
+/// True of a planar contact of one body, which turns. \param last body of the one before it, or `none`
+bool may_be_alone(const Constraint& at, Index last) {
+  return at.type == ConstraintType::contact && at.rows == 2 && at.bodies == 1 &&
+         at.blocks[0].columns == static_cast<int>(one_body::of_planar_body) &&
+         (last == none || at.body() > last);
+}
+
+}  // namespace
+
+/// False of a contact that is not regular.
+bool LoneContacts::solve(const Constraint& at, const BodyMasses& masses, const LoneVelocities& velocity,
+                         LoneAnswer& answer, Response& response, RegularCounts& counts) {
+  std::array<double, 4> w;
+  one_body::answer_contact(at, masses, response.data(), w.data());
+  if (w[0] == 0.0 || w[3] == 0.0) return false;
+  const std::array<double, 2> before = times_both_rows(at, velocity.before);
+  const std::array<double, 2> free = times_both_rows(at, velocity.free);
+  answer.before = {before[0] - at.surface_velocity[0], before[1] - at.surface_velocity[1]};
+  answer.b = {free[0] - at.surface_velocity_after[0] + at.law.normal_restitution * answer.before[0],
+              free[1] - at.surface_velocity_after[1] + at.law.tangential_restitution * answer.before[1]};
+  if (at.allowed_approach > 0.0) answer.b[0] += at.allowed_approach;
+  const CertifiedImpulse found =
+      solve_regular_contact(PlanarContact{w[0], w[1], w[3], answer.b[0], answer.b[1], at.friction});
+  if (!found.usable || !(found.residual <= accepted_residual)) return false;
+  answer.impulse = {found.impulse.normal, found.impulse.tangential};
+  answer.residual = found.residual;
+  answer.mode = found.mode;
+  counts.count(found.residual, found.degenerate);
+  return true;
+}
+
+bool LoneContacts::solve(std::span<const Constraint> constraints, const MassResponse& masses,
+                         const LoneVelocities& velocity) {
+  clear();
+  const std::size_t count = constraints.size();
+  if (answers_.size() < count) {
+    answers_.resize(count);
+    responses_.resize(count);
+  }
+  RegularCounts counts;
+  Index last = none;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Constraint& at = constraints[i];
+    if (!may_be_alone(at, last)) return false;
+    last = at.body();
+    const BodyMasses own = masses.alone(last);
+    if (own.mass == nullptr || own.layout != BodyMasses::Layout::planar_bodies) return false;
+    if (!solve(at, own, velocity, answers_[i], responses_[i], counts)) return false;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    one_body::add_alone<static_cast<int>(one_body::of_planar_body)>(
+        responses_[i].data(), answers_[i].impulse, 1.0, velocity.change + constraints[i].blocks[0].v);
+  }
+  constraints_ = constraints;
+  counts_.add(counts);
+  return true;
+}
+
+}  // namespace carom

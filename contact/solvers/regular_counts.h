@@ -1,0 +1,46 @@
+#pragma once
+
+/// \file
+/// Counts of regular contacts, which are all that most steps have.
+
+#include <carom/contact/solvers/chain_statistics.h>
+#include <carom/contact/solvers/contact_solver.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace carom {
+
+/// Counts of answers of solve_regular_contact() that were used: all of one solver, and with residuals of the
+/// first class.
+struct RegularCounts {
+  std::int64_t problems = 0;    ///< one contact each
+  std::int64_t degenerate = 0;  ///< answers that stand at a boundary between modes
+  double worst_residual = 0.0;  ///< largest certificate
+
+  /// Counts one.
+  void count(double residual, bool is_degenerate) {
+    ++problems;
+    degenerate += is_degenerate ? 1 : 0;
+    worst_residual = std::max(worst_residual, residual);
+  }
+  /// Adds those of others.
+  void add(const RegularCounts& other) {
+    problems += other.problems;
+    degenerate += other.degenerate;
+    worst_residual = std::max(worst_residual, other.worst_residual);
+  }
+  /// Adds them to those of all solvers.
+  void add_to(ChainStatistics& sum) const {
+    static_assert(accepted_residual <= certified_residuals[0]);
+    constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);
+    sum.problems += problems;
+    sum.tried[id] += problems;
+    sum.accepted[id] += problems;
+    sum.certified[0] += problems;
+    sum.degenerate += degenerate;
+    sum.worst_residual = std::max(sum.worst_residual, worst_residual);
+  }
+};
+
+}  // namespace carom
