@@ -17,7 +17,7 @@ void Accumulation::clear() {
 
 /// Lets go of contacts that no impact has any more.
 void Accumulation::forget_contacts() {
-  std::array<std::uint8_t, 2 * remembered> place{};  // 0: of no impact; else one more than the new place
+  std::array<std::uint8_t, most_contacts> place{};  // 0: of no impact; else one more than the new place
   for (const std::uint8_t of : of_) place[of] = 1;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -33,7 +33,7 @@ void Accumulation::forget_contacts() {
 std::uint8_t Accumulation::place(const ConstraintKey& contact) {
   const auto known = std::find(contacts_.begin(), contacts_.end(), contact);
   if (known != contacts_.end()) return static_cast<std::uint8_t>(known - contacts_.begin());
-  if (contacts_.size() >= remembered) forget_contacts();
+  if (contacts_.size() == most_contacts) forget_contacts();
   contacts_.push_back(contact);
   return static_cast<std::uint8_t>(contacts_.size() - 1);
 }

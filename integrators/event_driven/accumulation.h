@@ -31,6 +31,9 @@ public:
 
 private:
   static constexpr std::size_t remembered = 32;
+  // Contacts that no impact has any more are let go of now and then: in a gas every impact has another one.
+  // While the impacts of two groups are put together they have up to twice as many.
+  static constexpr std::size_t most_contacts = 2 * remembered;
 
   [[nodiscard]] const ConstraintKey& contact(std::size_t impact) const { return contacts_[of_[impact]]; }
   void forget_contacts();
