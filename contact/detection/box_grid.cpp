@@ -75,13 +75,17 @@ Index BoxGrid<D>::place_of(const Level& level, const Cell& cell) {
 template <int D>
 void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes, int octaves) {
   double largest = 0.0;
-  for (const OwnedBox<D>& entry : boxes) largest = std::max(largest, size_of(entry.box));
+  size_.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    size_[i] = size_of(boxes[i].box);
+    largest = std::max(largest, size_[i]);
+  }
   if (largest == 0.0) largest = 1.0;  // all boxes at the origin
   std::array<Index, most_levels> count{};
   std::array<double, most_levels> cell{};
   level_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const double size = size_of(boxes[i].box);
+    const double size = size_[i];
     const auto level = static_cast<std::size_t>(level_of(largest / size, octaves));
     level_[i] = static_cast<std::uint8_t>(level);
     cell[level] = std::max(cell[level], size);

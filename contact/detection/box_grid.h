@@ -86,6 +86,7 @@ private:
   std::vector<Index> begin_;          // of each place: its first entry
   std::vector<Index> place_;          // of each box, in the order of build()
   std::vector<std::uint8_t> level_;   // likewise
+  std::vector<double> size_;          // likewise [m]
 };
 
 template <int D>

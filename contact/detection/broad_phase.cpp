@@ -105,11 +105,17 @@ void BroadPhase<D>::check(std::span<const Box<D>> boxes, double margin) const {
   }
 }
 
+/// True if so many have left that all are looked up. \param left boxes outside of theirs in this call
+template <int D>
+bool BroadPhase<D>::are_many(std::size_t left) const {
+  return late_.size() + left > size() / part_late;
+}
+
 template <int D>
 void BroadPhase<D>::find_left(std::span<const Box<D>> boxes, double half) {
   left_.clear();
   for (Index i = 0; i < boxes.size(); ++i) {
-    if (holds(wide_[i].box, boxes[i], half)) continue;
+    if (!are_many(left_.size()) && holds(wide_[i].box, boxes[i], half)) continue;
     if (!is_allowed(boxes[i])) {
       throw ModelError("broad phase: box " + std::to_string(i) + " is " + text_of(boxes[i]) +
                        ", must be finite with min <= max");
@@ -180,7 +186,7 @@ std::span<const BoxPair> BroadPhase<D>::update(std::span<const Box<D>> boxes, do
   const double half = 0.5 * margin;
   find_left(boxes, half);
   ++call_;
-  if (late_.size() + left_.size() > size() / part_late) {
+  if (are_many(left_.size())) {
     rebuild(boxes, half);
   } else if (!left_.empty()) {
     replace_left(boxes, half);

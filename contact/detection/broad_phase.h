@@ -13,6 +13,7 @@
 #include <carom/contact/detection/box_pairs.h>
 #include <carom/core/export.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -49,7 +50,8 @@ public:
 
 private:
   void check(std::span<const Box<D>> boxes, double margin) const;
-  // Lists the boxes that are outside of theirs.
+  [[nodiscard]] bool are_many(std::size_t left) const;
+  // Lists the boxes that are outside of theirs; where they are many, all from there on.
   void find_left(std::span<const Box<D>> boxes, double half);
   void widen(Index i, const Box<D>& box, double half);
   void rebuild(std::span<const Box<D>> boxes, double half);
