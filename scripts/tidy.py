@@ -3,8 +3,8 @@
 
 Nearly all of what clang-tidy does for a file it does for the headers of Eigen and of the standard library. So files are
 looked at together, as one text, which need not mean anything as long as it compiles: files whose names clash with those
-of others are taken out of it and looked at among themselves. Where something is found in a text, it is halved, down to
-single files. Only what is found in a single file counts.
+of others are taken out of it and looked at among themselves. Where something is found in a text, the files it is found
+in are looked at alone, and only what is found then counts. What is found in a header has the text halved.
 """
 
 import argparse
@@ -99,8 +99,11 @@ def tidy(files, flags, build):
     if found.returncode == 0:
         return True
     if len(files) > 1:
-        middle = len(files) // 2
-        return all([tidy(files[:middle], flags, build), tidy(files[middle:], flags, build)])
+        places = set(re.findall(r"^(/[^:\n]+):\d+:\d+: (?:warning|error): ", found.stdout, re.MULTILINE))
+        parts = [[file] for file in files if str(file) in places]
+        if not parts or len(parts) < len(places):  # in a header too
+            parts = [files[:len(files) // 2], files[len(files) // 2:]]
+        return all([tidy(part, flags, build) for part in parts])
     with printing:
         print(found.stdout, end="")
         print("\n".join(line for line in found.stderr.splitlines() if "warnings generated" not in line), flush=True)
