@@ -9,8 +9,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-release}
 fast=ON
 label=()
+targets=(all)
 case $preset in
-  fast) preset=release label=(--label-regex fast) ;;
+  fast) preset=release label=(--label-regex fast) targets=(tests/all examples/all) ;; # no benchmarks
   long) preset=release fast=OFF label=(--label-regex long) ;;
 esac
 jobs=$(nproc)
@@ -23,7 +24,7 @@ export CCACHE_COMMENTS=true
 
 scripts/setup.sh
 cmake --preset "$preset" -DCAROM_FAST_TESTS="$fast"
-cmake --build --preset "$preset" --parallel "$jobs"
+cmake --build --preset "$preset" --parallel "$jobs" --target "${targets[@]}"
 
 # Tests that pass go to the log only.
 status=0

@@ -10,7 +10,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
 
 // Pivots between two rebuilds of the tableau in the careful pass.
 constexpr int rebuild_interval = 4;
@@ -111,7 +111,7 @@ bool Lemke::lexicographically_less(std::size_t row, std::size_t other, std::size
 // The row whose variable z0 replaces first: lexicographic minimum of (q_i, e_i) / d_i. Nothing is rounded
 // yet, so ties are exact ones, and the last of them has the smaller row of the unit matrix.
 std::size_t Lemke::first_row() const {
-  std::size_t best = none;
+  std::size_t best = no_row;
   double least = 0.0;
   for (std::size_t i = 0; i < n_; ++i) {
     const double ratio = value_[i] / scaled_.row_scale[i];
@@ -132,15 +132,15 @@ std::size_t Lemke::blocking_row(std::size_t column) const {
   for (std::size_t i = 0; i < n_; ++i) {
     if (entry(i, column) < -threshold) step = std::min(step, std::max(value_[i], 0.0) / -entry(i, column));
   }
-  if (std::isinf(step)) return none;
+  if (std::isinf(step)) return no_row;
 
   const double tie = lemke_tie_threshold * std::max(1.0, largest_magnitude(value_));
-  std::size_t best = none;
+  std::size_t best = no_row;
   for (std::size_t i = 0; i < n_; ++i) {
     if (!(entry(i, column) < -threshold) || value_[i] + step * entry(i, column) > tie) continue;
     // z0 at zero ends the path: no need to ask which of the tied rows leaves.
     if (basic_[i] == 2 * n_) return i;
-    if (best == none || lexicographically_less(i, best, column)) best = i;
+    if (best == no_row || lexicographically_less(i, best, column)) best = i;
   }
   return best;
 }
@@ -174,7 +174,7 @@ bool Lemke::rebuild_tableau(std::size_t first, std::size_t last) {
 // Whether the ray at which a pass ended is one of the problem, to the last digits: all basic variables are
 // there, and none falls along it.
 bool Lemke::confirms_ray() {
-  if (!rebuild_tableau(ray_, ray_ + 1) || blocking_row(ray_) != none) return false;
+  if (!rebuild_tableau(ray_, ray_ + 1) || blocking_row(ray_) != no_row) return false;
   const double rounding = lemke_pivot_threshold * std::max(1.0, largest_magnitude(value_));
   return std::all_of(value_.begin(), value_.end(), [&](double value) { return value >= -rounding; });
 }
@@ -182,7 +182,7 @@ bool Lemke::confirms_ray() {
 LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
   start();
   std::size_t row = first_row();
-  if (row == none) return LcpStatus::solved;
+  if (row == no_row) return LcpStatus::solved;
   std::size_t column = n_;
   for (int count = 1;; ++count) {
     const std::size_t leaving = basic_[row];
@@ -194,7 +194,7 @@ LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
     // The complement of what left enters.
     column = place_[leaving < n_ ? leaving + n_ : leaving - n_] - n_;
     row = blocking_row(column);
-    if (row != none) continue;
+    if (row != no_row) continue;
     ray_ = column;
     return LcpStatus::secondary_ray;
   }

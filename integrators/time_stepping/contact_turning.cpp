@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_tries = 20;
 // Of velocities: changes as small as this are rounding.
-constexpr double rounding = 1e-14;
+constexpr double relative_rounding = 1e-14;
 
 bool is_before(const Constraint& a, const Constraint& b) {
   return a.key != b.key ? a.key < b.key : a.type < b.type;
@@ -95,7 +95,7 @@ bool ContactTurning::has_converged(const StepTrial& trial, double residual) {
   // At rest velocities are rounding of those that impulses take away.
   for (std::size_t i = 0; i < trial.dv_impulses.size(); ++i)
     size = std::max(size, lengths_[i] * std::abs(trial.dv_impulses[i]));
-  noise_ = rounding * size;
+  noise_ = relative_rounding * size;
   if (tries_ > 0) {
     double change = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i)
