@@ -9,12 +9,26 @@ namespace carom {
 
 namespace {
 
-std::optional<ContactMode> find_mode(const ContactModes& modes, const ConstraintKey& key) {
-  const auto known =
-      std::find_if(modes.begin(), modes.end(), [&](const auto& of) { return of.first == key; });
-  if (known == modes.end() || known->second == ContactMode::open) return std::nullopt;
-  return known->second;
-}
+/// Modes of contacts that are looked up in the order in which they are, mostly.
+class ModeLookup {
+public:
+  explicit ModeLookup(const ContactModes& modes) : modes_(modes) {}
+  /// That of a contact, if it is known and not open.
+  [[nodiscard]] std::optional<ContactMode> find(const ConstraintKey& key) {
+    if (next_ >= modes_.size() || !(modes_[next_].first == key)) {
+      const auto known =
+          std::find_if(modes_.begin(), modes_.end(), [&](const auto& of) { return of.first == key; });
+      if (known == modes_.end()) return std::nullopt;
+      next_ = static_cast<std::size_t>(known - modes_.begin());
+    }
+    const ContactMode mode = modes_[next_++].second;
+    return mode == ContactMode::open ? std::nullopt : std::optional(mode);
+  }
+
+private:
+  const ContactModes& modes_;
+  std::size_t next_ = 0;
+};
 
 ContactMode mode_of(double speed) {
   return speed > 0.0   ? ContactMode::slip_positive
@@ -40,9 +54,10 @@ SlipChanges::SlipChanges(const Assembly& assembly)
 
 double SlipChanges::largest_speed(const SlidStep& of) {
   double largest = joints_.has_friction() ? largest_in_joints(of) : 0.0;
+  ModeLookup before(of.before);
   for (const ContactRecord& contact : of.report.contacts) {
     if (contact.impulse[1] == 0.0) continue;  // no friction acts
-    largest = std::max(largest, changed_speed(find_mode(of.before, contact.key), contact.mode,
+    largest = std::max(largest, changed_speed(before.find(contact.key), contact.mode,
                                               contact.velocity_before[1], contact.velocity_after[1]));
   }
   return largest;
@@ -51,16 +66,17 @@ double SlipChanges::largest_speed(const SlidStep& of) {
 /// Rates along coordinates of joints are taken along the rows at the start.
 double SlipChanges::largest_in_joints(const SlidStep& of) {
   double largest = 0.0;
+  ModeLookup before(of.before), in_step(of.modes);
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     if (!joints_.has_friction(component)) continue;
     evaluate_positions(*assembly_, component, of.start.view(), at_start_);
     friction_.clear();
     joints_.find_friction(component, of.start.view(), at_start_, friction_);
     for (const Constraint& friction : friction_) {
-      const std::optional<ContactMode> mode = find_mode(of.modes, friction.key);
+      const std::optional<ContactMode> mode = in_step.find(friction.key);
       if (!mode) continue;
       const double speed =
-          changed_speed(find_mode(of.before, friction.key), *mode, friction.velocity(0, of.start.v.data()),
+          changed_speed(before.find(friction.key), *mode, friction.velocity(0, of.start.v.data()),
                         friction.velocity(0, of.end.v.data()));
       largest = std::max(largest, in_length(friction, speed));
     }

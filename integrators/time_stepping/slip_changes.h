@@ -40,6 +40,8 @@ public:
   /// \param assembly must outlive it
   explicit SlipChanges(const Assembly& assembly);
 
+  /// True if the states of a step are asked for.
+  [[nodiscard]] bool needs_states() const { return joints_.has_friction(); }
   /// Bound of the error of sliding speeds in a step, the largest of all contacts and joints; of an angle it
   /// is taken as a length by the radius of gyration. 0 where everything slid or stuck as before [m/s].
   [[nodiscard]] double largest_speed(const SlidStep& of);

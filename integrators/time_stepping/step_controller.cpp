@@ -117,7 +117,7 @@ bool StepController::try_step(MakeStep make, const State& state, const Companion
   make(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
   const SlidStep first{state, companion.modes, halves_.state, halves_.companion.modes, first_};
   changed_speed_ = slip_changes_.largest_speed(first);
-  middle_ = halves_.state;
+  if (slip_changes_.needs_states()) middle_ = halves_.state;
   modes_of_first_ = halves_.companion.modes;
   make(halves_.state, halves_.companion, 0.5 * step, end, second_);
   const SlidStep second{middle_, modes_of_first_, halves_.state, halves_.companion.modes, second_};

@@ -11,11 +11,8 @@ namespace carom {
 
 namespace {
 
-/// True of a contact, or limit, that closed within the step before and rebounds.
-bool is_late(const Constraint& at, const StepInput& in) {
-  return !at.has_dry_friction() && at.gap < 0.0 && at.law.normal_restitution > 0.0 &&
-         at.velocity(0, in.start.v.data()) < 0.0;
-}
+/// Depth to which gaps are projected: nothing that closed within a step [m].
+constexpr double at_rest = 1e-14;
 
 }  // namespace
 
@@ -24,17 +21,18 @@ void StepProjection::lower_rebounds(const StepInput& in, std::span<const StepIsl
   if (!options.project_gaps || options.impacts == ImpactTimes::located) return;
   by_loads_.resize(in.start.v.size());
   for (const StepIsland& island : islands) {
-    allow_return(in, island.constraints);
     for (Constraint& at : island.constraints) {
-      if (!is_late(at, in)) continue;
+      if (at.has_dry_friction()) continue;
+      const double rate = at.velocity(0, in.start.v.data());
+      if (rate > 0.0) allow_return(in, {&at, 1});
+      if (!(rate < 0.0) || !(at.gap < -at_rest) || at.law.normal_restitution == 0.0) continue;
       for (int b = 0; b < at.bodies; ++b) change_by_loads(in, at.blocks[static_cast<std::size_t>(b)].body);
       // Of the velocity against the obstacle, which may be accelerated too.
       const double change =
           at.times(0, by_loads_.data()) - (at.surface_velocity_after[0] - at.surface_velocity[0]);
       if (!(change < 0.0)) continue;
-      const double speed = -at.velocity(0, in.start.v.data());
-      const double square = speed * speed - 2.0 * (-change / in.step) * -at.gap;
-      at.allowed_approach += at.law.normal_restitution * (speed - std::sqrt(std::max(0.0, square)));
+      const double square = rate * rate - 2.0 * (-change / in.step) * -at.gap;
+      at.allowed_approach += at.law.normal_restitution * (-rate - std::sqrt(std::max(0.0, square)));
     }
   }
 }
