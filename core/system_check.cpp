@@ -29,6 +29,11 @@ std::string listed(const PartNames& parts) {
   return text;
 }
 
+/// "material 'steel'".
+std::string name_of(const SurfaceTable& surfaces, MaterialId material) {
+  return material.valid() ? "material '" + surfaces.name(material.serial) + "'" : "no material";
+}
+
 /// A material and a filter, the first part that has both, and bodies of it.
 struct Toucher {
   MaterialId material;
@@ -239,37 +244,43 @@ void find_hidden(const System& system, const Touching& touching, std::vector<Mod
   out.push_back({FindingKind::hidden_by_filter, std::move(obstacles), std::move(text)});
 }
 
-void find_contacts_without_law(const System& system, const Touching& touching,
+void find_contacts_without_law(const System& system, const SurfaceTable& surfaces, const Touching& touching,
                                std::vector<ModelFinding>& out) {
   for (const ObstacleId obstacle : system.obstacles()) {
+    const auto place = system.ground_shape_kinds().place(obstacle.serial);
+    const MaterialId material = system.ground_shape_kinds().entries()[place.entry].kind->material(place.slot);
     for (const Toucher& toucher : touching.kinds) {
       if (!may_touch(toucher.filter, filter_of(system, obstacle))) continue;
       if (system.law(toucher.material, obstacle)) continue;
       const std::string name = system.name(obstacle);
       out.push_back({FindingKind::contact_without_law,
                      {toucher.name, name},
-                     "contact of " + toucher.name + " on " + name +
-                         ": law is not given; allowed: a Surface on the obstacle, between the two "
-                         "materials or as default law"});
+                     "contact of " + toucher.name + " on " + name + ": law is not given between " +
+                         name_of(surfaces, toucher.material) + " and " + name_of(surfaces, material) +
+                         "; allowed: a Surface on the obstacle, between the two materials or as default "
+                         "law"});
     }
   }
 }
 
 /// Finds materials whose bodies may meet and have no law, where bodies touch each other by another one.
-void find_pairs_without_law(const System& system, const Touching& touching, std::vector<ModelFinding>& out) {
+void find_pairs_without_law(const System& system, const SurfaceTable& surfaces, const Touching& touching,
+                            std::vector<ModelFinding>& out) {
   if (!any_touch(system, touching)) return;
   const std::vector<Toucher>& kinds = touching.kinds;
-  PartNames parts;
+  PartNames parts, told;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Toucher &a = kinds[i], &b = kinds[j];
       if (!a.material.valid() || !b.material.valid() || !can_touch(a, b)) continue;
       if (system.law(a.material, b.material)) continue;
       parts.push_back(b.name + " and " + (i == j ? "another one of its material" : a.name));
+      told.push_back(parts.back() + " (" + name_of(surfaces, b.material) +
+                     (i == j ? "" : " and " + name_of(surfaces, a.material)) + ")");
     }
   }
   if (parts.empty()) return;
-  std::string text = listed(parts) +
+  std::string text = listed(told) +
                      ": there is no law between their materials, so that such bodies pass through each "
                      "other; allowed: a law between the two materials, a default law, or filters";
   out.push_back({FindingKind::contact_without_law, std::move(parts), std::move(text)});
@@ -301,7 +312,7 @@ std::vector<ModelFinding> System::check() const {
     }
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
-  find_pairs_without_law(*this, touching, found);
+  find_pairs_without_law(*this, notes().surfaces, touching, found);
   if (solid.empty()) {
     if (!touching.intended.empty() && !any_touch(*this, touching)) {
       std::string text = listed(touching.intended) +
@@ -309,7 +320,7 @@ std::vector<ModelFinding> System::check() const {
       found.push_back({FindingKind::touches_nothing, touching.intended, std::move(text)});
     }
   } else {
-    find_contacts_without_law(*this, touching, found);
+    find_contacts_without_law(*this, notes().surfaces, touching, found);
     find_hidden(*this, touching, found);
     if (!touching.any) {
       PartNames untouched;

@@ -3,7 +3,25 @@
 #include <carom/contact/detection/ground_laws.h>
 #include <carom/contact/detection/ground_shapes.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace carom {
+
+namespace {
+
+/// What System::check() says of the first contact on a shape on ground that has no law: parts and materials.
+std::string missing_law(const System& system, ObstacleId obstacle) {
+  const std::vector<ModelFinding> found = system.check();
+  const std::string name = system.name(obstacle);
+  const auto missing = std::find_if(found.begin(), found.end(), [&](const ModelFinding& finding) {
+    return finding.kind == FindingKind::contact_without_law && finding.parts.back() == name;
+  });
+  return missing == found.end() ? name + ": law is not given" : missing->text;
+}
+
+}  // namespace
 
 GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, const GroundShapes& shapes)
     : shapes_(shapes.size()) {
@@ -18,10 +36,7 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
       }
       const auto law = system.law(of.material, shapes.id(shape));
       if (!law) {
-        const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};
-        throw ModelError("contact of " + contact_name(system, key) +
-                         ": law is not given; allowed: a Surface on the obstacle, between the two materials "
-                         "or as default law");
+        throw ModelError(missing_law(system, shapes.id(shape)));
       }
       if (system.dimension() == 3 && (law->has_other_impact_law() || law->resists_rolling())) {
         const ConstraintKey key{features.first_of(material, *assembly.layout()), shapes.key(shape)};

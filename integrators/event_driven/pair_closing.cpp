@@ -66,8 +66,10 @@ private:
       out.margin = std::numeric_limits<double>::infinity();
       return out;
     }
-    const FeatureRegions regions(
-        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places));
+    const OutlinePair outlines =
+        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places);
+    const FeatureRegions regions(outlines);
+    has_two_sides_ = outlines.is_sharp() && FeatureRegions::is_flat(outlines.outline);
     out.feature = regions.nearest();
     out.margin = regions.clearance(out.feature);
     return out;
@@ -76,7 +78,9 @@ private:
     constexpr int deepest = 30;
     constexpr double far = 1.0;  // a polynomial of degree 5 follows less to 1e-5 of an arm [rad]
     const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
-    if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > -2.0 * rule_.raise) return never;
+    // Straight through a segment without thickness the gap falls to 0 and rises again, as fast as it can.
+    const double closed = has_two_sides_ ? rule_.raise : -rule_.raise;
+    if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > 2.0 * closed) return never;
     const bool smooth = from.feature == to.feature && from.margin + to.margin > way &&
                         std::max(from.turn, to.turn) * (end - begin) <= far;
     if (smooth || depth == deepest || looks_ > most_looks || hardly_moves(from.gap, to.gap)) {
@@ -109,6 +113,7 @@ private:
   const PairGap* pair_;
   FallRule rule_;
   double until_;
+  bool has_two_sides_ = false;  // the outline is a segment without thickness
   int looks_ = 0;
 };
 

@@ -11,10 +11,10 @@ namespace carom {
 
 namespace {
 
-/// Whether contact took part in the same way: no impact, and the same contacts in the same modes.
+/// Whether the same contacts took part, without an impact.
 bool same_contacts(const StepReport& a, const StepReport& b) {
   const auto same = [](const ContactRecord& x, const ContactRecord& y) {
-    return x.key == y.key && x.mode == y.mode && !x.impact && !y.impact;
+    return x.key == y.key && !x.impact && !y.impact;
   };
   return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same);
 }
@@ -22,7 +22,7 @@ bool same_contacts(const StepReport& a, const StepReport& b) {
 }  // namespace
 
 StepController::StepController(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), options_(options) {
+    : assembly_(&assembly), options_(options), slip_changes_(assembly) {
   if (options.control) lengths_ = assembly.length_scales();
 }
 
@@ -61,7 +61,6 @@ StepController::Attempt StepController::attempt(MakeStep make, const State& stat
                                                 double step, double end) {
   // Of the length that the error allows, for the error of its estimate; and bounds of one change.
   constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
-  constexpr double order = 3.0;  // of the error of one step
   Attempt made;
   try {
     made.compared = try_step(make, state, companion, step, end);
@@ -72,9 +71,15 @@ StepController::Attempt StepController::attempt(MakeStep make, const State& stat
     return made;
   }
   const double tolerance = options_.control->tolerance;
-  if (made.compared) made.error = error(step);
+  if (made.compared) estimate(step, made);
+  const double order = made.changed ? 2.0 : 3.0;  // of the error of one step
   const double factor =
       made.error > 0.0 ? caution * std::pow(tolerance / made.error, 1.0 / order) : most_growth;
+  if (made.changed && made.error > tolerance && step <= options_.control->smallest) {
+    // Sliding that ends at once, whatever the step: no shorter one would tell more.
+    made.compared = made.changed = false;
+    made.error = 0.0;
+  }
   made.accepted = !made.compared || made.error <= tolerance;
   made.next = !made.compared  ? step
               : made.accepted ? step * std::clamp(factor, most_shrinking, most_growth)
@@ -110,13 +115,31 @@ bool StepController::try_step(MakeStep make, const State& state, const Companion
   halves_.state = state;
   halves_.companion = companion;
   make(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
+  const SlidStep first{state, companion.modes, halves_.state, halves_.companion.modes, first_};
+  changed_speed_ = slip_changes_.largest_speed(first);
+  if (slip_changes_.needs_states()) middle_ = halves_.state;
+  modes_of_first_ = halves_.companion.modes;
   make(halves_.state, halves_.companion, 0.5 * step, end, second_);
+  const SlidStep second{middle_, modes_of_first_, halves_.state, halves_.companion.modes, second_};
+  changed_speed_ = std::max(changed_speed_, slip_changes_.largest_speed(second));
   make(whole_.state, whole_.companion, step, end, of_whole_);
   return same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_);
 }
 
-double StepController::error(double step) const {
-  constexpr double share = 1.0 / 3.0;  // of the halves in the difference: C h^3/4 of 3 C h^3/4
+/// Whether the whole step had other modes than one of its halves.
+bool StepController::modes_differ() const {
+  return whole_.companion.modes != modes_of_first_ || whole_.companion.modes != halves_.companion.modes;
+}
+
+/// Error of the halves.
+void StepController::estimate(double step, Attempt& made) const {
+  constexpr double smooth = 1.0 / 3.0;  // of the halves in the difference: C h^3/4 of 3 C h^3/4
+  made.changed = changed_speed_ > 0.0 || modes_differ();
+  made.error = std::max((made.changed ? 1.0 : smooth) * difference(step), 0.5 * step * changed_speed_);
+}
+
+/// Difference of the whole step and the halves, the largest of all coordinates.
+double StepController::difference(double step) const {
   double largest = 0.0;
   const auto take = [&](double difference, double length) {
     largest = std::max(largest, std::abs(difference) * length);
@@ -131,7 +154,7 @@ double StepController::error(double step) const {
       take(step * (whole_.state.v[body.v + i] - halves_.state.v[body.v + i]), lengths_[body.v + i]);
     }
   }
-  return share * largest;
+  return largest;
 }
 
 void StepController::merge(StepReport& report) {

@@ -3,6 +3,8 @@
 /// \file
 /// Steps as long as their error allows. A step of second order is compared with two halves of it: of the
 /// difference one third is the error of the halves, which are kept.
+/// Where sliding ends, turns round or begins in a half, what that adds to the error is bounded as well
+/// (slip_changes.h).
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -10,6 +12,7 @@
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/slip_changes.h>
 
 #include <vector>
 
@@ -33,13 +36,16 @@ private:
   struct Attempt {
     bool accepted = false;
     bool compared = false;  // whether its error could be estimated
-    double error = 0.0;     // then [m]
+    bool changed = false;   // whether sliding ended, turned round or began in it
+    double error = 0.0;     // if it could be estimated [m]
     double next = 0.0;      // length to go on with [s]
   };
   [[nodiscard]] Attempt attempt(MakeStep make, const State& state, const Companion& companion, double step,
                                 double end);
   bool try_step(MakeStep make, const State& state, const Companion& companion, double step, double end);
-  [[nodiscard]] double error(double step) const;
+  [[nodiscard]] bool modes_differ() const;
+  [[nodiscard]] double difference(double step) const;
+  void estimate(double step, Attempt& made) const;
   void merge(StepReport& report);
   [[noreturn]] static void fail_short(double time, double step);
   [[noreturn]] void fail_smallest(double time, double step, double error) const;
@@ -53,6 +59,10 @@ private:
   TimeStepping options_;
   std::vector<double> lengths_;
   Run whole_, halves_;
+  State middle_;
+  ContactModes modes_of_first_;
+  double changed_speed_ = 0.0;  // SlipChanges::largest_speed() of the halves
+  SlipChanges slip_changes_;
   StepReport of_whole_, first_, second_;
 };
 

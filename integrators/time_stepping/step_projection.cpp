@@ -1,10 +1,62 @@
 // Problem: end a step with bodies side by side, as far as contacts took part.
 
+#include <carom/integrators/time_stepping/returning_contacts.h>
 #include <carom/integrators/time_stepping/step_projection.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 namespace carom {
+
+namespace {
+
+/// Depth to which gaps are projected: nothing that closed within a step [m].
+constexpr double at_rest = 1e-14;
+
+}  // namespace
+
+void StepProjection::lower_rebounds(const StepInput& in, std::span<const StepIsland> islands) {
+  const TimeStepping& options = parts_->options;
+  if (!options.project_gaps || options.impacts == ImpactTimes::located) return;
+  by_loads_.resize(in.start.v.size());
+  for (const StepIsland& island : islands) {
+    for (Constraint& at : island.constraints) {
+      if (at.has_dry_friction()) continue;
+      const double rate = at.velocity(0, in.start.v.data());
+      if (rate > 0.0) allow_return(in, {&at, 1});
+      if (!(rate < 0.0) || !(at.gap < -at_rest) || at.law.normal_restitution == 0.0) continue;
+      for (int b = 0; b < at.bodies; ++b) change_by_loads(in, at.blocks[static_cast<std::size_t>(b)].body);
+      // Of the velocity against the obstacle, which may be accelerated too.
+      const double change =
+          at.times(0, by_loads_.data()) - (at.surface_velocity_after[0] - at.surface_velocity[0]);
+      if (!(change < 0.0)) continue;
+      const double square = rate * rate - 2.0 * (-change / in.step) * -at.gap;
+      at.allowed_approach += at.law.normal_restitution * (-rate - std::sqrt(std::max(0.0, square)));
+    }
+  }
+}
+
+/// What loads change within the step, of one body or of all that joints bind to it.
+void StepProjection::change_by_loads(const StepInput& in, Index body) {
+  const Assembly& assembly = in.assembly;
+  const double* const loads = in.companion.loads.total.data();
+  if (!assembly.is_jointed(body)) {
+    const BodySlot slot = assembly.layout()->bodies()[body];
+    for (Index v = slot.v; v < slot.v + slot.v_size; ++v) by_loads_[v] = in.step * loads[v];
+    assembly.body_kinds()[slot.kind]->apply_inverse_mass({slot.slot, slot.slot + 1}, &by_loads_[slot.v],
+                                                         &by_loads_[slot.v]);
+    return;
+  }
+  const Index component = assembly.component_of(body);
+  JointConstraints& joints = parts_->joints.of(component)->answer().rows();
+  evaluate_positions(assembly, component, in.start.view(), parts_->trial.at_start);
+  joints.update_and_factor({in.start.view(), parts_->trial.at_start.rotation.data()});
+  const Range v = joints.velocities();
+  for (Index i = v.begin; i < v.end; ++i) by_loads_[i] = in.step * loads[i];
+  joints.apply_inverse_mass(by_loads_.data());
+  joints.project(JointLevel::change, by_loads_.data());
+}
 
 void StepProjection::apply(const StepIsland& island, const StepInput& in, StepBalance& balance) {
   const std::span<const Constraint> all = island.constraints;

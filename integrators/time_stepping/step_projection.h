@@ -3,6 +3,11 @@
 /// \file
 /// The end of a step without overlaps (TimeStepping::project_gaps): bodies of contacts that took part are
 /// moved by the smallest displacement, along their joints.
+///
+/// An impact is noticed up to a step late, at a depth d and a speed w. Loads that press the contact, by the
+/// acceleration a, have made the body faster since it closed: then its speed was w0, w0^2 = w^2 - 2 a d. The
+/// projection lifts it by d, against these loads. If it came back at e w, it would bounce with what it was
+/// lifted by, for ever with e near 1; it comes back at e w0.
 
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
@@ -26,6 +31,9 @@ public:
   /// \param parts must outlive it
   explicit StepProjection(StepParts& parts) : parts_(&parts) {}
 
+  /// Lets late contacts of islands come back as if they had been noticed when they closed, by what they may
+  /// approach beyond their law (Constraint::allowed_approach); in all sweeps of the step alike.
+  void lower_rebounds(const StepInput& in, std::span<const StepIsland> islands);
   /// Moves those of an island whose end is in the trial. Throws SolverError naming a contact that cannot be
   /// opened.
   void apply(const StepIsland& island, const StepInput& in, StepBalance& balance);
@@ -38,11 +46,13 @@ private:
     bool joined;  // by contacts of bodies with each other
   };
   void project(const Part& part, const StepInput& in, StepBalance& balance);
+  void change_by_loads(const StepInput& in, Index body);
   [[nodiscard]] StoredEnergies potentials(std::span<const Index> components);
 
   StepParts* parts_;
   GapProjection projection_;
   std::vector<JointConstraints*> joints_;
+  std::vector<double> by_loads_;  // changes of velocities within the step, of bodies of late contacts
 };
 
 }  // namespace carom

@@ -103,6 +103,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parting);
   const std::span<const StepIsland> islands = parts_.constraints.islands();
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
+  projection_.lower_rebounds(in, islands);
   if (turning_ != nullptr) turning_->begin(islands, parts_.located.on());
   advance_all(in);
   passes_ = 1;
@@ -179,6 +180,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
     if (tried > 0) {
       parts_.constraints.restore(in, island, parts_.trial);
       if (impacts_ != nullptr) StepImpacts::remove_restitution({&island, 1});
+      projection_.lower_rebounds(in, {&island, 1});
       if (turning_ != nullptr) turning_->restore(island);
     }
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);

@@ -55,6 +55,7 @@ TEST(SystemCheck, ShapesOfBodiesNeedALawToTouchEachOther) {
   ASSERT_EQ(rest.size(), 1U);  // steel passes through steel
   EXPECT_EQ(rest[0].kind, FindingKind::contact_without_law);
   EXPECT_EQ(rest[0].parts, std::vector<std::string>{"disc #0 and another one of its material"});
+  EXPECT_TRUE(says(rest[0], "disc #0 and another one of its material (material 'steel')")) << rest[0].text;
   system.between(steel, steel, rough);
   EXPECT_TRUE(system.check().empty());
 }
@@ -117,6 +118,8 @@ TEST(SystemCheck, ContactsWithoutALaw) {
   }
   EXPECT_EQ(found[0].parts.front(), "particle 'ball'");
   EXPECT_EQ(found[1].parts.front(), "disc #0");
+  EXPECT_TRUE(says(found[0], "law is not given between no material and no material")) << found[0].text;
+  EXPECT_TRUE(says(found[1], "law is not given between material 'steel' and no material")) << found[1].text;
 }
 
 TEST(SystemCheck, PlacesKeptInVain) {

@@ -208,6 +208,7 @@ TEST(ContactFilters, TwoMaterialsOfBodiesThatMayMeetWithoutALawAreFound) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].parts, std::vector<std::string>{"disc #0 and disc #2"});
   EXPECT_NE(found[0].text.find("pass through each other"), std::string::npos) << found[0].text;
+  EXPECT_NE(found[0].text.find("disc #0 and disc #2 (material '"), std::string::npos) << found[0].text;
   EXPECT_EQ(Simulation(system, TimeStepping{}).report().findings.size(), system.check().size());
   // Apart by a filter no law is needed, nor where there is one.
   EXPECT_TRUE(without_law(TwoMaterials({.groups = 2, .touches = 2}).system).empty());

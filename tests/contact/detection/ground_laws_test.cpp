@@ -31,7 +31,8 @@ TEST(GroundLaws, PairsWithoutOneAreRefusedByName) {
   const BodyFeatures features(model.assembly);
   const GroundShapes shapes(model.assembly.system());
   EXPECT_MODEL_ERROR(GroundLaws(model.assembly, features, shapes),
-                     "contact of particle 'ball' on half-plane 'floor'", "law is not given",
+                     "contact of particle 'ball' on half-plane 'floor'",
+                     "law is not given between no material and material 'ice'",
                      "allowed: a Surface on the obstacle, between the two materials or as default law");
 }
 

@@ -133,6 +133,70 @@ TEST(StepController, SaysWhereItCrossesAnImpact) {
   EXPECT_TRUE(ledger_closes(simulation.energy()));
 }
 
+/// Error of a place after a run under step control, against the event-driven mode. \param turns whether it is
+/// an angle
+double error_of(const System& system, double until, double tolerance, bool turns) {
+  const auto place = [&](Simulation simulation) {
+    simulation.run_until(until);
+    const BodyId body = system.body("body");
+    return turns ? simulation.state().angle(body) : simulation.state().position(body)[0];
+  };
+  const EventDriven exact{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11};
+  TimeStepping options{.control = StepControl{.tolerance = tolerance}};
+  return std::abs(place(Simulation(system, options)) - place(Simulation(system, exact)));
+}
+
+TEST(StepController, SeesThatSlidingEndsWithinAStep) {
+  // A disc slides, then rolls: forces are constant before and after, so steps would be as long as they may,
+  // and the whole step and the halves stick alike. While it slides it slows down at mu g. The change costs
+  // one step of at most the tolerance, the rest of the motion is exact.
+  for (const double from : {0.013, 0.05, 0.1, 0.17}) {
+    System system;
+    system.add(Gravity{{0.0, -9.81}});
+    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.0});
+    const double speed = 3.0 * 0.3 * 9.81 * from;  // until the disc rolls after that time
+    const BodyId body = system.add(
+        RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 0.1}, .velocity = {speed, 0.0}}, "body");
+    system.add(Disc{.body = body, .radius = 0.1});
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      EXPECT_LE(error_of(system, 1.5, tolerance, false), tolerance) << from << " " << tolerance;
+    }
+  }
+}
+
+TEST(StepController, SeesThatSlidingTurnsRoundWithinAStep) {
+  // Up an incline and down again, and a pendulum with friction in its pin. What is left of a speed is an
+  // error of the velocity that lasts: at most tolerance over step, sqrt(tolerance a/2) of the deceleration a,
+  // here below 10 m/s^2, times what is left of the run.
+  System slide;
+  slide.add(Gravity{{0.0, -9.81}});
+  slide.add(HalfPlane{.normal = incline(0.5)}, Surface{.friction = 0.3, .normal_restitution = 0.0});
+  slide.add(Particle{.mass = 1.0, .velocity = 2.0 * Vec<2>(std::cos(0.5), std::sin(0.5))}, "body");
+  System swing;
+  swing.add(Gravity{{0.0, -9.81}});
+  const BodyId rod = swing.add(RigidBody{.mass = planar::rod(1.0, 1.0), .position = {0.5, 0.0}}, "body");
+  const JointId pin = swing.add(Revolute{.from = ground, .to = {rod, {-0.5, 0.0}}});
+  swing.add(JointFriction{.joint = pin, .bound = 0.8});
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    const double left = std::sqrt(5.0 * tolerance);
+    EXPECT_LE(error_of(slide, 1.3, tolerance, false), left) << tolerance;
+    EXPECT_LE(error_of(swing, 1.5, tolerance, true), left) << tolerance;
+  }
+}
+
+TEST(StepController, GoesOnAtTheSmallestStepWhereSlidingEnds) {
+  // A shorter step would tell no more: the change is told as one that was not measured.
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.0});
+  system.add(Particle{.mass = 1.0, .velocity = {1.0, 0.0}});
+  Simulation simulation(std::move(system),
+                        TimeStepping{.control = StepControl{.tolerance = 1e-12, .smallest = 1e-4}});
+  EXPECT_NO_THROW(simulation.run_until(1.0));
+  EXPECT_EQ(simulation.statistics().steps_across_impacts, 1);
+  EXPECT_EQ(simulation.state().v[0], 0.0);
+}
+
 TEST(StepController, TheSmallestStepIsAFloorThatSpeaks) {
   TimeStepping options = controlled(1e-12);
   options.control->smallest = 1e-3;
