@@ -98,7 +98,7 @@ TEST(EventRounding, BouncesInAStrongFieldAreThoseOfAWeakOne) {
       system.add(Disc{.body = ball, .radius = 0.1 * length});
       EventDriven mode{.capture_speed = 1e-4 * speed, .event_limit = 1e12};
       Simulation simulation(system, mode);
-      simulation.run_until(1.6 * duration);
+      simulation.run_until(1.4 * duration);
       const std::vector<EventRecord>& events = simulation.events();
       const double fall = std::sqrt(2.0 / g);  // from 1 m
       ASSERT_EQ(events.size(), 2u) << length << " " << duration;
