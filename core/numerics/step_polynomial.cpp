@@ -30,21 +30,30 @@ double value_of(const std::array<double, Degree + 1>& b, double tau) {
 }
 
 /// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
-/// keeps it, until the root no longer moves.
+/// keeps it, until the root no longer moves. Beside a value that is nothing against that at the other end the
+/// secant hardly moves either, however far the root is: so what has come to stand is looked at from behind,
+/// and an interval that hardly shrinks is halved.
 template <std::size_t Degree>
 double lone_root(const Coefficients& coefficients) {
-  constexpr int most_steps = 60;
-  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
+  constexpr int most_steps = 150, most_slow = 4;
+  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon(), behind = 8.0 * still;
   std::array<double, Degree + 1> b;
   std::copy_n(coefficients.begin(), Degree + 1, b.begin());
-  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[Degree], root = high;
-  int side = 0;
+  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[Degree], root = 2.0;  // so far none
+  int side = 0, slow = 0;
   for (int i = 0; i < most_steps; ++i) {
-    double next = low + (high - low) * f_low / (f_low - f_high);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double width = high - low;
+    double next = low + width * f_low / (f_low - f_high);
+    bool halves = slow > most_slow || !(next > low && next < high);
+    if (!halves && side != 0 && std::abs(next - root) <= still && width > behind) {
+      const double other = next + side * behind;
+      if (!(other > low && other < high) || (value_of<Degree>(b, other) >= 0.0) != (side > 0)) return next;
+      halves = true;
+    }
+    if (halves) next = 0.5 * (low + high);
     const double moved = std::abs(next - root);
     root = next;
-    if (moved <= still || high - low <= still) break;
+    if (moved <= still || width <= still) break;
     const double f = value_of<Degree>(b, root);
     if (f >= 0.0) {
       low = root;
@@ -56,6 +65,11 @@ double lone_root(const Coefficients& coefficients) {
       f_high = f;
       if (side == -1) f_low *= 0.5;
       side = -1;
+    }
+    if (halves) {
+      slow = std::min(slow, most_slow);
+    } else {
+      slow = high - low > 0.5 * width ? slow + 1 : 0;
     }
   }
   return root;

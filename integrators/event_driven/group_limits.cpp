@@ -5,6 +5,8 @@
 #include <carom/integrators/event_driven/group_limits.h>
 #include <carom/integrators/run/time_resolution.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -50,6 +52,25 @@ double GroupLimits::longest_step() const {
   constexpr double longest_flight = 1.0;
   const bool foreseeable = !motion_->model().loads.depends_on_time && motion_->guards().all_have_motion();
   return foreseeable ? longest_flight : motion_->model().options->longest_step;
+}
+
+/// The gaps of a body that flies turn with it, and a step is halved so often only until they are searched:
+/// what turns many times more within one step would hide a closing.
+double GroupLimits::longest_step(std::span<const double> y) const {
+  // [rad]; FallRule::deepest halvings leave 0.06 rad.
+  constexpr double most_turning = 1000.0;
+  double longest = longest_step();
+  if (!motion_->is_ballistic()) return longest;
+  const GroupModel& model = motion_->model();
+  for (const MotionUnknowns::Part& part : model.parts()) {
+    for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
+      const BodySlot& slot = model.assembly->layout()->bodies()[body];
+      if (slot.rotation == none) continue;
+      const double spin = y[part.v + (slot.v + 2 - part.ranges.v.begin)];
+      longest = std::min(longest, most_turning / std::abs(spin));
+    }
+  }
+  return longest;
 }
 
 void GroupLimits::demand_reachable(double target) const {

@@ -11,6 +11,7 @@
 #include <carom/integrators/run/work_limits.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,10 @@ public:
 
   /// Begins with a new motion of its components.
   void start(double time);
-  /// Longest step that a flow may make [s].
+  /// Longest step that a flow may make, whatever the motion [s].
   [[nodiscard]] double longest_step() const;
+  /// Longest step from a state: shorter where bodies that fly freely spin fast [s].
+  [[nodiscard]] double longest_step(std::span<const double> y) const;
   /// Refuses a target that steps of this length cannot reach before any are made.
   void demand_reachable(double target) const;
   /// Counts a step; fails beyond the limit. \param y the state \param memory overwritten then

@@ -59,7 +59,7 @@ bool is_at_rest(GroupParts& group, MotionSample& now) {
 void make_step(GroupParts& group) {
   group.limits.count_step(group.clock.now, group.y.data(), group.memory->instant.now);
   group.phase = {Phase::ahead, group.detector.step(group.flow.change(), group.clock.now, group.y,
-                                                   group.limits.longest_step())};
+                                                   group.limits.longest_step(group.y))};
 }
 
 void land(const Event& event, GroupParts& group) {

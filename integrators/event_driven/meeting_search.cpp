@@ -139,8 +139,16 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
     const GapLook from{begin, true, gap_in(gap, path.sample(begin))};
     const GapLook to{end, true, gap_in(gap, path.sample(end))};
     rule.level = std::min(0.0, from.gap.value);
-    const double time = first_closing(path, gap, rule, from, to);
-    return time < never ? std::clamp(time, begin, end) : never;
+    double time = first_closing(path, gap, rule, from, to);
+    if (!(time < never)) return never;
+    time = std::clamp(time, begin, end);
+    // Fast bodies may be apart yet at a time that is rounded down, and would be met there again and again.
+    constexpr int most_roundings = 8;
+    for (int i = 0; i < most_roundings && time < end; ++i) {
+      if (gap_in(gap, path.sample(time)).value <= rule.level + rule.noise) break;
+      time = std::nextafter(time, end);
+    }
+    return time;
   }
   double speed = 0.0, pull = 0.0;
   const auto look = [&](double time, GroupSamples& samples) -> GapLook {

@@ -114,6 +114,26 @@ TEST(StepPolynomial, FallOfALine) {
   EXPECT_EQ(StepPolynomial::quintic({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}).first_fall(), never);
 }
 
+// A bounce of a fast ball in a long step: the value it begins with is nothing against that at the end. The
+// fall was found where the ball had just left.
+TEST(StepPolynomial, FallsFromNextToNothingFarBelowZero) {
+  for (const double far : {1e2, 1e4, 1e8, 1e12}) {
+    for (const double fall : {0.9, 1e-3, 1e-6}) {
+      // raise + far tau (fall - tau)
+      const Powers bounce{{1e-14, far * fall, -far}};
+      const double root = 0.5 * (fall + std::sqrt(fall * fall + 4e-14 / far));
+      // Where it falls, values are rounding of coefficients up to the size of the fall, and the slope is
+      // that.
+      EXPECT_NEAR(bounce.quintic().first_fall(), root, 8.0 * eps) << far << " " << fall;
+      EXPECT_NEAR(bounce.cubic().first_fall(), root, 8.0 * eps) << far << " " << fall;
+      // The same seen from the end: it falls from far above to next to nothing below.
+      const Powers late{
+          {far * (1.0 - fall) - 1e-14, far * (fall - 2.0), far}};  // its mirror image, turned round
+      EXPECT_NEAR(late.quintic().first_fall(), 1.0 - root, 8.0 * eps / fall) << far << " " << fall;
+    }
+  }
+}
+
 TEST(StepPolynomial, StartsAtZero) {
   // A ball that has just hit: from zero upwards and back at 3/4.
   const Powers bounce = with_roots({0.0, 0.75}, -1.0);

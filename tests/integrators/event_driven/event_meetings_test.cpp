@@ -49,6 +49,43 @@ TEST(EventMeetings, ABulletHitsAThinWall) {
   }
 }
 
+// Times of meetings are rounded, those of fast discs by more than what counts as touching: rounded down they
+// met again and again at one time, until event_limit ended the run; at 1e5 s at the first meeting.
+TEST(EventMeetings, FastDiscsMeetAtLateTimes) {
+  for (const double start : {0.0, 1e3, 1e5, 1e6}) {
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+    system.add(planar::BoxInside{.lower = {0.0, 0.0}, .upper = {1.0, 1.0}});
+    Random random(3);
+    for (int i = 0; i < 9; ++i) {
+      add_disc(system, 1.0, random.uniform(0.05, 0.1), {0.2 + 0.3 * (i % 3), 0.2 + 0.3 * (i / 3)},
+               {random.uniform(-4.0, 4.0), random.uniform(-4.0, 4.0)});
+    }
+    Simulation simulation(system, EventDriven{.record_events = false});
+    State state = simulation.state();
+    state.time = start;
+    simulation.set_state(state);
+    ASSERT_NO_THROW(simulation.run_until(start + 10.0)) << start;
+    EXPECT_GT(simulation.statistics().impacts, 500) << start;
+    EXPECT_NEAR(simulation.energy().total(), simulation.energy().initial(), 1e-11) << start;
+  }
+}
+
+// Two balls above each other that bounce for half an hour.
+TEST(EventMeetings, TwoBallsBounceOnEachOtherInTheLongRun) {
+  System system;
+  system.set_default_law({.friction = 0.0, .normal_restitution = 1.0});
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}});
+  add_disc(system, 1.0, 0.1, {0.0, 1.0}, {0.0, 0.0});
+  add_disc(system, 2.0, 0.1, {0.0, 1.4}, {0.0, 0.0});
+  Simulation simulation(system, EventDriven{.record_events = false});
+  ASSERT_NO_THROW(simulation.run_until(2000.0));
+  EXPECT_GT(simulation.statistics().impacts, 10'000);
+  // Some 11,000 impacts, each of which rounds energies of 36 J.
+  EXPECT_NEAR(simulation.energy().total(), simulation.energy().initial(), 1e-11);
+}
+
 // Two of them head on, and a capsule that turns, under gravity.
 TEST(EventMeetings, BulletsHitEachOtherAndACapsule) {
   System system;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace {
 
@@ -78,6 +79,34 @@ TEST(EventRounding, HeavyDiscRestsOnALightOne) {
       const double rounding = 20.0 * epsilon * (1.0 + heavy) * g;
       EXPECT_NEAR(force_on(forces, below).mean_force[1], g, 10.0 * rounding) << heavy;
       EXPECT_NEAR(force_on(forces, above).mean_force[1], heavy * g, 1e-9 * heavy * g) << heavy;
+    }
+  }
+}
+
+// A disc of a micrometre in a field of a million g: its flights are a millionth of the step of 1 s that free
+// flight takes, and fall 5e6 m below the ground within it. It rebounded from ever deeper in the ground, by
+// 1e-9 m a bounce, and gained energy; bigger ones did not get on at all.
+TEST(EventRounding, BouncesInAStrongFieldAreThoseOfAWeakOne) {
+  for (const double length : {1.0, 1e-4, 1e-6}) {
+    for (const double duration : {1.0, 1e-4, 1e-6}) {
+      const double speed = length / duration;
+      System system;
+      system.add(Gravity{{0.0, -g * speed / duration}});
+      system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.0, .normal_restitution = 0.7});
+      const BodyId ball =
+          system.add(RigidBody{.mass = disc(1.2, 0.1 * length), .position = {0.0, 1.1 * length}});
+      system.add(Disc{.body = ball, .radius = 0.1 * length});
+      EventDriven mode{.capture_speed = 1e-4 * speed, .event_limit = 1e12};
+      Simulation simulation(system, mode);
+      simulation.run_until(1.4 * duration);
+      const std::vector<EventRecord>& events = simulation.events();
+      const double fall = std::sqrt(2.0 / g);  // from 1 m
+      ASSERT_EQ(events.size(), 2u) << length << " " << duration;
+      // Gaps are located to 256 roundings of 1 m, which is the least size of coordinates.
+      const double rounding = 256.0 * epsilon / length + 64.0 * epsilon;
+      EXPECT_NEAR(events[0].time / duration, fall, rounding);
+      EXPECT_NEAR(events[1].time / duration, 2.4 * fall, 4.0 * rounding);
+      EXPECT_NEAR(events[1].velocity_before[0] / speed, -0.7 * g * fall, 4.0 * rounding);
     }
   }
 }
