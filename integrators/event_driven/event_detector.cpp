@@ -201,7 +201,7 @@ bool EventDetector::is_false_alarm(SearchedStep& step, const Event& predicted, c
 /// contradict each other by up to the tolerance. The step is searched once more for what is deeper than that.
 bool EventDetector::lowers_level(const SearchedStep& step, const Event& predicted) {
   constexpr double growth = 4.0;
-  if (predicted.guard != Guard::gap) return false;
+  if (predicted.guard != Guard::gap || step.is_exact(predicted.which)) return false;
   if (step.ends.start().gaps[predicted.which].first < -scales_.speed_noise) return false;
   double& drift = memory_->ends.end().gaps[predicted.which].drift;
   const double deepest = motion_->model().options->gap_tolerance;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace carom {
@@ -48,6 +49,12 @@ struct Bracket {
   }
 };
 
+/// Level through which a gap closes [m].
+double closing_level(const SearchedStep& step, std::size_t pair) {
+  if (!step.is_exact(pair)) return step.ends.gap_level(pair);
+  return step.ends.closing_level(pair, step.scales.speed_noise, step.motion.model().options->gap_tolerance);
+}
+
 Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
   constexpr double near = 1e-3;  // of the step
   Bracket bracket{step.begin(), step.end(), near * (step.end() - step.begin())};
@@ -61,6 +68,9 @@ Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
     bracket.f_low = predicted.sign * start.guards[predicted.which].value;
     bracket.f_high = predicted.sign * end.guards[predicted.which].value;
     bracket.below = bracket.f_high < 0.0;
+  } else if (predicted.guard == Guard::gap && step.is_exact(predicted.which)) {
+    // It may be between the last time before the end of the step and that end.
+    bracket.below = step.ends.end().gaps[predicted.which].value < closing_level(step, predicted.which);
   }
   return bracket;
 }
@@ -73,7 +83,7 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
   if (predicted.guard == Guard::gap) {
     Constraint contact;
     motion.contact(predicted.which, at, contact);
-    return {contact.gap - step.ends.gap_level(predicted.which), contact.normal_velocity(velocity),
+    return {contact.gap - closing_level(step, predicted.which), contact.normal_velocity(velocity),
             step.scales.gap_noise / 16.0, true};
   }
   if (predicted.guard == Guard::slip) {

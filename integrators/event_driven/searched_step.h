@@ -32,6 +32,11 @@ struct SearchedStep {
   [[nodiscard]] double end() const { return flow.end(); }
   /// True if there are guards of elements.
   [[nodiscard]] bool has_guards() const { return !ends.end().sample.guards.empty(); }
+  /// True of a gap that is known exactly all along the step: of flights under constant fields, to shapes that
+  /// are looked at in each step.
+  [[nodiscard]] bool is_exact(std::size_t pair) const {
+    return motion.is_ballistic() && motion.model().bound_of(pair) == none;
+  }
   /// Samples the motion at a time of the step, by interpolation, into the memory.
   const MotionSample& sample(double time) {
     memory.y.resize(motion.size());

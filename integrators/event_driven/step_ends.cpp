@@ -73,6 +73,15 @@ double StepEnds::gap_level(std::size_t pair) const {
   return std::min(0.0, start().gaps[pair].value) - end().gaps[pair].drift;
 }
 
+double StepEnds::closing_level(std::size_t pair, double slowest, double deepest) const {
+  constexpr double well_above = 4.0;  // of its depth
+  const GapEnd& at = start().gaps[pair];
+  const double depth = -at.value, fall = std::max(0.0, -at.second);
+  const bool leaves =
+      at.first > slowest && depth <= deepest && 0.5 * at.first * at.first > well_above * depth * fall;
+  return leaves ? -end().gaps[pair].drift : gap_level(pair);
+}
+
 double StepEnds::slip_level(std::size_t contact) const {
   return std::min(0.0, start().sample.slips[contact].value);
 }
