@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 namespace carom {
@@ -38,7 +39,7 @@ std::string name_of(const SurfaceTable& surfaces, MaterialId material) {
 struct Toucher {
   MaterialId material;
   ContactFilter filter;
-  std::string name;
+  std::string name, of_body;
   std::vector<Index> extended, points;  // at most two bodies each: more do not change what can meet
 
   void take(Index body, bool is_point) {
@@ -58,13 +59,15 @@ Touching touching_parts(const System& system) {
   Touching all;
   const auto add = [&](MaterialId material, const ContactFilter& filter, bool intended, Index body,
                        bool is_point, auto id) {
+    constexpr bool is_shape = std::is_same_v<decltype(id), ShapeId>;
     all.any = true;
     if (intended) all.intended.push_back(system.name(id));
     auto known = std::find_if(all.kinds.begin(), all.kinds.end(), [&](const Toucher& toucher) {
       return toucher.material == material && toucher.filter == filter;
     });
     if (known == all.kinds.end()) {
-      known = all.kinds.insert(known, {material, filter, system.name(id), {}, {}});
+      std::string of = is_shape ? " of " + system.name(BodyId{body, system.token()}) : "";
+      known = all.kinds.insert(known, {material, filter, system.name(id), std::move(of), {}, {}});
     }
     known->take(body, is_point);
   };
@@ -232,10 +235,9 @@ void find_hidden(const System& system, const Touching& touching, std::vector<Mod
   PartNames obstacles;
   for (const ObstacleId obstacle : system.obstacles()) {
     const ContactFilter filter = filter_of(system, obstacle);
-    const bool is_touched =
-        std::any_of(touching.kinds.begin(), touching.kinds.end(),
-                    [&](const Toucher& toucher) { return may_touch(toucher.filter, filter); });
-    if (!is_touched) obstacles.push_back(system.name(obstacle));
+    const auto touches = [&](const Toucher& toucher) { return may_touch(toucher.filter, filter); };
+    if (std::none_of(touching.kinds.begin(), touching.kinds.end(), touches))
+      obstacles.push_back(system.name(obstacle));
   }
   if (obstacles.empty() || !touching.any) return;
   std::string text = listed(obstacles) +
@@ -250,15 +252,14 @@ void find_contacts_without_law(const System& system, const SurfaceTable& surface
     const auto place = system.ground_shape_kinds().place(obstacle.serial);
     const MaterialId material = system.ground_shape_kinds().entries()[place.entry].kind->material(place.slot);
     for (const Toucher& toucher : touching.kinds) {
-      if (!may_touch(toucher.filter, filter_of(system, obstacle))) continue;
-      if (system.law(toucher.material, obstacle)) continue;
+      const bool may = may_touch(toucher.filter, filter_of(system, obstacle));
+      if (!may || system.law(toucher.material, obstacle)) continue;
       const std::string name = system.name(obstacle);
-      out.push_back({FindingKind::contact_without_law,
-                     {toucher.name, name},
-                     "contact of " + toucher.name + " on " + name + ": law is not given between " +
-                         name_of(surfaces, toucher.material) + " and " + name_of(surfaces, material) +
-                         "; allowed: a Surface on the obstacle, between the two materials or as default "
-                         "law"});
+      std::string text = "contact of " + toucher.name + toucher.of_body + " on " + name +
+                         ": law is not given between " + name_of(surfaces, toucher.material) + " and " +
+                         name_of(surfaces, material) +
+                         "; allowed: a Surface on the obstacle, between the two materials or as default law";
+      out.push_back({FindingKind::contact_without_law, {toucher.name, name}, std::move(text)});
     }
   }
 }
@@ -272,8 +273,8 @@ void find_pairs_without_law(const System& system, const SurfaceTable& surfaces, 
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const Toucher &a = kinds[i], &b = kinds[j];
-      if (!a.material.valid() || !b.material.valid() || !can_touch(a, b)) continue;
-      if (system.law(a.material, b.material)) continue;
+      if (!a.material.valid() || !b.material.valid()) continue;
+      if (!can_touch(a, b) || system.law(a.material, b.material)) continue;
       parts.push_back(b.name + " and " + (i == j ? "another one of its material" : a.name));
       told.push_back(parts.back() + " (" + name_of(surfaces, b.material) +
                      (i == j ? "" : " and " + name_of(surfaces, a.material)) + ")");
