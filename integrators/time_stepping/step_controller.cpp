@@ -22,8 +22,10 @@ bool same_contacts(const StepReport& a, const StepReport& b) {
 }  // namespace
 
 StepController::StepController(const Assembly& assembly, const TimeStepping& options)
-    : assembly_(&assembly), options_(options), slip_changes_(assembly) {
-  if (options.control) lengths_ = assembly.length_scales();
+    : assembly_(&assembly), options_(options) {
+  if (!options.control) return;
+  lengths_ = assembly.length_scales();
+  slip_changes_.emplace(assembly);
 }
 
 void StepController::step(MakeStep make, State& state, Companion& companion, double limit,
@@ -116,12 +118,12 @@ bool StepController::try_step(MakeStep make, const State& state, const Companion
   halves_.companion = companion;
   make(halves_.state, halves_.companion, 0.5 * step, state.time + 0.5 * step, first_);
   const SlidStep first{state, companion.modes, halves_.state, halves_.companion.modes, first_};
-  changed_speed_ = slip_changes_.largest_speed(first);
-  if (slip_changes_.needs_states()) middle_ = halves_.state;
+  changed_speed_ = slip_changes_->largest_speed(first);
+  if (slip_changes_->needs_states()) middle_ = halves_.state;
   modes_of_first_ = halves_.companion.modes;
   make(halves_.state, halves_.companion, 0.5 * step, end, second_);
   const SlidStep second{middle_, modes_of_first_, halves_.state, halves_.companion.modes, second_};
-  changed_speed_ = std::max(changed_speed_, slip_changes_.largest_speed(second));
+  changed_speed_ = std::max(changed_speed_, slip_changes_->largest_speed(second));
   make(whole_.state, whole_.companion, step, end, of_whole_);
   return same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_);
 }

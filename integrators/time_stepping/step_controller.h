@@ -14,6 +14,7 @@
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/slip_changes.h>
 
+#include <optional>
 #include <vector>
 
 namespace carom {
@@ -61,8 +62,8 @@ private:
   Run whole_, halves_;
   State middle_;
   ContactModes modes_of_first_;
-  double changed_speed_ = 0.0;  // SlipChanges::largest_speed() of the halves
-  SlipChanges slip_changes_;
+  double changed_speed_ = 0.0;               // SlipChanges::largest_speed() of the halves
+  std::optional<SlipChanges> slip_changes_;  // none without control
   StepReport of_whole_, first_, second_;
 };
 
