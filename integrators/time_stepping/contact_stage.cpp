@@ -1,6 +1,7 @@
 // Problem: impulses of the constraints of a step against the guess at the loads.
 
 #include <carom/integrators/time_stepping/contact_stage.h>
+#include <carom/integrators/time_stepping/free_bodies.h>
 
 #include <algorithm>
 #include <array>
@@ -36,31 +37,15 @@ private:
   Index next_ = 0;  // most contacts are those of the step before, in the same order
 };
 
-/// v_free = v_j + M^-1 h (F_j + F_{j+1})/2 of one body, and no impulses yet. \tparam N of its velocities, if
-/// known when this is compiled \param loads0 over all velocities, at the start \param loads1 at the end
-template <std::size_t N>
-void free_body(const StepInput& in, const double* loads0, const double* loads1, const BodySlot& body,
-               StepTrial& trial) {
-  const std::size_t size = N != 0 ? N : static_cast<std::size_t>(body.v_size);
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
-  const double *const load0 = loads0 + body.v, *const load1 = loads1 + body.v;
-  const double* const start = in.start.v.data() + body.v;
-  const float* const rounding = in.companion.rounding.data() + body.v;
-  for (std::size_t k = 0; k < size; ++k) dv[k] = half * (load0[k] + load1[k]);
-  in.assembly.body_kinds()[body.kind]->apply_inverse_mass({body.slot, body.slot + 1}, dv, free);
-  for (std::size_t k = 0; k < size; ++k) {
-    free[k] += static_cast<double>(rounding[k]) + start[k];
-    dv[k] = 0.0;
+/// True if all bodies of a problem are in a block.
+bool lies_within(const IslandProblem& problem, const Block& block) {
+  for (const Constraint& constraint : problem.constraints()) {
+    for (int b = 0; b < constraint.bodies; ++b) {
+      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
+      if (body < block.bodies.begin || body >= block.bodies.end) return false;
+    }
   }
-}
-
-void free_body(const StepInput& in, const double* loads0, const double* loads1, Index body,
-               StepTrial& trial) {
-  constexpr Index of_planar_body = 3;
-  const BodySlot slot = in.assembly.layout()->bodies()[body];
-  if (slot.v_size == of_planar_body) return free_body<of_planar_body>(in, loads0, loads1, slot, trial);
-  free_body<0>(in, loads0, loads1, slot, trial);
+  return true;
 }
 
 /// Impulses against the velocities of free bodies, which are known. False if there are none.
@@ -180,9 +165,9 @@ bool ContactStage::begin_constant(const StepInput& in, const StepIsland& island,
   trial.expect_impulses();
   const double* const loads = in.companion.loads.total.data();
   if (struck_.size() == 1) {
-    free_alone(in, loads, island.constraints.front().blocks[0], trial);
+    free_alone(in, loads, masses_, island.constraints.front().blocks[0], trial);
   } else {
-    free_struck(in, loads, trial);
+    free_bodies(in, loads, struck_, trial);
   }
   return true;
 }
@@ -252,17 +237,6 @@ void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
   if (!by_block_) clear(component.v);
 }
 
-/// True if all bodies of a problem are in a block.
-bool ContactStage::lies_within(const IslandProblem& problem, const Block& block) {
-  for (const Constraint& constraint : problem.constraints()) {
-    for (int b = 0; b < constraint.bodies; ++b) {
-      const Index body = constraint.blocks[static_cast<std::size_t>(b)].body;
-      if (body < block.bodies.begin || body >= block.bodies.end) return false;
-    }
-  }
-  return true;
-}
-
 bool ContactStage::touches(Index part) const {
   return in_use_ > 0 && (!by_block_ || !block_problems_[part].empty());
 }
@@ -282,50 +256,6 @@ const IslandProblem* ContactStage::solve(const StepInput& in, const StepRule& ru
     if (!solve(in, loads, problem, chains_.front(), trial)) return &problem;
   }
   return nullptr;
-}
-
-/// Likewise of the only body that has constraints, under constant loads.
-void ContactStage::free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
-                              StepTrial& trial) const {
-  const BodyMasses masses = masses_.alone(body.body);
-  if (masses.layout != BodyMasses::Layout::planar_bodies)
-    return free_body(in, loads, loads, body.body, trial);
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
-  const double *const load = loads + body.v, *const start = in.start.v.data() + body.v;
-  const float* const rounding = in.companion.rounding.data() + body.v;
-  const std::array<double, 3> mass{*masses.mass, *masses.mass, *masses.inertia};
-  for (std::size_t k = 0; k < mass.size(); ++k) {
-    free[k] = half * (load[k] + load[k]) / mass[k] + (static_cast<double>(rounding[k]) + start[k]);
-    dv[k] = 0.0;
-  }
-}
-
-/// Likewise of all bodies that have constraints, under constant loads: as many at a time as follow one
-/// another.
-void ContactStage::free_struck(const StepInput& in, const double* loads, StepTrial& trial) const {
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data(), *const free = trial.free.data();
-  const double* const start = in.start.v.data();
-  const float* const rounding = in.companion.rounding.data();
-  for (std::size_t first = 0, last = 0; first < struck_.size(); first = last) {
-    const Index begin = struck_[first];
-    while (last < struck_.size() && struck_[last] - begin == last - first) ++last;
-    if (last - first == 1) {
-      free_body(in, loads, loads, begin, trial);
-      continue;
-    }
-    const Range bodies{begin, begin + static_cast<Index>(last - first)};
-    assembly_->for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      const std::size_t end = v + static_cast<std::size_t>(slots.size()) * kind.v_size();
-      for (std::size_t k = v; k < end; ++k) dv[k] = half * (loads[k] + loads[k]);
-      kind.apply_inverse_mass(slots, dv + v, free + v);
-      for (std::size_t k = v; k < end; ++k) {
-        free[k] += static_cast<double>(rounding[k]) + start[k];
-        dv[k] = 0.0;
-      }
-    });
-  }
 }
 
 /// Bodies answer for themselves. False if there are no impulses.

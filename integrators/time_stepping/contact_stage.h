@@ -90,10 +90,6 @@ private:
   void list_struck(std::span<const Constraint> constraints);
   void put_struck_in_order();
   void share_out(const StepIsland& island, StepTrial& trial);
-  [[nodiscard]] static bool lies_within(const IslandProblem& problem, const Block& block);
-  void free_alone(const StepInput& in, const double* loads, const Constraint::Block& body,
-                  StepTrial& trial) const;
-  void free_struck(const StepInput& in, const double* loads, StepTrial& trial) const;
   [[nodiscard]] bool solve(const StepInput& in, const EndLoads& loads, IslandProblem& problem,
                            SolverChain& chain, StepTrial& trial);
 

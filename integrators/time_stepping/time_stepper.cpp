@@ -12,6 +12,28 @@
 
 namespace carom {
 
+namespace {
+
+/// Loads at the start, where the last step did not leave them: a function of the state.
+void evaluate_start(StepParts& parts, const State& state, Companion& companion) {
+  PresentLoads& loads = companion.loads;
+  if (loads.valid) companion.history.known = 0;  // of the other rule
+  LoadsAtEnd at;
+  at.total.swap(loads.total);
+  at.total.resize(parts.trial.end.v.size());
+  at.dissipative.resize(parts.trial.needs.dissipative ? parts.trial.end.v.size() : 0);
+  at.external.resize(parts.trial.needs.external ? parts.trial.end.v.size() : 0);
+  for (Index component = 0; component < parts.assembly->components().size(); ++component) {
+    evaluate_positions(*parts.assembly, component, state.view(), parts.trial.at_end);
+    evaluate_loads(*parts.assembly, component, state.view(), parts.trial.at_end, at.by_cause());
+    at.finish(parts.assembly->components()[component].v);
+  }
+  loads = {true, parts.rule.is_mean(), std::move(at.total), std::move(at.dissipative),
+           std::move(at.external)};
+}
+
+}  // namespace
+
 TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop)
     : parts_(assembly, (check_options(options), options)),
       impacts_(std::make_unique<StepImpacts>(parts_)),
@@ -35,7 +57,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
   const bool known = companion.loads.valid && companion.loads.mean == parts_.rule.is_mean();
-  if (!known) evaluate_start(state, companion);
+  if (!known) evaluate_start(parts_, state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
@@ -48,7 +70,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
   try {
-    evaluate_start(impacts_->start(), companion);
+    evaluate_start(parts_, impacts_->start(), companion);
     step_from({*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step}, state,
               companion, report);
   } catch (...) {
@@ -257,24 +279,6 @@ void TimeStepper::book_contact_problem(const IslandProblem& problem, const doubl
   const StepErrors errors = parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()));
   if (refused) errors.refuse_gain(problem, gain);
   capped_.keep(errors.failure_of(problem));
-}
-
-/// Loads at the start, where the last step did not leave them: a function of the state.
-void TimeStepper::evaluate_start(const State& state, Companion& companion) {
-  PresentLoads& loads = companion.loads;
-  if (loads.valid) companion.history.known = 0;  // of the other rule
-  LoadsAtEnd at;
-  at.total.swap(loads.total);
-  at.total.resize(parts_.trial.end.v.size());
-  at.dissipative.resize(parts_.trial.needs.dissipative ? parts_.trial.end.v.size() : 0);
-  at.external.resize(parts_.trial.needs.external ? parts_.trial.end.v.size() : 0);
-  for (Index component = 0; component < parts_.assembly->components().size(); ++component) {
-    evaluate_positions(*parts_.assembly, component, state.view(), parts_.trial.at_end);
-    evaluate_loads(*parts_.assembly, component, state.view(), parts_.trial.at_end, at.by_cause());
-    at.finish(parts_.assembly->components()[component].v);
-  }
-  loads = {true, parts_.rule.is_mean(), std::move(at.total), std::move(at.dissipative),
-           std::move(at.external)};
 }
 
 }  // namespace carom

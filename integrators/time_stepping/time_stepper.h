@@ -80,7 +80,6 @@ private:
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,
                             const StepInput& in);
-  void evaluate_start(const State& state, Companion& companion);
 
   StepParts parts_;
   std::unique_ptr<StepImpacts> impacts_;  // null where all impacts are those of the step
