@@ -4,9 +4,10 @@
 /// Counts of regular contacts, which are all that most steps have.
 
 #include <carom/contact/solvers/chain_statistics.h>
-#include <carom/contact/solvers/contact_solver.h>
+#include <carom/contact/solvers/contact_report.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace carom {
