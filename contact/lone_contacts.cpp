@@ -2,6 +2,7 @@
 // are all that bodies on a floor have.
 
 #include <carom/contact/contact_velocity.h>
+#include <carom/contact/free_velocity.h>
 #include <carom/contact/lone_contacts.h>
 #include <carom/contact/one_body_products.h>
 #include <carom/contact/solvers/single_contact.h>
@@ -26,11 +27,9 @@ bool LoneContacts::solve(const Constraint& at, const BodyMasses& masses, const L
   one_body::answer_contact(at, masses, response.data(), w.data());
   if (w[0] == 0.0 || w[3] == 0.0) return false;
   const std::array<double, 2> before = times_both_rows(at, velocity.before);
-  const std::array<double, 2> free = times_both_rows(at, velocity.free);
   answer.before = {before[0] - at.surface_velocity[0], before[1] - at.surface_velocity[1]};
-  answer.b = {free[0] - at.surface_velocity_after[0] + at.law.normal_restitution * answer.before[0],
-              free[1] - at.surface_velocity_after[1] + at.law.tangential_restitution * answer.before[1]};
-  if (at.allowed_approach > 0.0) answer.b[0] += at.allowed_approach;
+  const std::array<double, 2> e{at.law.normal_restitution, at.law.tangential_restitution};
+  answer.b = vector_of_contact(at, velocity.free, answer.before.data(), e.data());
   const CertifiedImpulse found =
       solve_regular_contact(PlanarContact{w[0], w[1], w[3], answer.b[0], answer.b[1], at.friction});
   if (!found.usable || !(found.residual <= accepted_residual)) return false;
