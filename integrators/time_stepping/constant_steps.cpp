@@ -46,8 +46,8 @@ void TimeStepper::advance_loose(std::span<const LooseBodies> pieces, const StepI
 void TimeStepper::solve_part(const StepIsland& part, const StepInput& in) {
   // The problem of a gain that is refused is to be told: each contact has its own.
   const bool refuses = parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
-  const IslandProblem* const failed = refuses ? parts_.contacts.solve_constant(in, part, parts_.trial)
-                                              : parts_.contacts.solve_part(in, part, parts_.trial);
+  const auto alone = refuses ? ContactStage::Alone::as_problems : ContactStage::Alone::from_numbers;
+  const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, alone, parts_.trial);
   if (failed != nullptr) fail_contact(*failed, in);
 }
 
@@ -66,7 +66,8 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   parts_.located.clear();
   parts_.trial.jumps.on = false;
   if (parts_.constraints.finds_in_parts(island)) return advance_part_by_part(island, in);
-  const IslandProblem* const failed = parts_.contacts.solve_constant(in, island, parts_.trial);
+  const IslandProblem* const failed =
+      parts_.contacts.solve_constant(in, island, ContactStage::Alone::as_problems, parts_.trial);
   if (failed != nullptr) fail_contact(*failed, in);
   for (const Range components : island.batches) {
     parts_.schedule.run(

@@ -150,12 +150,12 @@ void ContactStage::list_struck(std::span<const Constraint> constraints) {
   struck_.erase(std::unique(struck_.begin(), struck_.end()), struck_.end());
 }
 
-/// Velocities without impulses of the bodies that have constraints. False if there are none.
-bool ContactStage::begin_constant(const StepInput& in, const StepIsland& island, StepTrial& trial) {
+const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island, Alone alone,
+                                                  StepTrial& trial) {
   begin(island);
   lone_.clear();
   struck_.clear();
-  if (island.constraints.empty()) return false;
+  if (island.constraints.empty()) return nullptr;
   const bool all_are_struck = island.joined && one_body_each_;
   if (all_are_struck) {
     struck_.assign(island.components.begin(), island.components.end());
@@ -169,23 +169,11 @@ bool ContactStage::begin_constant(const StepInput& in, const StepIsland& island,
   } else {
     free_bodies(in, loads, struck_, trial);
   }
-  return true;
-}
-
-const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island,
-                                                  StepTrial& trial) {
-  if (!begin_constant(in, island, trial)) return nullptr;
+  const LoneVelocities velocity{in.start.v.data(), trial.free.data(), trial.dv_impulses.data()};
+  if (alone == Alone::from_numbers && lone_.solve(island.constraints, masses_, velocity)) return nullptr;
   return part_problems(in, island, [&](IslandProblem& problem) {
     return solve_against_free(problem, chains_.front(), trial);
   });
-}
-
-const IslandProblem* ContactStage::solve_part(const StepInput& in, const StepIsland& part, StepTrial& trial) {
-  if (!begin_constant(in, part, trial)) return nullptr;
-  const LoneVelocities velocity{in.start.v.data(), trial.free.data(), trial.dv_impulses.data()};
-  if (lone_.solve(part.constraints, masses_, velocity)) return nullptr;
-  return part_problems(
-      in, part, [&](IslandProblem& problem) { return solve_against_free(problem, chains_.front(), trial); });
 }
 
 /// Many bodies are ticked off faster than they are sorted.

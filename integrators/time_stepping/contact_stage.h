@@ -14,6 +14,7 @@
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -33,18 +34,17 @@ public:
   /// matrix is still to be made; else bodies answer for themselves, and constraints that share bodies share a
   /// problem
   void state_problems(const StepInput& in, const StepIsland& island, bool together, StepTrial& trial);
-  /// Likewise of an island under constant loads, whose bodies answer for themselves, and solves them.
-  /// Impulses change velocities of the bodies struck() alone. Returns the first problem that is not solved,
-  /// or null.
+  /// How contacts that are alone on their bodies are solved, where all of an island are: as problems() like
+  /// any others, or from their numbers, as lone().
+  enum class Alone : std::uint8_t { as_problems, from_numbers };
+  /// Likewise of an island under constant loads, or a part of it, whose bodies answer for themselves, and
+  /// solves them. Impulses change velocities of the bodies struck() alone. Returns the first problem that is
+  /// not solved, or null.
   [[nodiscard]] const IslandProblem* solve_constant(const StepInput& in, const StepIsland& island,
-                                                    StepTrial& trial);
-  /// Likewise of a part of it, whose account is taken contact by contact: contacts that are alone on their
-  /// bodies have no problems().
-  [[nodiscard]] const IslandProblem* solve_part(const StepInput& in, const StepIsland& part,
-                                                StepTrial& trial);
-  /// The contacts that solve_part() found alone, where all of its part are.
+                                                    Alone alone, StepTrial& trial);
+  /// The contacts that solve_constant() has solved from their numbers.
   [[nodiscard]] const LoneContacts& lone() const { return lone_; }
-  /// Those of some bodies that have constraints, after solve_constant() or solve_part().
+  /// Those of some bodies that have constraints, after solve_constant().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
   [[nodiscard]] std::span<IslandProblem> problems() {
@@ -79,7 +79,6 @@ private:
     const double* end;
   };
   void begin(const StepIsland& island);
-  [[nodiscard]] bool begin_constant(const StepInput& in, const StepIsland& island, StepTrial& trial);
   IslandProblem& next_problem() {
     if (first_ + in_use_ >= problems_.size()) make_room();
     return problems_[first_ + in_use_++];
