@@ -11,16 +11,13 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/event_driven/group_parts.h>
+#include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/lasting_contact.h>
 #include <carom/integrators/run/step_report.h>
 
-#include <utility>
 #include <vector>
 
 namespace carom {
-
-/// Modes by contact.
-using ContactModes = std::vector<std::pair<ConstraintKey, ContactMode>>;
 
 /// Components that share one time: one, or those whose bodies touch each other.
 class CAROM_API ClockGroup {

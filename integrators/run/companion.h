@@ -19,6 +19,9 @@
 
 namespace carom {
 
+/// Modes of contacts, limits and friction in joints, by key.
+using ContactModes = std::vector<std::pair<ConstraintKey, ContactMode>>;
+
 /// Loads at the present state, by cause; arrays over all velocities. A function of the state, kept so that
 /// the end of one step need not be evaluated again as the start of the next. Under the rule
 /// `energy_momentum` the mean loads of the last step instead, from which those of the next are guessed.
@@ -55,8 +58,8 @@ struct Companion {
   double next_step = 0.0;       ///< of step control; 0: as described [s]
   std::int64_t steps_owed = 0;  ///< that were made to find closings, beyond PartedSteps::steps_per_step
   PresentLoads loads;           ///< at the state
-  std::vector<std::pair<ConstraintKey, ContactMode>> modes;  ///< contacts of the last step, by key
-  ContactHistory contacts;                                   ///< impulses of the last step in large islands
+  ContactModes modes;           ///< contacts of the last step, by key
+  ContactHistory contacts;      ///< impulses of the last step in large islands
   std::vector<Rhythm> rhythms;  ///< of the periodic events, in the order of every()
 };
 

@@ -15,15 +15,12 @@
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
+#include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/step_report.h>
 
-#include <utility>
 #include <vector>
 
 namespace carom {
-
-/// Contacts, limits and friction in joints of a step with their modes.
-using ContactModes = std::vector<std::pair<ConstraintKey, ContactMode>>;
 
 /// A step, for changes of sliding in it. A view.
 struct SlidStep {

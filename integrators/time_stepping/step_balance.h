@@ -11,6 +11,7 @@
 #include <carom/core/export.h>
 #include <carom/core/numerics/compensated_sum.h>
 #include <carom/core/numerics/fetch_ahead.h>
+#include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/contact_history.h>
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/step_report.h>
@@ -23,7 +24,6 @@
 
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace carom {
@@ -42,17 +42,16 @@ struct ContactTally {
 
 /// Result of a step, beside the trial.
 struct StepResult {
-  EnergyFlows flows;        ///< energy that left, by cause [J]
-  StoredEnergies stored;    ///< at the end [J]
-  StepReport report;        ///< of the step
-  ContactHistory contacts;  ///< of large islands
-  ContactTally tally;       ///< of the contacts in the report
-  int cut_sequences = 0;    ///< of impacts at the start of the step, that their limit ended
-  int scaled_impacts = 0;   ///< likewise whose restitution was scaled
-  int plastic_jams = 0;     ///< contact problems solved with e = 0, since they had no answer
-  std::vector<std::pair<ConstraintKey, ContactMode>>
-      contact_modes;  ///< of contacts up to the end of the step
-  std::vector<std::pair<ConstraintKey, ContactMode>> joint_friction_modes;  ///< of friction in joints
+  EnergyFlows flows;                  ///< energy that left, by cause [J]
+  StoredEnergies stored;              ///< at the end [J]
+  StepReport report;                  ///< of the step
+  ContactHistory contacts;            ///< of large islands
+  ContactTally tally;                 ///< of the contacts in the report
+  int cut_sequences = 0;              ///< of impacts at the start of the step, that their limit ended
+  int scaled_impacts = 0;             ///< likewise whose restitution was scaled
+  int plastic_jams = 0;               ///< contact problems solved with e = 0, since they had no answer
+  ContactModes contact_modes;         ///< of contacts up to the end of the step
+  ContactModes joint_friction_modes;  ///< of friction in joints
   /// Records of the step so far, the first in the report. Those behind them are of an earlier step, and leave
   /// it when this one is finished: to clear a record costs as much as to write it.
   std::size_t recorded = 0;
