@@ -39,7 +39,8 @@ std::string name_of(const SurfaceTable& surfaces, MaterialId material) {
 struct Toucher {
   MaterialId material;
   ContactFilter filter;
-  std::string name, of_body;
+  std::string name;                     // of the part
+  std::string of_body;                  // of a shape: " of rigid body 'log'"
   std::vector<Index> extended, points;  // at most two bodies each: more do not change what can meet
 
   void take(Index body, bool is_point) {

@@ -11,7 +11,7 @@ namespace carom {
 
 namespace {
 
-/// What System::check() says of the first contact on a shape on ground that has no law: parts and materials.
+/// Text of System::check() on the first contact with a shape on ground that has no law: parts and materials.
 std::string missing_law(const System& system, ObstacleId obstacle) {
   const std::vector<ModelFinding> found = system.check();
   const std::string name = system.name(obstacle);

@@ -79,7 +79,7 @@ double StepEnds::closing_level(std::size_t pair, double slowest, double deepest)
   const double depth = -at.value, fall = std::max(0.0, -at.second);
   const bool leaves =
       at.first > slowest && depth <= deepest && 0.5 * at.first * at.first > well_above * depth * fall;
-  return leaves ? -end().gaps[pair].drift : gap_level(pair);
+  return leaves ? 0.0 : gap_level(pair);
 }
 
 double StepEnds::slip_level(std::size_t contact) const {

@@ -55,10 +55,11 @@ public:
   [[nodiscard]] const StepEnd& end() const { return end_; }
   /// Level of a gap [m]: of two corners that hit at almost the same time one is found late.
   [[nodiscard]] double gap_level(std::size_t pair) const;
-  /// Level at which a gap is taken to have closed [m]: zero for what leaves, whatever the rounding of the
-  /// time of its last closing has left of it, if it gets well above zero; else gap_level(). At the level
-  /// where it began each bounce would begin deeper than the one before, thousands of them by more than
-  /// tolerances allow. \param slowest of what leaves [m/s] \param deepest that it may have begun [m]
+  /// Level at which a gap without drift is taken to have closed [m]: zero for what leaves, whatever the
+  /// rounding of the time of its last closing has left of it, if it gets well above zero; else gap_level().
+  /// At the level where it began each bounce would begin deeper than the one before, thousands of them by
+  /// more than tolerances allow. \param slowest of what leaves [m/s] \param deepest that it may have begun
+  /// [m]
   [[nodiscard]] double closing_level(std::size_t pair, double slowest, double deepest) const;
   /// Level of sliding [m/s]: after a projection it may still creep the other way.
   [[nodiscard]] double slip_level(std::size_t contact) const;

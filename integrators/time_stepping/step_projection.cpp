@@ -37,7 +37,7 @@ void StepProjection::lower_rebounds(const StepInput& in, std::span<const StepIsl
   }
 }
 
-/// What loads change within the step, of one body or of all that joints bind to it.
+/// Changes of velocities by loads within the step, h M^-1 F, of one body or of all that joints bind to it.
 void StepProjection::change_by_loads(const StepInput& in, Index body) {
   const Assembly& assembly = in.assembly;
   const double* const loads = in.companion.loads.total.data();
