@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -74,22 +75,26 @@ Index BoxGrid<D>::place_of(const Level& level, const Cell& cell) {
 
 template <int D>
 void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes, int octaves) {
-  double largest = 0.0;
+  double largest = 0.0, smallest = std::numeric_limits<double>::infinity();
   size_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     size_[i] = size_of(boxes[i].box);
-    largest = std::max(largest, size_[i]);
+    largest = std::max(largest, size_[i]), smallest = std::min(smallest, size_[i]);
   }
   if (largest == 0.0) largest = 1.0;  // all boxes at the origin
   std::array<Index, most_levels> count{};
   std::array<double, most_levels> cell{};
-  level_.resize(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const double size = size_[i];
-    const auto level = static_cast<std::size_t>(level_of(largest / size, octaves));
-    level_[i] = static_cast<std::uint8_t>(level);
-    cell[level] = std::max(cell[level], size);
-    ++count[level];
+  level_.assign(boxes.size(), 0);
+  if (level_of(largest / smallest, octaves) == 0) {
+    cell[0] = largest, count[0] = static_cast<Index>(boxes.size());
+  } else {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const double size = size_[i];
+      const auto level = static_cast<std::size_t>(level_of(largest / size, octaves));
+      level_[i] = static_cast<std::uint8_t>(level);
+      cell[level] = std::max(cell[level], size);
+      ++count[level];
+    }
   }
   levels_.clear();
   std::array<std::uint8_t, most_levels> position{};
@@ -119,28 +124,36 @@ void BoxGrid<D>::find_levels(std::span<const OwnedBox<D>> boxes, int octaves) {
 }
 
 template <int D>
-double BoxGrid<D>::find_places(std::span<const OwnedBox<D>> boxes) {
+void BoxGrid<D>::find_places(std::span<const OwnedBox<D>> boxes) {
   place_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Level& level = levels_[level_[i]];
     place_[i] = level.places + place_of(level, cell_of(level, boxes[i].box.min));
     ++begin_[place_[i]];
   }
+}
+
+template <int D>
+double BoxGrid<D>::end_places() {
+  Index end = 0;
   double crowding = 0.0;
-  for (const Index count : begin_) crowding += static_cast<double>(count) * count;
-  return crowding / static_cast<double>(boxes.size());
+  for (Index& entry : begin_) {
+    crowding += static_cast<double>(entry) * entry;
+    end += entry, entry = end;
+  }
+  return crowding / static_cast<double>(end);
 }
 
 template <int D>
 void BoxGrid<D>::build(std::span<const OwnedBox<D>> boxes) {
   find_levels(boxes, is_crowded_ ? fewest_octaves : most_octaves);
-  if (find_places(boxes) > crowd && !is_crowded_) {
+  find_places(boxes);
+  if (end_places() > crowd && !is_crowded_) {
     is_crowded_ = true;
     find_levels(boxes, fewest_octaves);
     find_places(boxes);
+    end_places();
   }
-  Index end = 0;
-  for (Index& entry : begin_) end += entry, entry = end;
   entries_.resize(boxes.size());
   for (std::size_t i = boxes.size(); i-- > 0;) entries_[--begin_[place_[i]]] = boxes[i];
 }

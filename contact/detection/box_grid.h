@@ -59,8 +59,10 @@ private:
 
   // \param octaves sizes on one level differ by a factor of up to 2^octaves
   void find_levels(std::span<const OwnedBox<D>> boxes, int octaves);
-  // Counts the boxes in each place in `begin_`. Returns how many are where a box is, on average.
-  double find_places(std::span<const OwnedBox<D>> boxes);
+  // Counts the boxes in each place in `begin_`.
+  void find_places(std::span<const OwnedBox<D>> boxes);
+  // Makes the counts in `begin_` ends of places. Returns how many boxes are where a box is, on average.
+  double end_places();
   static Cell cell_of(const Level& level, const Vec<D>& corner);
   static Index place_of(const Level& level, const Cell& cell);
   // Calls f(from, to) with the ranges of entries in `count` places from one on, which wrap around.

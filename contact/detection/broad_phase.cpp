@@ -53,6 +53,13 @@ std::string text_of(const Box<D>& box) {
   return text;
 }
 
+template <int D>
+void check_box(std::span<const Box<D>> boxes, Index i) {
+  if (is_allowed(boxes[i])) return;
+  throw ModelError("broad phase: box " + std::to_string(i) + " is " + text_of(boxes[i]) +
+                   ", must be finite with min <= max");
+}
+
 // Length at each side that a box is kept larger by. \param before the larger box that it left
 // \param calls since it was put into that
 template <int D>
@@ -114,14 +121,13 @@ bool BroadPhase<D>::are_many(std::size_t left) const {
 template <int D>
 void BroadPhase<D>::find_left(std::span<const Box<D>> boxes, double half) {
   left_.clear();
-  for (Index i = 0; i < boxes.size(); ++i) {
-    if (!are_many(left_.size()) && holds(wide_[i].box, boxes[i], half)) continue;
-    if (!is_allowed(boxes[i])) {
-      throw ModelError("broad phase: box " + std::to_string(i) + " is " + text_of(boxes[i]) +
-                       ", must be finite with min <= max");
-    }
+  Index i = 0;
+  for (; i < boxes.size() && !are_many(left_.size()); ++i) {
+    if (holds(wide_[i].box, boxes[i], half)) continue;
+    check_box(boxes, i);
     left_.push_back(i);
   }
+  for (; i < boxes.size(); ++i) check_box(boxes, i);
 }
 
 template <int D>

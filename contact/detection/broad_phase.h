@@ -51,7 +51,7 @@ public:
 private:
   void check(std::span<const Box<D>> boxes, double margin) const;
   [[nodiscard]] bool are_many(std::size_t left) const;
-  // Lists the boxes that are outside of theirs; where they are many, all from there on.
+  // Lists the boxes that are outside of theirs, until they are many.
   void find_left(std::span<const Box<D>> boxes, double half);
   void widen(Index i, const Box<D>& box, double half);
   void rebuild(std::span<const Box<D>> boxes, double half);
