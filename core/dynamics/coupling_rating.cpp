@@ -168,18 +168,26 @@ CouplingRating rate_couplings(const Assembly& assembly, Index component, const S
 
 namespace {
 
-/// The first element of the component that `is_bad`, a function of (kind, element, context).
+/// The first element of a range for which `is_bad`, a function of ranges, is true; that of a range is true if
+/// it is for an element of it. Halves are asked, since a question costs a look at the loads of all bodies.
+template <class F>
+std::optional<Index> first_bad(Range elements, const F& is_bad) {
+  if (elements.empty() || !is_bad(elements)) return {};
+  if (elements.size() == 1) return elements.begin;
+  const Index middle = elements.begin + elements.size() / 2;
+  const std::optional<Index> found = first_bad({elements.begin, middle}, is_bad);
+  return found ? found : first_bad({middle, elements.end}, is_bad);
+}
+
+/// The first element of the component for which `is_bad`, a function of (kind, elements, context), is true.
 template <class F>
 ElementId find_element(const Assembly& assembly, Index component, const StateView& state,
                        const Evaluation& evaluation, F&& is_bad) {
   const EvaluationContext at{assembly, state, evaluation, component};
   for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(component, kind);
-    for (Index element = elements.begin; element < elements.end; ++element) {
-      if (is_bad(*assembly.force_kinds()[kind], Range{element, element + 1}, at)) {
-        return assembly.element_id(kind, element);
-      }
-    }
+    const auto of_kind = [&](Range elements) { return is_bad(*assembly.force_kinds()[kind], elements, at); };
+    const std::optional<Index> found = first_bad(assembly.elements(component, kind), of_kind);
+    if (found) return assembly.element_id(kind, *found);
   }
   return {};
 }
@@ -191,9 +199,9 @@ ElementId find_non_finite(const Assembly& assembly, Index component, const State
   const Range v = assembly.components()[component].v;
   std::vector<double> force(assembly.layout()->v_size(), 0.0);
   return find_element(assembly, component, state, evaluation,
-                      [&](const ForceKind& kind, Range element, const EvaluationContext& at) {
+                      [&](const ForceKind& kind, Range elements, const EvaluationContext& at) {
                         std::fill(force.begin() + v.begin, force.begin() + v.end, 0.0);
-                        kind.evaluate(at, element, {force.data(), force.data(), force.data()});
+                        kind.evaluate(at, elements, {force.data(), force.data(), force.data()});
                         return !std::all_of(force.begin() + v.begin, force.begin() + v.end,
                                             [](double number) { return std::isfinite(number); });
                       });
@@ -202,8 +210,8 @@ ElementId find_non_finite(const Assembly& assembly, Index component, const State
 ElementId find_non_finite_potential(const Assembly& assembly, Index component, const StateView& state,
                                     const Evaluation& evaluation) {
   return find_element(assembly, component, state, evaluation,
-                      [](const ForceKind& kind, Range element, const EvaluationContext& at) {
-                        return !std::isfinite(kind.potential(at, element));
+                      [](const ForceKind& kind, Range elements, const EvaluationContext& at) {
+                        return !std::isfinite(kind.potential(at, elements));
                       });
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -61,10 +62,32 @@ const std::regex json_header("nlohmann/.*");
 const std::regex thread_header("(oneapi/)?tbb/.*");
 const std::regex type_query(R"(\bdynamic_(pointer_)?cast\b)");
 
-// The code without its comments.
+// The code without its comments. By hand: a regular expression takes ten times as long.
 std::string without_comments(std::string_view code) {
-  static const std::regex pattern(R"re(//[^\n]*|/\*[\s\S]*?\*/)re");
-  return std::regex_replace(std::string(code), pattern, "");
+  std::string rest;
+  while (true) {
+    const std::size_t line = code.find("//"), block = code.find("/*");
+    const std::size_t begin = std::min(line, block);
+    rest += code.substr(0, begin);
+    if (begin == std::string_view::npos) return rest;
+    const std::size_t end = line < block ? code.find('\n', line) : code.find("*/", block + 2);
+    if (end == std::string_view::npos) return rest;
+    code.remove_prefix(line < block ? end : end + 2);
+  }
+}
+
+// Few lines are worth a look by the expression.
+bool is_include(const std::string& line, std::smatch& match) {
+  return line.find('#') != std::string::npos && std::regex_search(line, match, include_line);
+}
+
+// Whether an object is asked for its type.
+bool queries_type(const std::string& code) {
+  std::istringstream lines(code);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("dynamic_") != std::string::npos && std::regex_search(line, type_query)) return true;
+  }
+  return false;
 }
 
 // The folder of "folder/name".
@@ -99,7 +122,7 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
   std::istringstream lines(code);
   for (std::string line; std::getline(lines, line);) {
     std::smatch match;
-    if (!std::regex_search(line, match, include_line)) continue;
+    if (!is_include(line, match)) continue;
     const std::string target = match[2];
     const auto refuse = [&](const std::string& why) { found.push_back(path + ": " + why + ": " + target); };
 
@@ -126,8 +149,7 @@ std::vector<std::string> violations(const std::string& path, std::string_view co
       refuse("private header");
     }
   }
-  if (folders_without_type_queries.contains(path.substr(0, path.find('/'))) &&
-      std::regex_search(code, type_query)) {
+  if (folders_without_type_queries.contains(path.substr(0, path.find('/'))) && queries_type(code)) {
     found.push_back(path + ": asks an object for its type (dynamic_cast)");
   }
   return found;
@@ -196,7 +218,7 @@ TEST(IncludeEdges, PublicHeadersIncludePublicOnes) {
     std::istringstream lines(read(source_dir / header));
     for (std::string line; std::getline(lines, line);) {
       std::smatch match;
-      if (!std::regex_search(line, match, include_line)) continue;
+      if (!is_include(line, match)) continue;
       const std::string target = match[2];
       if (!target.starts_with("carom/")) continue;
       EXPECT_TRUE(headers.contains(target.substr(6))) << header << " > " << target;

@@ -117,14 +117,14 @@ constexpr double residual_at_default = 1e-7, residual_at_tight = 1e-9;
 const EventDriven tight{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-13};
 
 TEST(EventScenes, NoImpactIsMissedAndTheAccountCloses) {
-  const Findings findings = run_scenes(0, 60, {}, residual_at_default);
-  expect_sound(findings, 60);
-  EXPECT_LE(findings.without_solution, 3);
+  const Findings findings = run_scenes(0, 20, {}, residual_at_default);
+  expect_sound(findings, 20);
+  EXPECT_LE(findings.without_solution, 1);
 }
 
 TEST(EventScenesLong, NoImpactIsMissedAndTheAccountCloses) {
-  const Findings findings = run_scenes(100, 1000, {}, residual_at_default);
-  expect_sound(findings, 1000);
+  const Findings findings = run_scenes(20, 1080, {}, residual_at_default);
+  expect_sound(findings, 1080);
   EXPECT_LE(findings.without_solution, 20);
 }
 
@@ -189,8 +189,9 @@ TEST(EventScenes, TwoBodiesGiveWayAtOnce) { expect_sound_scenes({65}); }
 TEST(EventScenes, StribecksCurveIsSeenToTheEndOfSliding) { expect_sound_scenes({847}); }
 
 // Friction that grows as sliding slows takes W_nn - s mu W_nt to zero: forces grow without bound.
-TEST(EventScenes, ForcesThatGrowWithoutBound) {
-  expect_sound_scenes({1157, 2083, 5419, 5571, 6511, 11963, 12431, 12853, 13970, 16677, 16893, 19216});
+TEST(EventScenes, ForcesThatGrowWithoutBound) { expect_sound_scenes({1157, 2083}); }
+TEST(EventScenesLong, ForcesThatGrowWithoutBound) {
+  expect_sound_scenes({5419, 5571, 6511, 11963, 12431, 12853, 13970, 16677, 16893, 19216});
 }
 
 // Friction that was exhausted to within the rounding of the event held again by less than that, without end:
@@ -221,11 +222,10 @@ TEST(EventScenes, ForcesThatAreNothingOverNothing) { expect_sound_scenes({39039,
 // Turns of a body change nothing but the rounding of its motion, and how large that is taken to be.
 // Whether alarms at the start of a step came to an end depended on it: in 25 of 40 runs they did not. And
 // steps came to the rounding of time where forces were 360 times the others, in one of a hundred runs.
-TEST(EventScenes, ForcesThatAreNothingOverNothingWhateverTheRounding) {
-  constexpr int most_turns = 40;
+void nothing_over_nothing(int first, int last) {
   constexpr double two_pi = 6.283185307179586;
   const EventScene scene(39039);
-  for (int turns = 0; turns < most_turns; ++turns) {
+  for (int turns = first; turns < last; ++turns) {
     SCOPED_TRACE(turns);
     Simulation simulation(scene.system(), EventDriven{.relative_tolerance = turns % 2 == 0 ? 5e-10 : 1e-9});
     State state = simulation.state();
@@ -238,6 +238,8 @@ TEST(EventScenes, ForcesThatAreNothingOverNothingWhateverTheRounding) {
     EXPECT_GE(scene.least_gap(simulation.state()), -deepest_allowed);
   }
 }
+TEST(EventScenes, ForcesThatAreNothingOverNothingWhateverTheRounding) { nothing_over_nothing(0, 6); }
+TEST(EventScenesLong, ForcesThatAreNothingOverNothingWhateverTheRounding) { nothing_over_nothing(6, 40); }
 
 // Of two corners in almost singular positions one was seen to stop while the other one, which can only move
 // with it, seemed to slide on.

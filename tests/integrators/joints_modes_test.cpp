@@ -31,16 +31,24 @@ Scene driven_slider_crank() {
   return scene;
 }
 
-TEST(JointsInBothModes, DrivenMechanismOrderTwo) {
+void driven_mechanism_has_order_two(const std::vector<double>& steps) {
   CrossCheckOptions options;
   options.end = 0.05;
-  options.steps = {1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6};
+  options.steps = steps;
   options.event_driven.relative_tolerance = 1e-12;
   options.event_driven.absolute_tolerance = 1e-13;
   const CrossCheck check = cross_check(driven_slider_crank().system, options);
   // The second term of the error is (h w)^2/10 of the first, 2e-5.
   EXPECT_NEAR(check.position_order, 2.0, 0.01);
   EXPECT_NEAR(check.velocity_order, 2.0, 0.01);
+}
+
+TEST(JointsInBothModes, DrivenMechanismOrderTwo) {
+  driven_mechanism_has_order_two({1e-4, 6.25e-5, 5e-5, 4e-5, 2.5e-5});
+}
+
+TEST(JointsInBothModesLong, DrivenMechanismOrderTwo) {
+  driven_mechanism_has_order_two({1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6});
 }
 
 /// A double pendulum whose pins are stopped, with a spring.

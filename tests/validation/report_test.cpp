@@ -48,17 +48,22 @@ void expect_as_committed(const validation::Problem& problem) {
     EXPECT_EQ(difference(now[i], then[i]), "") << page.name << ", " << now[i].quantity;
 }
 
-TEST(ValidationReport, QuickProblemsGiveTheCommittedNumbers) {
+class ValidationProblem : public testing::TestWithParam<validation::Problem> {};
+
+TEST_P(ValidationProblem, GivesTheCommittedNumbers) { expect_as_committed(GetParam()); }
+
+std::vector<validation::Problem> problems(bool quick) {
+  std::vector<validation::Problem> result;
   for (const validation::Problem& problem : validation::all_problems) {
-    if (problem.quick) expect_as_committed(problem);
+    if (problem.quick == quick) result.push_back(problem);
   }
+  return result;
 }
 
-TEST(ValidationReportLong, AllOtherProblemsGiveTheCommittedNumbers) {
-  for (const validation::Problem& problem : validation::all_problems) {
-    if (!problem.quick) expect_as_committed(problem);
-  }
-}
+std::string name_of(const testing::TestParamInfo<validation::Problem>& each) { return each.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Quick, ValidationProblem, testing::ValuesIn(problems(true)), name_of);
+INSTANTIATE_TEST_SUITE_P(OthersLong, ValidationProblem, testing::ValuesIn(problems(false)), name_of);
 
 TEST(ValidationReport, HoldsEveryProblemInItsOrderAndNoOther) {
   std::vector<std::string> pages;

@@ -36,15 +36,18 @@ struct HardDiscs {
       v.emplace_back(u, w);
     }
   }
-  /// When two discs meet, from now; infinity: never.
+  /// When two discs meet, from now; infinity: never. In plain numbers, since it is asked of all pairs at
+  /// every impact, and tests are not optimised.
   [[nodiscard]] double meeting(std::size_t i, std::size_t j) const {
-    const Vec<2> d = x[i] - x[j], u = v[i] - v[j];
-    const double along = d.dot(u), speed = u.squaredNorm(), rho = 2.0 * radius;
+    const double *const xi = x[i].data(), *const xj = x[j].data(), *const vi = v[i].data(),
+                        *const vj = v[j].data();
+    const double d0 = xi[0] - xj[0], d1 = xi[1] - xj[1], u0 = vi[0] - vj[0], u1 = vi[1] - vj[1];
+    const double along = d0 * u0 + d1 * u1, rho = 2.0 * radius;
     if (!(along < 0.0)) return never;
-    const double across = d[0] * u[1] - d[1] * u[0];
-    const double root = rho * rho * speed - across * across;
+    const double across = d0 * u1 - d1 * u0;
+    const double root = rho * rho * (u0 * u0 + u1 * u1) - across * across;
     if (!(root > 0.0)) return never;
-    return std::max(0.0, (d.squaredNorm() - rho * rho) / (-along + std::sqrt(root)));
+    return std::max(0.0, (d0 * d0 + d1 * d1 - rho * rho) / (-along + std::sqrt(root)));
   }
   [[nodiscard]] double wall(std::size_t i, int k) const {
     if (v[i][k] > 0.0) return std::max(0.0, (side - radius - x[i][k]) / v[i][k]);

@@ -114,7 +114,7 @@ TEST(EventPiles, DiscsThatBounceAndWhoseForcesAreNotUniqueComeToRest) {
 // Three discs in a row on a wall, of which the outer ones roll and the middle one slides: its normal force is
 // not unique, and with it the friction that moves them. Forces that were shared out so that margins are
 // largest moved them as the answer did, those that the flow had did not: one event after the other.
-TEST(EventPiles, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
+TEST(EventPilesLong, DiscsWhoseForcesThatAreNotUniqueMoveThemGoOn) {
   Runs runs;
   run({20, true, 0.5, 0.3, 5}, 0.9, runs);
   EXPECT_EQ(runs.failed, 0);
@@ -277,7 +277,7 @@ TEST(EventPilesLong, JamsOfWhatSlidesHardlyFasterThanRoundingAreFound) {
 
 // A disc between two walls may be given forces of any size: an answer of 1e39 N was taken, beside which all
 // accelerations are rounding, and modes without forces that press; their event came again at the same time.
-TEST(EventPiles, ForcesThatSayNothingAreNoAnswer) {
+TEST(EventPilesLong, ForcesThatSayNothingAreNoAnswer) {
   Runs runs;
   run({8, true, 1.2, 0.6, 57}, 1.3, runs);
   run({10, true, 1.2, 0.6, 45}, 0.75, runs);
