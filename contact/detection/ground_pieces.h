@@ -100,6 +100,8 @@ private:
   void add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count, Index shape,
                  double surface_speed);
   void finish(GroundOutline outline);
+  [[nodiscard]] bool is_through(const Piece& piece, const ConvexOutline& a, const GapPoint& at) const;
+  [[nodiscard]] bool is_free(Index shape, const Vec<2>& point) const;
 
   std::vector<Piece> pieces_;
   std::vector<GroundOutline> outlines_;

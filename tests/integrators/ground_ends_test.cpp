@@ -87,4 +87,48 @@ TEST(GroundEnds, WhatLiesFlatBesideThemIsHeldByItsFaceAlone) {
   EXPECT_GT(scenes, 500);
 }
 
+/// Places of a disc after a time, in each mode.
+std::vector<Vec<2>> places_after(const System& system, BodyId body, double time) {
+  std::vector<Vec<2>> places;
+  for (const Mode& mode : std::vector<Mode>{
+           TimeStepping{.step = 1e-3}, TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located},
+           TimeStepping{.step = 1e-3, .project_gaps = true}, EventDriven{}}) {
+    Simulation run(system, mode);
+    run.run_until(time);
+    places.push_back(run.state().position(body));
+  }
+  return places;
+}
+
+// The side at the end of a line stands at a right angle to the last face. Below a cliff it reaches far under
+// the line, and what is above the line is behind it.
+TEST(GroundEnds, WhatIsAboveALineIsFreeOfTheSideAtItsEnd) {
+  for (const double mirror : {1.0, -1.0}) {
+    std::vector<Vec<2>> line{{-3.0 * mirror, 0.0}, {0.0, 0.3}, {0.05 * mirror, -1.0}};
+    if (mirror < 0.0) std::reverse(line.begin(), line.end());
+    System system;
+    system.add(Gravity{{0.0, -g}});
+    system.set_default_law({.friction = 0.5, .normal_restitution = 0.0});
+    system.add(Terrain{.vertices = line, .depth = 2.0});
+    const BodyId ball = add_disc(system, 1.0, 0.1, {-1.7 * mirror, 0.35}, {0.0, 1.0});
+    constexpr double time = 0.2;
+    for (const Vec<2>& place : places_after(system, ball, time)) {
+      EXPECT_NEAR(place[0], -1.7 * mirror, 1e-12);
+      EXPECT_NEAR(place[1], 0.35 + time - 0.5 * g * time * time, 1e-12);
+    }
+  }
+}
+
+// A wall thinner than the depth of its line is hit on the side that a body comes to, and not from within.
+TEST(GroundEnds, WallsThatAreThinnerThanTheDepthKeepTheirSides) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = 0.0, .normal_restitution = 0.5});
+  system.add(Terrain{.vertices = {{-1.0, 0.0}, {0.0, 0.0}, {0.0, 1.0}, {0.1, 1.0}, {0.1, 0.0}, {1.0, 0.0}},
+                     .depth = 0.5});
+  const BodyId ball = add_disc(system, 1.0, 0.1, {0.3, 0.1}, {-1.0, 0.0});
+  // It comes to the wall after 0.1 s, and goes back half as fast; steps hit up to one step late.
+  for (const Vec<2>& place : places_after(system, ball, 0.3)) EXPECT_NEAR(place[0], 0.3, 2e-3);
+}
+
 }  // namespace
