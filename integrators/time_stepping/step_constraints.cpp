@@ -49,7 +49,9 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              ends_at_rounding(options) || turning_opens(detector_),
              is_plain(detector_)},
       islands_(assembly) {
-  if (options.project_gaps) rules_.margin = rounding;
+  // What is at rest has its static friction: without the contact that rounding opens it would slide away.
+  const bool sticks = detector_.ground().has_static_friction() || detector_.bodies().has_static_friction();
+  if (options.project_gaps || sticks) rules_.margin = rounding;
 }
 
 void StepConstraints::allow_rounding(double step) {

@@ -195,4 +195,45 @@ TEST(StaticFriction, IsInTheFingerprint) {
   EXPECT_NE(print(0.4, 0.0), print(0.4, 0.1));
 }
 
+/// What stands on an incline along which it is held by static friction alone.
+System at_rest_on_incline(double angle, double along, bool is_box) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  const Vec<2> up = incline(angle), down_line(up[1], -up[0]);
+  system.add(HalfPlane{.normal = up},
+             Surface{.friction = 0.2, .normal_restitution = 0.0, .static_friction = 0.35});
+  if (!is_box) {
+    system.add(Particle{.mass = 1.0, .position = along * down_line}, "body");
+    return system;
+  }
+  const BodyId body = system.add(
+      RigidBody{.mass = box(1.0, 0.2, 0.1), .position = along * down_line + 0.05 * up, .angle = angle},
+      "body");
+  system.add(Polygon{.body = body, .vertices = {{-0.1, -0.05}, {0.1, -0.05}, {0.1, 0.05}, {-0.1, 0.05}}});
+  return system;
+}
+
+// Rounding leaves gaps of either sign, at the start and from step to step: none of them sets a body free.
+TEST(StaticFriction, WhatIsAtRestStaysWhateverRoundingLeavesOfItsGap) {
+  using Rules = ImpactRules;
+  for (const TimeStepping& options :
+       {TimeStepping{.step = 1e-3}, TimeStepping{.step = 1e-4},
+        TimeStepping{.step = 1e-3, .project_gaps = true},
+        TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located},
+        TimeStepping{.step = 1e-3, .impact_rules = Rules{.order = ImpactOrder::sequential}}}) {
+    for (int place = 0; place < 60; ++place) {
+      const double angle = 0.22 + 0.0018 * place, along = std::fmod(0.7316 * place, 4.0) - 2.0;
+      for (const bool is_box : {false, true}) {
+        const System system = at_rest_on_incline(angle, along, is_box);
+        Simulation simulation(system, options);
+        const BodyId body = simulation.system().body("body");
+        const Vec<2> start = simulation.state().position(body);
+        for (int i = 0; i < 50; ++i) simulation.step();
+        // To the rounding of impulses: of the solver's answer, times the time.
+        EXPECT_LT((simulation.state().position(body) - start).norm(), 1e-12) << angle << " " << is_box;
+      }
+    }
+  }
+}
+
 }  // namespace
