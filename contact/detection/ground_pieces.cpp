@@ -213,6 +213,12 @@ bool GroundPieces::is_through(const Piece& piece, const ConvexOutline& a, const 
   return is_free(outlines_[piece.outline].shape, a.vertices[at.feature_a]);
 }
 
+bool GroundPieces::is_out_behind(Index outline, double height, const Vec<2>& point) const {
+  constexpr double sunk = 1e-6;  // what touches is hardly deeper, and need not be looked at further [m]
+  const GroundOutline& of = outlines_[outline];
+  return height < -sunk && (height < -of.depth || is_free(of.shape, point));
+}
+
 /// True if a point is in front of what is nearest to it of the faces of a shape.
 bool GroundPieces::is_free(Index shape, const Vec<2>& point) const {
   double least = std::numeric_limits<double>::infinity();

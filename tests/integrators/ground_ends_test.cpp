@@ -2,6 +2,7 @@
 // they lie on alone, in both modes, however far the solid reaches behind the next face.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/integrators/throws.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
@@ -104,7 +105,7 @@ std::vector<Vec<2>> places_after(const System& system, BodyId body, double time)
 // the line, and what is above the line is behind it.
 TEST(GroundEnds, WhatIsAboveALineIsFreeOfTheSideAtItsEnd) {
   for (const double mirror : {1.0, -1.0}) {
-    std::vector<Vec<2>> line{{-3.0 * mirror, 0.0}, {0.0, 0.3}, {0.05 * mirror, -1.0}};
+    std::vector<Vec<2>> line{{-3.0 * mirror, 0.0}, {-0.2 * mirror, 0.0}, {0.0, 0.3}, {0.05 * mirror, -1.0}};
     if (mirror < 0.0) std::reverse(line.begin(), line.end());
     System system;
     system.add(Gravity{{0.0, -g}});
@@ -117,6 +118,17 @@ TEST(GroundEnds, WhatIsAboveALineIsFreeOfTheSideAtItsEnd) {
       EXPECT_NEAR(place[1], 0.35 + time - 0.5 * g * time * time, 1e-12);
     }
   }
+}
+
+// Below its depth the ground touches nothing. What comes up from there is in it at once.
+TEST(GroundEnds, WhatComesFromBelowEndsWithAnErrorThatNamesTheGround) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = 0.0, .normal_restitution = 0.5});
+  system.add(Terrain{.vertices = {{-1.0, 0.0}, {0.0, 0.0}, {1.0, 0.0}}, .depth = 0.3}, "ground");
+  add_disc(system, 1.0, 0.1, {0.0, -0.6}, {0.0, 6.0});
+  Simulation run(system, EventDriven{.evaluation_limit = 50000});
+  EXPECT_THROWS(SolverError, run.run_until(0.3), "on terrain 'ground' is -0.", "allowed: not below");
 }
 
 // A wall thinner than the depth of its line is hit on the side that a body comes to, and not from within.
