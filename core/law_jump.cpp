@@ -38,12 +38,15 @@ struct Change {
   double way = 0.0;        // h (|v0| + |v1|)/2
   double bent = 0.0;       // h |v1 - v0|/2
   double magnitude = 0.0;  // of the larger of the two
+  double rounding = 0.0;   // way within the rounding of time: where x is near 0 that of x is less
 
-  [[nodiscard]] double resolved() const { return resolved_share * magnitude; }
+  [[nodiscard]] double resolved() const { return resolved_share * magnitude + rounding; }
   // A number that is none is not smooth.
   [[nodiscard]] bool smooth() const { return missed <= smooth_share * (moved + way) + resolved(); }
   [[nodiscard]] bool straight() const { return bent <= bent_share * way + resolved(); }
 };
+
+double rounding_of_time(double time) { return resolution * std::max(1.0, std::abs(time)); }
 
 Change change_of_place(const LawPoint& a, const LawPoint& b) {
   const double half = 0.5 * (b.time - a.time);
@@ -53,15 +56,23 @@ Change change_of_place(const LawPoint& a, const LawPoint& b) {
     missed[i] = moved[i] - half * (a.velocity[i] + b.velocity[i]);
     bent[i] = half * (b.velocity[i] - a.velocity[i]);
   }
-  return {norm(moved), norm(missed), half * (norm(a.velocity) + norm(b.velocity)), norm(bent),
-          std::max(norm(a.place), norm(b.place))};
+  const double faster = std::max(norm(a.velocity), norm(b.velocity));
+  return {norm(moved),
+          norm(missed),
+          half * (norm(a.velocity) + norm(b.velocity)),
+          norm(bent),
+          std::max(norm(a.place), norm(b.place)),
+          rounding_of_time(b.time) * faster};
 }
 
 Change change_of_angle(const LawPoint& a, const LawPoint& b) {
   const double half = 0.5 * (b.time - a.time), moved = b.angle - a.angle;
-  return {std::abs(moved), std::abs(moved - half * (a.spin + b.spin)),
-          half * (std::abs(a.spin) + std::abs(b.spin)), half * std::abs(b.spin - a.spin),
-          std::max(std::abs(a.angle), std::abs(b.angle))};
+  return {std::abs(moved),
+          std::abs(moved - half * (a.spin + b.spin)),
+          half * (std::abs(a.spin) + std::abs(b.spin)),
+          half * std::abs(b.spin - a.spin),
+          std::max(std::abs(a.angle), std::abs(b.angle)),
+          rounding_of_time(b.time) * std::max(std::abs(a.spin), std::abs(b.spin))};
 }
 
 /// Whole turns between two angles are no motion where the spin has none.
@@ -110,7 +121,7 @@ public:
       for (std::size_t k = 0; k < count; ++k) {
         const LawPoint &a = parts[k].from, &b = parts[k].to;
         const double middle = a.time + 0.5 * (b.time - a.time);
-        if (!(b.time - a.time > resolution * std::max(1.0, std::abs(b.time)))) {
+        if (!(b.time - a.time > rounding_of_time(b.time))) {
           if (is_jump(a, b)) return LawJump{a.time, parts[k].change.moved, of_angle_};
           continue;
         }
@@ -181,7 +192,7 @@ bool misses_throughout(FunctionRef<LawPoint(double)> law, FalseRate& found, doub
     if (way.smooth()) return false;
     looked = true;
     found.off = way.missed / length;
-    if (length < resolution * std::max(1.0, std::abs(found.time))) return looked;
+    if (length < rounding_of_time(found.time)) return looked;
   }
 }
 

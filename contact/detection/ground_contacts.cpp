@@ -162,12 +162,12 @@ bool GroundContacts::any_near(Range components, const ContactQuery& query) const
   return any || others > 0;
 }
 
-std::vector<CentreRow> GroundContacts::centre_rows() const {
+std::vector<CentreRow> GroundContacts::centre_rows(double margin) const {
   std::vector<CentreRow> rows;
   for (const CentreRun& run : features_.centres()) {
     const BodySlot first = assembly_->layout()->bodies()[run.bodies.begin];
     for (const Index shape : laws_.touched_by(material_of(run))) {
-      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), reach_of(run, 0.0)});
+      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), reach_of(run, margin)});
     }
   }
   // Circles around all other points of a body, which places as far away as a hundred million radii round
@@ -177,7 +177,7 @@ std::vector<CentreRow> GroundContacts::centre_rows() const {
     if (!features_.is_beside_centres(point)) continue;
     const BodySlot body = assembly_->layout()->bodies()[point.body];
     const double off = std::hypot(point.centre[0], point.centre[1], point.centre[2]);
-    const double reach = caution * (off + point.radius);
+    const double reach = caution * (off + point.radius + margin);
     for (const Index shape : laws_.touched_by(point.material)) {
       const auto same = [&](const CentreRow& row) { return row.shape == shape && row.q == body.q; };
       const auto known = std::find_if(rows.begin(), rows.end(), same);

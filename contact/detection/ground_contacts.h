@@ -54,11 +54,13 @@ public:
   void find(Range components, const ContactQuery& query, KeptList<Constraint>& out) const;
   /// False if surely find() finds none.
   [[nodiscard]] bool any_near(Range components, const ContactQuery& query) const;
-  /// All rows of centres: together they have all bodies that touch. Made at each call.
-  [[nodiscard]] std::vector<CentreRow> centre_rows() const;
+  /// All rows of centres: together they have all bodies that touch. Made at each call. \param margin largest
+  /// gap of what touches [m]
+  [[nodiscard]] std::vector<CentreRow> centre_rows(double margin) const;
   /// True if these tell what may touch: all shapes that are touched off the centres are flat.
   [[nodiscard]] bool centres_tell() const;
-  /// False if surely no contact of a row, whose shape is at rest, has a gap <= 0. \param q all coordinates
+  /// False if surely no contact of a row, whose shape is at rest, has a gap up to the margin. \param q all
+  /// coordinates
   [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const {
     return shapes_.any_within(row.shape, nullptr, {q + row.q, row.stride, row.count}, row.reach);
   }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace carom {
@@ -187,11 +188,52 @@ int GroundPieces::find(Index piece, const ConvexOutline& a, double margin,
   }
   const int count = find_face_gaps(a, face_of(of.at), margin, out);
   const Index n = outlines_[of.outline].vertices.size();
+  int kept = 0;
   for (int i = 0; i < count; ++i) {
-    Index& feature = out[static_cast<std::size_t>(i)].feature_b;  // tail, head, face
+    GapPoint& found = out[static_cast<std::size_t>(kept)] = out[static_cast<std::size_t>(i)];
+    Index& feature = found.feature_b;  // tail, head, face
     feature = feature == 2 ? n + of.edge : feature == 0 ? of.edge : (of.edge + 1) % n;
+    if (!is_through(of, a, found)) ++kept;
   }
-  return count;
+  return kept;
+}
+
+/// True of a contact of a vertex so far behind a face that it is out of the ground again: a side at the end
+/// of a line reaches far under it, and what stands on the line is behind the side, too.
+bool GroundPieces::is_through(const Piece& piece, const ConvexOutline& a, const GapPoint& at) const {
+  constexpr double thick =
+      0.5;  // of its neighbours: behind a face no others are nearer, but in slender peaks
+  const double height = at.gap + a.radius;
+  if (at.kind != GapKind::edge_of_b || height >= 0.0) return false;
+  const std::vector<Vec<2>>& points = piece.at.points;
+  double least = std::numeric_limits<double>::infinity();
+  if (!piece.at.tail_is_free) least = (points[1] - points[0]).squaredNorm();
+  if (!piece.at.head_is_free) least = std::min(least, (points[3] - points[2]).squaredNorm());
+  if (height * height <= thick * thick * least) return false;
+  return is_free(outlines_[piece.outline].shape, a.vertices[at.feature_a]);
+}
+
+bool GroundPieces::is_out_behind(Index outline, double height, const Vec<2>& point) const {
+  constexpr double sunk = 1e-6;  // what touches is hardly deeper, and need not be looked at further [m]
+  const GroundOutline& of = outlines_[outline];
+  return height < -sunk && (height < -of.depth || is_free(of.shape, point));
+}
+
+/// True if a point is in front of what is nearest to it of the faces of a shape.
+bool GroundPieces::is_free(Index shape, const Vec<2>& point) const {
+  double least = std::numeric_limits<double>::infinity();
+  bool free = false;
+  for (Index i = 0; i < outlines_.size(); ++i) {
+    if (outlines_[i].shape != shape || !outlines_[i].is_chain()) continue;
+    const FaceChain faces = chain(i);
+    const FaceChain::Nearest nearest = faces.nearest(point);
+    if (!(std::abs(nearest.distance) < least)) continue;
+    least = std::abs(nearest.distance);
+    const Index n = faces.outline.size();
+    free = nearest.feature >= n ? OutlineEdge(faces.outline, nearest.feature - n).height(point) > 0.0
+                                : faces.corners[nearest.feature] == ChainCorner::convex;
+  }
+  return free;
 }
 
 Index GroundPieces::outline_of(const FeatureKey& feature) const {

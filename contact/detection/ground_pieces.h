@@ -83,6 +83,9 @@ public:
   /// The gap of given features, as tracked_gap() (gap_convex.h).
   [[nodiscard]] GapPoint tracked(Index outline, const ConvexOutline& a, Index feature_a,
                                  Index feature_b) const;
+  /// True of a point at a height over a chain which is behind it and does not touch it: deeper than its
+  /// depth, or out of the ground again, in front of another face of the shape.
+  [[nodiscard]] bool is_out_behind(Index outline, double height, const Vec<2>& point) const;
   /// Writes the rows of a contact with an outline, as fill_pair_rows(), the velocity of a conveyor's surface
   /// with them. \param at where the shape is now \param motion of its shape, null at rest \param after
   /// likewise at the end of the step; null where no time passes
@@ -100,6 +103,8 @@ private:
   void add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count, Index shape,
                  double surface_speed);
   void finish(GroundOutline outline);
+  [[nodiscard]] bool is_through(const Piece& piece, const ConvexOutline& a, const GapPoint& at) const;
+  [[nodiscard]] bool is_free(Index shape, const Vec<2>& point) const;
 
   std::vector<Piece> pieces_;
   std::vector<GroundOutline> outlines_;

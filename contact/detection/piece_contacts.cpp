@@ -240,9 +240,10 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
       const bool any = feature == none;
       if (any) feature = FeatureRegions(at).nearest();
       gap = pieces_.tracked(on_ground, point, 0, feature);
-      // Below the depth of a chain nothing touches.
-      if (any && at.chain && gap.gap < -at.chain->depth) {
-        gap.gap = at.chain->nearest(vertex).distance - at.around.radius;
+      const double height = gap.gap + at.around.radius;
+      if (any && at.chain && pieces_.is_out_behind(on_ground, height, vertex)) {
+        gap.gap = -height - at.around.radius;  // it is on the other side
+        gap.normal = -gap.normal;
       }
     }
     gap.feature_a = pair.feature - outlines_.list()[outlines_.outline_of(pair.feature)].vertices.begin;

@@ -22,6 +22,14 @@ double next_discontinuity(const std::vector<Discontinuity>& all, double time) {
   return next == all.end() ? never : next->time;
 }
 
+/// Steps end this far in front of a discontinuity, in rounding of times: laws of time, and what these round,
+/// are in all of the step what they are before it [s].
+double distance_in_front(double discontinuity, double time) {
+  constexpr double roundings = 4.0;
+  return roundings * std::numeric_limits<double>::epsilon() *
+         std::max(std::abs(discontinuity), std::abs(time));
+}
+
 /// True of a false alarm from which nothing is gained by going on anew.
 bool makes_no_progress(const SearchedStep& step, const Event& event) {
   constexpr double no_progress = 0.01;  // of the step
@@ -82,7 +90,10 @@ Event EventDetector::step(Flow& flow, double time, std::span<const double> y, do
 
 Event EventDetector::search(Flow& flow, double time, std::span<const double> y, double longest) {
   const double discontinuity = next_discontinuity(motion_->model().discontinuities, time);
-  const double until = discontinuity < never ? discontinuity - time : never;
+  const bool is_ahead = discontinuity < never;
+  const double in_front = is_ahead ? distance_in_front(discontinuity, time) : 0.0;
+  const double until = is_ahead ? discontinuity - time - in_front : never;
+  if (until <= in_front) return discontinuity_at(discontinuity, y);
   SearchedStep step{*motion_, flow, memory_->ends, scales_, guards_, memory_->is_active, *memory_};
   for (;;) {
     try {
@@ -106,11 +117,8 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
       return unbounded_at(time, y, "steps have no length any more");
     }
     if (repeat_shorter(step, event, time, y)) continue;
-    const bool at_discontinuity =
-        until < never &&
-        flow.end() >= discontinuity - 2.0 * std::numeric_limits<double>::epsilon() * std::abs(discontinuity);
-    if (event.guard == Guard::nothing && at_discontinuity) return {discontinuity, Guard::discontinuity, 0};
-    return event;
+    if (event.guard != Guard::nothing || flow.end() < discontinuity - 2.0 * in_front) return event;
+    return discontinuity_at(discontinuity, flow.state());
   }
 }
 
@@ -132,6 +140,13 @@ bool EventDetector::repeat_shorter(SearchedStep& step, const Event& event, doubl
   if (event.guard != Guard::missed_loads && !lands_off_path(step, event, landing_)) return false;
   step.flow.start(time, y, shorter * (event.time - time));
   return true;
+}
+
+/// The event of a discontinuity, behind the end of a step, or behind another one, by the rounding of times.
+Event EventDetector::discontinuity_at(double time, std::span<const double> y) {
+  landing_.time = time;
+  landing_.y.assign(y.begin(), y.end());
+  return {time, Guard::discontinuity, 0};
 }
 
 /// The event of a flow that cannot go on before forces without bound: where it stands.
@@ -234,7 +249,7 @@ void EventDetector::land(Flow& flow, const Event& event, std::span<double> y) co
   if (landing_.time == event.time) {
     std::copy(landing_.y.begin(), landing_.y.end(), y.begin());
   } else {
-    flow.land(std::min(event.time, flow.end()), y);
+    flow.land(event.time, y);
   }
 }
 

@@ -58,6 +58,7 @@ private:
   [[nodiscard]] bool finds_unbounded_force(double time, const double* y,
                                            double growth = UnboundedForces::growth);
   [[nodiscard]] bool comes_to_pole(double time, std::span<const double> y);
+  [[nodiscard]] Event discontinuity_at(double time, std::span<const double> y);
   [[nodiscard]] Event unbounded_at(double time, std::span<const double> y, std::string reason);
   [[nodiscard]] bool repeat_shorter(SearchedStep& step, const Event& event, double time,
                                     std::span<const double> y);

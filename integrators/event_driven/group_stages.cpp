@@ -165,7 +165,8 @@ void write_output(double target, GroupParts& group, EventBalance& balance) {
   if (group.clock.now == target) {
     std::copy(group.y.begin(), group.y.end(), group.output.y().begin());
   } else {
-    group.flow.borrow().land(target, group.output.y());
+    Flow& flow = group.flow.borrow();
+    flow.land(std::min(target, flow.end()), group.output.y());  // a discontinuity is behind the end
     if (!group.motion.joints().rows().empty()) {
       MotionSample& then = group.memory->instant.now;
       group.motion.sample(target, group.output.y().data(), Forces::all, then);

@@ -76,7 +76,7 @@ void JoinableGroup::book_end(EventBalance& balance) {
 void JoinableGroup::end(double time, State& state, EventBalance& balance) {
   if (group_->phase.kind == Phase::ahead) {
     Flow& flow = group_->flow.borrow();
-    flow.land(time, group_->y);
+    flow.land(std::min(time, flow.end()), group_->y);  // a discontinuity is behind the end
     group_->flow.keep_step(flow.next_step());
   }
   group_->clock.now = time;
@@ -157,6 +157,7 @@ void JoinableGroup::sample(double time, bool landed, MotionSample& out) try {
   y.assign(group_->y.begin(), group_->y.end());
   if (group_->phase.kind == Phase::ahead && time > group_->clock.now) {
     Flow& flow = group_->flow.borrow();
+    time = std::min(time, flow.end());  // a discontinuity is behind the end
     if (landed) {
       flow.land(time, y);
     } else {

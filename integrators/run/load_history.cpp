@@ -35,6 +35,12 @@ void LoadHistory::record_change(Range v, const double* then, const double* now) 
   }
 }
 
+void LoadHistory::settle(const std::vector<double>& now) {
+  if (pending && known > 0) record_change({0, static_cast<Index>(now.size())}, before.data(), now.data());
+  pending = false;
+  before.clear();
+}
+
 void LoadHistory::guess(Range v, double next_step, const double* now, double* guess) const {
   // Extrapolating far from two near values would magnify their rounding.
   constexpr double farthest = 10.0;

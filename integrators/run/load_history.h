@@ -30,6 +30,8 @@ struct CAROM_API LoadHistory {
   void go_on(double next_step, std::size_t size);
   /// Takes the change from `then` to `now` down as the last one, over the velocities `v`.
   void record_change(Range v, const double* then, const double* now);
+  /// Takes a pending change down, from `before` to the loads `now`: where an impact is about to change these.
+  void settle(const std::vector<double>& now);
   /// Guesses loads over the velocities `v` after `next_step` [s] by the polynomial through those of the last
   /// steps; none of them may be pending there.
   void guess(Range v, double next_step, const double* now, double* guess) const;

@@ -38,6 +38,11 @@ bool is_plain(const Detector& detector) {
   return centres_tell(detector) && !detector.has_static_friction() && !resists_rolling(detector);
 }
 
+/// True if what sticks in contact has a friction of its own.
+bool sticks(const Detector& detector) {
+  return detector.ground().has_static_friction() || detector.bodies().has_static_friction();
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
@@ -46,10 +51,11 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              ends_at_rounding(options) ? rounding : 0.0,
              options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
-             ends_at_rounding(options) || turning_opens(detector_),
+             ends_at_rounding(options) || turning_opens(detector_) || sticks(detector_),
              is_plain(detector_)},
       islands_(assembly) {
-  if (options.project_gaps) rules_.margin = rounding;
+  // What is at rest has its static friction: without the contact that rounding opens it would slide away.
+  if (options.project_gaps || sticks(detector_)) rules_.margin = rounding;
 }
 
 void StepConstraints::allow_rounding(double step) {
@@ -78,7 +84,10 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
     const double step = std::max(in.step, last_step);
-    detector_.remember(in.companion.modes, step, rules_.slack_of(step), lasting_);
+    OpeningSlack slack = rules_.slack_of(step);
+    // Ground that is accelerated opens contacts by an error of the step, and what sticks is to stay.
+    if (sticks(detector_)) slack.of_pressed = std::max(slack.of_pressed, step * rules_.capture_speed);
+    detector_.remember(in.companion.modes, step, slack, lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();

@@ -46,6 +46,9 @@ public:
   /// open them in [s]
   void allow_rounding(double step);
 
+  /// Gaps that count as closed [m].
+  [[nodiscard]] double margin() const { return rules_.margin; }
+
   /// Finds all constraints of a step, and its islands: every component belongs to one. Rotations at the start
   /// (StepTrial::at_start) must be up to date where asked for. \param batches as StepIslands::find()
   void find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,

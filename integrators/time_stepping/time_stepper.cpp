@@ -67,6 +67,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     throw with_file(with_place(error, in), parts_.options);
   }
   if (!struck_) return step_from(in, state, companion, report);
+  companion.history.settle(companion.loads.total);  // the jump of the loads is none of the last step
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
   try {

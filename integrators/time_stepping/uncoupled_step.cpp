@@ -68,7 +68,7 @@ bool UncoupledStep::fits(const StepParts& parts) {
 }
 
 UncoupledStep::UncoupledStep(StepParts& parts)
-    : parts_(&parts), rows_(parts.constraints.detector().ground().centre_rows()) {
+    : parts_(&parts), rows_(parts.constraints.detector().ground().centre_rows(parts.constraints.margin())) {
   for (const Range batch : parts.schedule.batches()) {
     // As in every step: components that are taken in one loop are swept.
     const bool alone = batch.size() == 1 && parts.options.iteration != Iteration::automatic;

@@ -192,6 +192,19 @@ TEST(LawJump, FalseRatesAreTold) {
   EXPECT_NEAR(find_false_rate(told, told(0.0), told(0.1))->off, 1.0, 1e-9);
 }
 
+// Near its zero a law has the rounding of what it is computed from.
+TEST(LawJump, RoundingOfLawsThatComeToZeroIsNone) {
+  // Down to zero at 1.2 s and up again, in steps one of which is as short as times can be.
+  const double turn = 6 * 0.2;
+  Law law;
+  law.place = [=](double t) { return t < turn ? 0.2 - (t - 1.0) : t - turn; };
+  law.rate = [=](double t) { return t < turn ? -1.0 : 1.0; };
+  const double before = 1.2;
+  ASSERT_LT(before, turn);
+  ASSERT_NE(law.place(before), law.place(turn));
+  EXPECT_FALSE(find_jump(law, law(before), law(turn)));
+}
+
 TEST(LawJump, BeforeTheStartAndBeyondTheEnd) {
   // Differences feel a jump that lies a little outside of a step.
   for (const double at : {-1e-4, 0.0, 0.1 + 1e-4, 0.1 + 6e-4}) {

@@ -217,6 +217,46 @@ TEST(ContactReport, RecorderWritesARowForEveryContact) {
   EXPECT_THROWS(FileError, ContactRecorder(simulation, folder / "none/contacts.csv"), "contacts.csv");
 }
 
+/// Cells of one column of a file without quoted commas.
+std::vector<std::string> column_of(const std::string& path, const std::string& name) {
+  std::ifstream file(path);
+  std::vector<std::string> cells;
+  std::size_t place = 0, at = 0;
+  for (std::string line, cell; std::getline(file, line); at = 0) {
+    const bool is_header = cells.empty();
+    for (std::stringstream in(line); std::getline(in, cell, ','); ++at) {
+      if (is_header && cell == name) place = at;
+      if (!is_header && at == place) cells.push_back(cell);
+    }
+    if (is_header) cells.emplace_back(name);
+  }
+  cells.erase(cells.begin());
+  return cells;
+}
+
+// A step of step control has two records of a contact that lasts, each with the impulse of half of the step.
+TEST(ContactReport, RecorderWritesTheMeanForceOfStepsInParts) {
+  const carom_test::TemporaryFolder folder;
+  const std::string path = folder / "contacts.csv";
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.5, .normal_restitution = 0.0});
+  for (const double x : {0.0, 1.0}) {
+    const BodyId body = system.add(RigidBody{.mass = disc(2.0, 0.1), .position = {x, 0.1}});
+    system.add(Disc{.body = body, .radius = 0.1});
+  }
+  Simulation simulation(system, TimeStepping{.step = 1e-3, .control = StepControl{}});
+  ContactRecorder recorder(simulation, path);
+  for (int i = 0; i < 3; ++i) simulation.step();
+  recorder.detach(simulation);
+  const std::vector<std::string> forces = column_of(path, "normal mean force [N]");
+  EXPECT_EQ(forces.size(), 3U * 2U * 2U);
+  for (const std::string& force : forces) EXPECT_NEAR(std::stod(force), 2.0 * g, 1e-9);
+  for (const LastingContact& contact : simulation.contact_forces()) {
+    EXPECT_NEAR(contact.force[0], 2.0 * g, 1e-9);
+  }
+}
+
 // Where impacts are located a step may have several parts, with a record of each contact in each of them.
 TEST(ContactReport, ContactsThatLastHaveOneForceEach) {
   System system;

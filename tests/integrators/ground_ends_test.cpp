@@ -2,6 +2,7 @@
 // they lie on alone, in both modes, however far the solid reaches behind the next face.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/integrators/throws.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
@@ -85,6 +86,61 @@ TEST(GroundEnds, WhatLiesFlatBesideThemIsHeldByItsFaceAlone) {
     }
   }
   EXPECT_GT(scenes, 500);
+}
+
+/// Places of a disc after a time, in each mode.
+std::vector<Vec<2>> places_after(const System& system, BodyId body, double time) {
+  std::vector<Vec<2>> places;
+  for (const Mode& mode : std::vector<Mode>{
+           TimeStepping{.step = 1e-3}, TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located},
+           TimeStepping{.step = 1e-3, .project_gaps = true}, EventDriven{}}) {
+    Simulation run(system, mode);
+    run.run_until(time);
+    places.push_back(run.state().position(body));
+  }
+  return places;
+}
+
+// The side at the end of a line stands at a right angle to the last face. Below a cliff it reaches far under
+// the line, and what is above the line is behind it.
+TEST(GroundEnds, WhatIsAboveALineIsFreeOfTheSideAtItsEnd) {
+  for (const double mirror : {1.0, -1.0}) {
+    std::vector<Vec<2>> line{{-3.0 * mirror, 0.0}, {-0.2 * mirror, 0.0}, {0.0, 0.3}, {0.05 * mirror, -1.0}};
+    if (mirror < 0.0) std::reverse(line.begin(), line.end());
+    System system;
+    system.add(Gravity{{0.0, -g}});
+    system.set_default_law({.friction = 0.5, .normal_restitution = 0.0});
+    system.add(Terrain{.vertices = line, .depth = 2.0});
+    const BodyId ball = add_disc(system, 1.0, 0.1, {-1.7 * mirror, 0.35}, {0.0, 1.0});
+    constexpr double time = 0.2;
+    for (const Vec<2>& place : places_after(system, ball, time)) {
+      EXPECT_NEAR(place[0], -1.7 * mirror, 1e-12);
+      EXPECT_NEAR(place[1], 0.35 + time - 0.5 * g * time * time, 1e-12);
+    }
+  }
+}
+
+// Below its depth the ground touches nothing. What comes up from there is in it at once.
+TEST(GroundEnds, WhatComesFromBelowEndsWithAnErrorThatNamesTheGround) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = 0.0, .normal_restitution = 0.5});
+  system.add(Terrain{.vertices = {{-1.0, 0.0}, {0.0, 0.0}, {1.0, 0.0}}, .depth = 0.3}, "ground");
+  add_disc(system, 1.0, 0.1, {0.0, -0.6}, {0.0, 6.0});
+  Simulation run(system, EventDriven{.evaluation_limit = 50000});
+  EXPECT_THROWS(SolverError, run.run_until(0.3), "on terrain 'ground' is -0.", "allowed: not below");
+}
+
+// A wall thinner than the depth of its line is hit on the side that a body comes to, and not from within.
+TEST(GroundEnds, WallsThatAreThinnerThanTheDepthKeepTheirSides) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = 0.0, .normal_restitution = 0.5});
+  system.add(Terrain{.vertices = {{-1.0, 0.0}, {0.0, 0.0}, {0.0, 1.0}, {0.1, 1.0}, {0.1, 0.0}, {1.0, 0.0}},
+                     .depth = 0.5});
+  const BodyId ball = add_disc(system, 1.0, 0.1, {0.3, 0.1}, {-1.0, 0.0});
+  // It comes to the wall after 0.1 s, and goes back half as fast; steps hit up to one step late.
+  for (const Vec<2>& place : places_after(system, ball, 0.3)) EXPECT_NEAR(place[0], 0.3, 2e-3);
 }
 
 }  // namespace

@@ -109,4 +109,73 @@ TEST(GroundJumps, PistonThatStopsThrowsTheBall) {
   EXPECT_NEAR(simulation.state().position(ball)[1], 0.1 + height, 1e-9);
 }
 
+/// The motion along a direction with a velocity that turns round every `jump`, from +1 m/s on.
+PrescribedMotion to_and_fro(const Vec<2>& along) {
+  const auto half_period = [](double t) {
+    double k = std::floor(t / jump);
+    if (jump * (k + 1.0) <= t) k += 1.0;
+    return jump * k <= t ? k : k - 1.0;
+  };
+  const auto sign = [=](double t) { return std::fmod(half_period(t), 2.0) == 0.0 ? 1.0 : -1.0; };
+  PrescribedMotion motion;
+  motion.displacement = [=](double t) -> Vec<2> {
+    const double since = t - jump * half_period(t);
+    return (sign(t) > 0.0 ? since : jump - since) * along;
+  };
+  motion.velocity = [=](double t) -> Vec<2> { return sign(t) * along; };
+  motion.acceleration = [](double) { return Vec<2>(0.0, 0.0); };
+  for (int k = 0; k < 10; ++k) motion.breaks.push_back(jump * k);
+  return motion;
+}
+
+// What slides when the ground turns round slides the other way at once: the end of a step at the jump belongs
+// to the motion before it.
+TEST(GroundJumps, TableThatTurnsRoundTurnsTheFrictionRound) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = to_and_fro({1.0, 0.0})},
+             Surface{.friction = friction, .normal_restitution = 0.0});
+  const BodyId ball = system.add(Particle{.mass = 1.0});
+  const BodyId box = add_box(system, 1.0, 0.4, 0.2, {2.0, 0.1});
+  Simulation simulation(system, EventDriven{});
+  // It is accelerated and slowed down in turns, and is never as fast as the table.
+  const double fastest = friction * g * jump, way = fastest * jump;
+  for (int k = 1; k <= 7; ++k) {
+    simulation.run_until(jump * k);
+    EXPECT_NEAR(simulation.state().velocity(ball)[0], k % 2 == 1 ? fastest : 0.0, 1e-10) << k;
+    EXPECT_NEAR(simulation.state().position(ball)[0], 0.5 * k * way, 1e-10) << k;
+    EXPECT_NEAR(simulation.state().position(box)[0], 2.0 + 0.5 * k * way, 1e-10) << k;
+  }
+  EXPECT_EQ(count(simulation, EventKind::discontinuity), 2 * 7);
+}
+
+// 3 * 0.2 is no double: the end of the step before it is another one.
+TEST(GroundJumps, TimesOfJumpsMayBeRounded) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  constexpr double speed = 0.1;
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = to_and_fro({0.0, speed})},
+             Surface{.friction = friction, .normal_restitution = 0.0});
+  const BodyId ball = add_disc(system, 1.0, 0.1, {0.0, 0.1});
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(5.5 * jump);
+  EXPECT_NEAR(simulation.state().position(ball)[1], 0.1 + 0.5 * jump * speed, 1e-10);
+  EXPECT_NEAR(simulation.state().velocity(ball)[1], -speed, 1e-10);
+}
+
+// Two parts jump at times that differ by their rounding only.
+TEST(GroundJumps, JumpsMayFollowEachOtherByTheRoundingOfTime) {
+  const BoxOnTable scene({1.0, 0.0}, 0.0);
+  System system = scene.system;
+  constexpr double push = 2.0;
+  for (const double later : {std::nextafter(jump, 1.0), jump * (1.0 + 1e-15), jump * (1.0 + 4e-15)}) {
+    const auto force = [=](double t) { return Vec<2>(t < later ? 0.0 : push, 0.0); };
+    system.add(AppliedForce{.on = scene.box, .force = force, .breaks = {later}});
+  }
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(end);
+  EXPECT_NEAR(simulation.state().velocity(scene.box)[0], (friction * g + 3.0 * push) * after, 1e-11);
+  EXPECT_EQ(count(simulation, EventKind::discontinuity), 4);
+}
+
 }  // namespace

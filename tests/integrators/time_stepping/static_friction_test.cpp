@@ -195,4 +195,72 @@ TEST(StaticFriction, IsInTheFingerprint) {
   EXPECT_NE(print(0.4, 0.0), print(0.4, 0.1));
 }
 
+/// What stands on an incline along which it is held by static friction alone.
+System at_rest_on_incline(double angle, double along, bool is_box) {
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  const Vec<2> up = incline(angle), down_line(up[1], -up[0]);
+  system.add(HalfPlane{.normal = up},
+             Surface{.friction = 0.2, .normal_restitution = 0.0, .static_friction = 0.35});
+  if (!is_box) {
+    system.add(Particle{.mass = 1.0, .position = along * down_line}, "body");
+    return system;
+  }
+  const BodyId body = system.add(
+      RigidBody{.mass = box(1.0, 0.2, 0.1), .position = along * down_line + 0.05 * up, .angle = angle},
+      "body");
+  system.add(Polygon{.body = body, .vertices = {{-0.1, -0.05}, {0.1, -0.05}, {0.1, 0.05}, {-0.1, 0.05}}});
+  return system;
+}
+
+// Rounding leaves gaps of either sign, at the start and from step to step: none of them sets a body free.
+TEST(StaticFriction, WhatIsAtRestStaysWhateverRoundingLeavesOfItsGap) {
+  using Rules = ImpactRules;
+  for (const TimeStepping& options :
+       {TimeStepping{.step = 1e-3}, TimeStepping{.step = 1e-4},
+        TimeStepping{.step = 1e-3, .project_gaps = true},
+        TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located},
+        TimeStepping{.step = 1e-3, .impact_rules = Rules{.order = ImpactOrder::sequential}}}) {
+    for (int place = 0; place < 60; ++place) {
+      const double angle = 0.22 + 0.0018 * place, along = std::fmod(0.7316 * place, 4.0) - 2.0;
+      for (const bool is_box : {false, true}) {
+        const System system = at_rest_on_incline(angle, along, is_box);
+        Simulation simulation(system, options);
+        const BodyId body = simulation.system().body("body");
+        const Vec<2> start = simulation.state().position(body);
+        for (int i = 0; i < 50; ++i) simulation.step();
+        // To the rounding of impulses: of the solver's answer, times the time.
+        EXPECT_LT((simulation.state().position(body) - start).norm(), 1e-12) << angle << " " << is_box;
+      }
+    }
+  }
+}
+
+// On a table that shakes up and down too the end of a step opens contacts, by h^2 times the change of its
+// acceleration: what sticks stays with the table, to the second order.
+TEST(StaticFriction, WhatSticksGoesWithATableThatShakesInBothDirections) {
+  constexpr double rate = 30.0, up_rate = 51.0, way = 0.3 * g / (rate * rate), up = 0.1 * g / (rate * rate);
+  PrescribedMotion shakes;
+  shakes.displacement = [=](double t) -> Vec<2> {
+    return {way * std::sin(rate * t), up * std::sin(up_rate * t)};
+  };
+  shakes.velocity = [=](double t) -> Vec<2> {
+    return {way * rate * std::cos(rate * t), up * up_rate * std::cos(up_rate * t)};
+  };
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = shakes},
+             Surface{.friction = 0.2, .normal_restitution = 0.0, .static_friction = 0.55});
+  const BodyId body = system.add(Particle{.mass = 1.0, .velocity = shakes.velocity(0.0)});
+  for (const ImpactTimes impacts : {ImpactTimes::at_step_start, ImpactTimes::located}) {
+    for (const double step : {1e-3, 1e-4}) {
+      Simulation simulation(system, TimeStepping{.step = step, .impacts = impacts});
+      simulation.run_until(1.0);
+      // The trapezoidal rule is off by (h w)^2/12 of the way.
+      const double off = 2.0 * way * (rate * step) * (rate * step) / 12.0;
+      EXPECT_NEAR(simulation.state().position(body)[0], shakes.displacement(1.0)[0], off) << step;
+    }
+  }
+}
+
 }  // namespace
