@@ -43,8 +43,8 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
 
 bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
                       StepEnd& out) {
-  constexpr double soon = 0.1;  // bodies that may meet within this are looked at closely [s]
   const GroupModel& model = motion.model();
+  const double soon = model.options->longest_step;  // bodies that may meet within this are looked at closely
   out.body_gaps.resize(model.bounds.size());
   bool finite = true;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
@@ -74,6 +74,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     if (step.is_active[pair] != 0 || from[pair] >= step.end()) continue;
     ClosingRule rule;
     rule.noise = step.scales.gap_noise;
+    rule.fine = fine_gap(*model.options);
     rule.level = step.ends.gap_level(pair);
     rule.fastest = fastest_in(step, place);
     if (start.gaps[pair].value + end.gaps[pair].value - rule.fastest * length > 2.0 * rule.noise) continue;

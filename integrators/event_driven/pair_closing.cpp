@@ -135,11 +135,10 @@ StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
 
 double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
                      const GapLook& to) {
-  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
   const BodyPairBound& bound = of.bound;
   FallRule rule;
   rule.raise = how.noise - how.level;
-  rule.fine = fine;
+  rule.fine = how.fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
   if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;

@@ -46,6 +46,7 @@ struct GapLook {
 /// How a gap is searched.
 struct ClosingRule {
   double noise = 0.0;         ///< rounding of gaps [m]
+  double fine = 0.0;          ///< a gap this far off a polynomial still counts as found [m]
   double level = 0.0;         ///< a gap closes where it falls below this by the noise, <= 0 [m]
   double fastest = 0.0;       ///< bound of its rate [m/s]
   bool flies_freely = false;  ///< both bodies: nothing but constant fields acts
