@@ -1,5 +1,6 @@
 // Problem: many pairs of bodies, few of which come near each other in a step.
 
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/pair_closing.h>
 
@@ -61,6 +62,19 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
     finite = finite && std::isfinite(out.gaps[pair].value) && std::isfinite(gap.acceleration);
   }
   return finite;
+}
+
+double longest_searched(const SmoothMotion& motion, std::span<const char> is_active, const StepEnd& start) {
+  constexpr double falls = 16.0;  // times in which a body falls by its own size: some 500 looks at most
+  const GroupModel& model = motion.model();
+  double most = 0.0;  // acceleration over size [1/s^2]
+  for (std::size_t place = 0; place < model.bounds.size(); ++place) {
+    const BodyPairBound& bound = model.bounds[place];
+    const double size = bound.lever + bound.radius + bound.reach;
+    if (is_active[bound.pair] != 0 || !has_kinks(bound) || !(size > 0.0)) continue;
+    most = std::max(most, start.body_gaps[place].acceleration / size);
+  }
+  return most > 0.0 ? falls / std::sqrt(most) : never;
 }
 
 Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event before) {

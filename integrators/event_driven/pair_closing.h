@@ -53,6 +53,8 @@ struct ClosingRule {
   double until = 0.0;         ///< later closings are of no interest [s]
 };
 
+/// True of a gap whose rate may have kinks, or that turns: it is searched by looks and a bound of its rate.
+[[nodiscard]] CAROM_API bool has_kinks(const BodyPairBound& bound);
 /// The gap of a pair in a sample, with two derivatives.
 [[nodiscard]] CAROM_API StepPolynomial::End gap_in(const PairGap& of, const MotionSample& at);
 /// (d^2 - rho^2)/(2 rho) by d - rho, with derivatives.

@@ -136,4 +136,22 @@ TEST(EventUnits, APendulumHitsABlock) {
   expect_same(scene, 1e-8);
 }
 
+// Flights of up to 1 s are a thousand of these units: the bound of what a corner may do within one of them
+// said nothing, so that some 10,000 looks were taken at each corner in each step.
+TEST(EventUnits, ShortFlightsAreSearchedWithFewLooks) {
+  for (const Units& units : {Units{1.0, 1.0, 1.0}, Units{1e-6, 1.0, 1e-3}, Units{1.0, 1.0, 1e-6}}) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+    system.add(BoxInside{.lower = {0.0, 0.0}, .upper = {units.length, units.length}});
+    system.add(Peg{.centre = {0.4 * units.length, 0.3 * units.length}, .radius = 0.05 * units.length});
+    add_box(system, units.mass, 0.2 * units.length, 0.1 * units.length,
+            {0.5 * units.length, 0.7 * units.length}, 0.3, {units.speed(), 0.0}, 5.0 / units.time);
+    EventDriven options = units.options();
+    options.evaluation_limit = 10000;  // of one step or event; 40 corners and walls at 200 looks
+    Simulation simulation(system, options);
+    EXPECT_NO_THROW(simulation.run_until(2.0 * units.time)) << units.length << " m, " << units.time << " s";
+  }
+}
+
 }  // namespace
