@@ -48,10 +48,10 @@ ContactSolver* ExactSolvers::solver(SolverId id) {
 }
 
 void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state) {
-  const SolverId first =
-      problem.groups().size() == 1 ? SolverId::single_contact : SolverId::principal_pivoting;
-  const bool done = attempt(problem, first, state) || attempt(problem, SolverId::lemke, state) ||
-                    attempt(problem, SolverId::projection, state);
+  const bool alone = problem.groups().size() == 1;
+  const SolverId first = alone ? SolverId::single_contact : SolverId::principal_pivoting;
+  const bool done = (!alone && leave_open(problem, state)) || attempt(problem, first, state) ||
+                    attempt(problem, SolverId::lemke, state) || attempt(problem, SolverId::projection, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
   }
@@ -115,6 +115,29 @@ bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAtte
   }
   keep(found, id, answer.outcome, degenerate, state);
   return report.residual <= accepted_residual;
+}
+
+// Takes no impulses if these are an answer: of several solutions the one that does nothing. It is told as
+// that of the pivoting, whose scan ends where it begins if nothing approaches.
+bool ExactSolvers::leave_open(const ContactProblem& problem, ExactAttempt& state) {
+  constexpr double no_speed = 1e-14;  // of the largest velocity: rounding
+  const std::span<const double> b = problem.vector();
+  double largest = 0.0;
+  for (const double velocity : b) largest = std::max(largest, std::abs(velocity));
+  for (const RowGroup& group : problem.groups()) {
+    const auto row = static_cast<std::size_t>(group.first);
+    if (problem.sets()[row].kind != SetKind::half_line) return false;
+    if (!(b[row] >= -no_speed * largest)) return false;
+  }
+  trial_.assign(state.impulse.size(), 0.0);
+  trial_xi_.assign(b.begin(), b.end());
+  const Residual found = residual(problem, trial_, trial_xi_);
+  if (!(found.value <= accepted_residual)) return false;
+  ++state.applicable;
+  constexpr SolverId id = SolverId::principal_pivoting;
+  state.report.tried = static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(id));
+  keep(found, id, Outcome::solved, at_mode_boundary(problem, trial_, trial_xi_), state);
+  return true;
 }
 
 bool ExactSolvers::enumerate(const ContactProblem& problem, ExactAttempt& state) {

@@ -32,7 +32,8 @@ struct ExactAttempt {
 };
 
 /// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; up to three
-/// by enumeration of the modes when all else failed. Reuse it: its memory is kept.
+/// by enumeration of the modes when all else failed. Several contacts that all separate get no impulses:
+/// where friction is strong the solvers might find another solution. Reuse it: its memory is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.
@@ -47,6 +48,7 @@ public:
 private:
   [[nodiscard]] ContactSolver* solver(SolverId id);
   bool enumerate(const ContactProblem& problem, ExactAttempt& state);
+  bool leave_open(const ContactProblem& problem, ExactAttempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, ExactAttempt& state);
 
   SingleContactSolver single_;

@@ -34,11 +34,12 @@ struct ContactSolution {
 /// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
 /// by principal pivoting (Johansson 1999), then Lemke, then projection, and up to three by enumeration of
 /// the modes when all else failed. Of several solutions of one contact the one with the smallest normal
-/// impulse; for several contacts it does not look for others (SolutionList does). A problem in factors is
-/// left to sweeps (nonlinear_cg_solver.h): `solved` up to the residual of the budget; where they do not reach
-/// it a small one is left to the exact solvers (large_problem_solver.h), and a large one is accepted_at_cap
-/// or not_solved, with the modes of its answer. Deterministic; keeps nothing between calls but statistics and
-/// memory. Allocates only while problems grow. Not for use by two threads at once.
+/// impulse; of several contacts that without impulses where it is one, else it does not look for others
+/// (SolutionList does). A problem in factors is left to sweeps (nonlinear_cg_solver.h): `solved` up to the
+/// residual of the budget; where they do not reach it a small one is left to the exact solvers
+/// (large_problem_solver.h), and a large one is accepted_at_cap or not_solved, with the modes of its answer.
+/// Deterministic; keeps nothing between calls but statistics and memory. Allocates only while problems grow.
+/// Not for use by two threads at once.
 class CAROM_API SolverChain {
 public:
   SolverChain();

@@ -1,5 +1,6 @@
 // Problem: many pairs of bodies, few of which come near each other in a step.
 
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/pair_closing.h>
 
@@ -43,8 +44,8 @@ double fastest_in(const SearchedStep& step, std::size_t bound) {
 
 bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_active, const MotionSample& at,
                       StepEnd& out) {
-  constexpr double soon = 0.1;  // bodies that may meet within this are looked at closely [s]
   const GroupModel& model = motion.model();
+  const double soon = model.options->longest_step;  // bodies that may meet within this are looked at closely
   out.body_gaps.resize(model.bounds.size());
   bool finite = true;
   for (std::size_t place = 0; place < model.bounds.size(); ++place) {
@@ -63,6 +64,19 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
   return finite;
 }
 
+double longest_searched(const SmoothMotion& motion, std::span<const char> is_active, const StepEnd& start) {
+  constexpr double falls = 16.0;  // times in which a body falls by its own size: some 500 looks at most
+  const GroupModel& model = motion.model();
+  double most = 0.0;  // acceleration over size [1/s^2]
+  for (std::size_t place = 0; place < model.bounds.size(); ++place) {
+    const BodyPairBound& bound = model.bounds[place];
+    const double size = bound.lever + bound.radius + bound.reach;
+    if (is_active[bound.pair] != 0 || !has_kinks(bound) || !(size > 0.0)) continue;
+    most = std::max(most, start.body_gaps[place].acceleration / size);
+  }
+  return most > 0.0 ? falls / std::sqrt(most) : never;
+}
+
 Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event before) {
   const GroupModel& model = step.motion.model();
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
@@ -74,6 +88,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     if (step.is_active[pair] != 0 || from[pair] >= step.end()) continue;
     ClosingRule rule;
     rule.noise = step.scales.gap_noise;
+    rule.fine = fine_gap(*model.options);
     rule.level = step.ends.gap_level(pair);
     rule.fastest = fastest_in(step, place);
     if (start.gaps[pair].value + end.gaps[pair].value - rule.fastest * length > 2.0 * rule.noise) continue;

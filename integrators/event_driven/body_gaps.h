@@ -18,6 +18,12 @@ namespace carom {
 [[nodiscard]] CAROM_API bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_active,
                                               const MotionSample& at, StepEnd& out);
 
+/// Longest step in which gaps of bodies are searched with few looks [s]: the bound of their rates grows with
+/// the step, and the looks that it asks for with its square. Infinity where all gaps are smooth, or nothing
+/// acts. \param is_active by pair \param start of the step
+[[nodiscard]] CAROM_API double longest_searched(const SmoothMotion& motion, std::span<const char> is_active,
+                                                const StepEnd& start);
+
 /// The first closing before an event, else that event. \param from by pair: when its gap is looked at first
 /// [s]
 [[nodiscard]] CAROM_API Event predict_body_gap(SearchedStep& step, std::span<const double> from,

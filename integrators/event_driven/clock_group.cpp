@@ -51,12 +51,12 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
   EventInstant at(group.motion, group.memory->instant, group.clock.now, group.y, balance);
   if (!starts) arrive_at(event, group, at);
   at.update();
+  at.scales = event_scales(group.motion, at.now, at.contacts);
   if (starts) {
     at.take_accelerations_before();
   } else {
     demand_apart(at, group.failure);
   }
-  at.scales = event_scales(group.motion, at.now, at.contacts);
   at.touch_gap = starts ? group.motion.model().options->gap_tolerance : 4.0 * at.scales.gap_noise;
   if (starts && !group.motion.active().list().empty()) group.projection.apply_to_known_contacts(at);
   at.take_contacts_before();

@@ -2,6 +2,7 @@
 
 #include <carom/core/discontinuity.h>
 #include <carom/core/numerics/never.h>
+#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/event_detector.h>
 #include <carom/integrators/event_driven/event_location.h>
 #include <carom/integrators/event_driven/path_check.h>
@@ -82,6 +83,7 @@ Event EventDetector::step(Flow& flow, double time, std::span<const double> y, do
   StepEnds& ends = memory_->ends;
   std::swap(start_, ends.start());
   list_active();
+  longest = std::min(longest, longest_searched(*motion_, memory_->is_active, ends.start()));
   const Event event = search(flow, time, y, longest);
   force_noise_ = event.guard == Guard::force ? ends.force_noise(event.which) : 0.0;
   std::swap(start_, event.guard == Guard::nothing ? ends.end() : ends.start());

@@ -21,6 +21,7 @@ struct Remainder {
 /// The zero, between two times of the step.
 struct Bracket {
   double low, high;
+  double scale;  // of times: what is narrow against it is rounding [s]
   double reach;  // from the last time tried to the next, until times on both sides of the zero were [s]
   double f_low = 0.0, f_high = 0.0;
   bool below = false;  // a value below zero was found
@@ -57,7 +58,8 @@ double closing_level(const SearchedStep& step, std::size_t pair) {
 
 Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
   constexpr double near = 1e-3;  // of the step
-  Bracket bracket{step.begin(), step.end(), near * (step.end() - step.begin())};
+  const double length = step.end() - step.begin();
+  Bracket bracket{step.begin(), step.end(), std::max(std::abs(step.end()), length), near * length};
   const GuardSample &start = step.ends.start().sample, &end = step.ends.end().sample;
   if (predicted.guard == Guard::force) {
     const double level = step.ends.force_level(predicted.which);
@@ -122,8 +124,10 @@ double next_time(Bracket& at, double time, const Remainder& rest, bool halve) {
     if (across > at.low && across < at.high) return across;
   }
   const double low = at.low_weight * at.f_low, high = at.high_weight * at.f_high;
-  const double next =
+  double next =
       rest.has_rate ? time - rest.value / rest.rate : at.low + (at.high - at.low) * low / (low - high);
+  // Nearer than the clock can tell: halfway to the far end the guard may be beyond another zero.
+  if (rest.has_rate && next == time) next = std::nextafter(time, time == at.low ? at.high : at.low);
   if (!(next > at.low && next < at.high) || halve) return 0.5 * (at.low + at.high);
   return next;
 }
@@ -163,8 +167,7 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     } else {
       at.take(time, rest.value, rest.value > 0.0 || opens);
     }
-    if (at.high - at.low <= 2.0 * std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(at.high)))
-      break;
+    if (at.high - at.low <= 2.0 * std::numeric_limits<double>::epsilon() * at.scale) break;
     time = next_time(at, time, rest, opens || at.rises || i % 8 == 7);
   }
   // From large to large of the other sign: no zero of the forces but a pole.

@@ -81,7 +81,7 @@ void predict_slips(SearchedStep& step, GuardSampler& sampler, Event& found) {
 }
 
 void predict_features(SearchedStep& step, GuardSampler& sampler, Event& found) {
-  constexpr double fine = 1e-9;  // [m]
+  const double fine = step.motion.model().options->gap_tolerance;
   const std::vector<ActiveContact>& closed = step.motion.active().list();
   for (std::size_t i = 0; i < closed.size(); ++i) {
     if (closed[i].feature == none) continue;
@@ -137,7 +137,6 @@ Event predict_event(SearchedStep& step, const FalseAlarms& passed_over) {
 
 /// For a body that flies freely the error that turning makes is bounded beforehand.
 Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event before) {
-  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
   constexpr int least_of_moving = 2;
   const StepEnd &start = step.ends.start(), &end = step.ends.end();
   Event found = before;
@@ -148,7 +147,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
     FallRule rule;
     rule.raise = step.scales.gap_noise - step.ends.gap_level(i);
-    rule.fine = fine;
+    rule.fine = fine_gap(*step.motion.model().options);
     rule.clear_falls = false;  // of several gaps the first is wanted
     rule.measured = moving || !step.motion.is_ballistic();
     rule.least_depth = moving ? least_of_moving : 0;

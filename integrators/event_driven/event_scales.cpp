@@ -9,10 +9,15 @@
 
 namespace carom {
 
+double unit_length(const EventDriven& options) {
+  constexpr double gap_tolerances = 1e9;
+  return gap_tolerances * options.gap_tolerance;
+}
+
 // Gaps this small against the coordinates are rounding of sums of a few terms.
-double gap_noise_of(double size) {
+double gap_noise_of(double size, const EventDriven& options) {
   constexpr double gap_rounding = 256.0 * std::numeric_limits<double>::epsilon();
-  return gap_rounding * std::max(1.0, size);
+  return gap_rounding * std::max(unit_length(options), size);
 }
 
 // Velocities this small against those before an impact are zero: answers of contact problems are certified to
@@ -33,31 +38,52 @@ double EventScales::noise_of(const SmoothMotion& motion, const Constraint& conta
   return speed_noise / length;
 }
 
+namespace {
+
+/// Size of the numbers that gaps of the bodies of a component are made of [m].
+double size_of(const Component& component, const SmoothMotion& motion, const State& state) {
+  // Up to one turn an angle counts with an arm of the unit of length, which has margin for most bodies; more
+  // turns count with the radius of gyration.
+  constexpr double turn = 2.0 * std::numbers::pi;
+  const double unit = unit_length(*motion.model().options);
+  double size = 0.0;
+  for (Index body = component.bodies.begin; body < component.bodies.end; ++body) {
+    const BodySlot slot = motion.model().assembly->layout()->bodies()[body];
+    const Index places = slot.rotation == none ? slot.v_size : 2;
+    for (Index k = 0; k < places; ++k) size = std::max(size, std::abs(state.q[slot.q + k]));
+    if (slot.rotation == none) continue;
+    const double angle = std::abs(state.q[slot.q + 2]), length = motion.memory().lengths[slot.v + 2];
+    const double turned =
+        std::min(angle, turn) * std::max(unit, length) + std::max(angle - turn, 0.0) * length;
+    size = std::max({size, turned, size_of_body(length)});
+  }
+  return size;
+}
+
+}  // namespace
+
 EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
   const std::vector<double>& lengths = motion.memory().lengths;
+  const EventDriven& options = *motion.model().options;
   EventScales scales;
-  // Up to one turn an angle counts with an arm of 1 m, which has margin for most bodies; more turns count
-  // with the radius of gyration. Of other coordinates the length is 1.
-  constexpr double turn = 2.0 * std::numbers::pi;
   double size = 0.0, velocity = 0.0;
   for (const auto& part : motion.model().parts()) {
-    const Range q = part.ranges.q, v = part.ranges.v;
+    const Range v = part.ranges.v;
+    size = std::max(size, size_of(part.ranges, motion, at.state));
     for (Index i = v.begin; i < v.end; ++i) {
-      // In the plane, and of particles, coordinates have the order of velocities.
-      const double q_i = std::abs(at.state.q[q.begin + i - v.begin]);
-      size = std::max(size, std::min(q_i, turn) + std::max(q_i - turn, 0.0) * lengths[i]);
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
       scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }
   }
-  scales.gap_noise = gap_noise_of(size);
+  scales.gap_noise = gap_noise_of(size, options);
   for (const Constraint& contact : contacts) {
     if (contact.type == ConstraintType::rolling) continue;  // a spin, as fast as its contact
     velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));
     velocity = std::max(velocity, std::abs(contact.surface_velocity[1]));
   }
-  const double tolerance = motion.model().options->absolute_tolerance;
+  const double tolerance = options.absolute_tolerance;
+  scales.speed = velocity;
   scales.speed_noise = speed_noise_of(velocity, tolerance);
   // A step may be wrong by the tolerance.
   scales.guard_noise = std::max(scales.gap_noise, tolerance);

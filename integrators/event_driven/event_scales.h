@@ -15,6 +15,7 @@ namespace carom {
 /// Scales of one clock group.
 struct EventScales {
   double force = 0.0;        ///< largest load [N]
+  double speed = 0.0;        ///< largest velocity [m/s]
   double gap_noise = 0.0;    ///< rounding of gaps [m]
   double speed_noise = 0.0;  ///< velocities that count as zero [m/s]
   double guard_noise = 0.0;  ///< guards nearer to zero than this have not passed it
@@ -23,8 +24,15 @@ struct EventScales {
   [[nodiscard]] double noise_of(const SmoothMotion& motion, const Constraint& contact) const;
 };
 
-/// Rounding of gaps between places. \param size of their coordinates [m]
-[[nodiscard]] CAROM_API double gap_noise_of(double size);
+/// Length to which rounding is counted where all coordinates are smaller [m]: of what moves by this much
+/// `gap_tolerance` is a billionth. 1 m by default.
+[[nodiscard]] CAROM_API double unit_length(const EventDriven& options);
+/// Size of the numbers that gaps of a body are made of, for its radius of gyration [m].
+[[nodiscard]] inline double size_of_body(double length) { return 2.0 * length; }
+/// A gap this far off the polynomial still counts as found [m].
+[[nodiscard]] inline double fine_gap(const EventDriven& options) { return 0.1 * options.gap_tolerance; }
+/// Rounding of gaps between places [m]. \param size of their coordinates and of bodies [m]
+[[nodiscard]] CAROM_API double gap_noise_of(double size, const EventDriven& options);
 /// Velocities that count as zero [m/s]. \param velocity of the motion [m/s] \param absolute_tolerance of the
 /// mode
 [[nodiscard]] CAROM_API double speed_noise_of(double velocity, double absolute_tolerance);

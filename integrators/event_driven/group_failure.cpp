@@ -91,7 +91,8 @@ void GroupFailure::fail_flow(const SolverError& error, SmoothMotion& motion, con
   // step that was tried, or behind it, up to some thousand roundings of time.
   demand_finite_loads(memory);
   const double end = error.failure().time + error.failure().step;
-  const double rounding = std::numeric_limits<double>::epsilon() * std::max(1.0, std::abs(end));
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * std::max(error.failure().step, std::abs(end));
   constexpr double farthest = 4096.0;
   for (double ahead = 0.0; ahead <= farthest; ahead = std::max(1.0, 2.0 * ahead)) {
     motion.sample(end + ahead * rounding, y, Forces::without_contact, memory);

@@ -60,6 +60,30 @@ private:
   MotionSample* out_;
 };
 
+/// Where a gap closes, between a time at which it is open and falls and a later one: at that it is closed, or
+/// open and rises, so that the closing may lie before it, or it is the end of the span.
+struct ClosingBracket {
+  double low, high;
+  double scale;  // of times: what is narrow against it is rounding [s]
+  bool rises = false;
+
+  void take(double time, double rest, double rate) {
+    rises = rest > 0.0 && rate >= 0.0;
+    (rest > 0.0 && !rises ? low : high) = time;
+  }
+  [[nodiscard]] bool is_narrow() const {
+    return high - low <= 2.0 * std::numeric_limits<double>::epsilon() * scale;
+  }
+  /// The next time to try. What is open by less than the clock can tell closes at the next time that it can:
+  /// halfway to the far end the gap may be open again. \param ahead how far the time is ahead of the closing
+  [[nodiscard]] double next(double time, double ahead, bool halve) const {
+    const double beside = std::nextafter(time, ahead > 0.0 ? low : high);
+    double next = time - ahead;
+    if (next == time) next = beside;
+    return next > low && next < high && !halve && !rises ? next : 0.5 * (low + high);
+  }
+};
+
 }  // namespace
 
 void GroupSamples::take(double time, ClockGroup& group) {
@@ -119,19 +143,24 @@ void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
 }
 
 /// Rounding of gaps, not above that of the group of both.
-double MeetingSearch::noise(const Bodies& bodies) const {
+double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) const {
+  const std::vector<double>& lengths = bodies.of_a.motion().memory().lengths;
   double size = 0.0;
   for (const BodyFlight* flight : {&bodies.a, &bodies.b}) {
     size = std::max(size, flight->place.cwiseAbs().maxCoeff());
   }
-  return gap_noise_of(size);
+  for (const BodySlot& slot : {bound.a, bound.b}) {
+    if (slot.rotation != none) size = std::max(size, size_of_body(lengths[slot.v + 2]));
+  }
+  return gap_noise_of(size, *options_);
 }
 
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
   const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
   const PairGap gap{*assembly_, *detector_, pair, bound};
   ClosingRule rule;
-  rule.noise = noise(bodies);
+  rule.noise = noise(bodies, bound);
+  rule.fine = fine_gap(*options_);
   rule.flies_freely = bodies.a.is_free && bodies.b.is_free;
   rule.until = never;
   if (rule.flies_freely && bound.central && bound.rounding > 0.0) {
@@ -173,38 +202,40 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
                               const GapLook& from, const GapLook& to, const Depth& at_depth) {
   constexpr int most_landings = 60, deepest = 20;
   constexpr double growth = 4.0;  // of what the level is lowered by
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
-  constexpr double interpolated = 1e-8;  // errors of looks up to this are those of tolerances [m]
+  const double interpolated = 10.0 * options_->gap_tolerance;  // errors up to this are those of tolerances
   if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
   GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, at_),
       landings(bodies.of_a, bodies.of_b, true, at_);
   double time = first_closing(looks, gap, rule, from, to);
   if (!(time < never)) return never;
-  double low = from.time, high = to.time;
-  time = std::clamp(time, low, high);
+  ClosingBracket at{from.time, to.time, std::max(std::abs(to.time), to.time - from.time)};
+  time = std::clamp(time, at.low, at.high);
   for (int i = 0; i < most_landings; ++i) {
-    const StepPolynomial::End at = gap_in(gap, landings.sample(time));
+    const StepPolynomial::End landed = gap_in(gap, landings.sample(time));
     if (i == 0 && !at_depth.landed &&
-        std::abs(gap_in(gap, looks.sample(time)).value - at.value) > interpolated) {
+        std::abs(gap_in(gap, looks.sample(time)).value - landed.value) > interpolated) {
       const GapLook begin{from.time, true, gap_in(gap, landings.sample(from.time))},
           end{to.time, true, gap_in(gap, landings.sample(to.time))};
       rule.level = std::min(0.0, begin.gap.value);
       return located(bodies, gap, rule, begin, end, {at_depth.halvings, true});
     }
-    const double rest = at.value - rule.level;
-    if (std::min(at.first, from.gap.first) >= -slow && std::abs(rest) <= 0.25 * rule.noise &&
+    const double rest = landed.value - rule.level;
+    if (std::min(landed.first, from.gap.first) >= -slow && std::abs(rest) <= 0.25 * rule.noise &&
         at_depth.drift < options_->gap_tolerance) {
       const double drift = std::min(growth * std::max(at_depth.drift, rule.noise), options_->gap_tolerance);
       rule.level -= drift - at_depth.drift;
       return located(bodies, gap, rule, from, to, {at_depth.halvings, at_depth.landed, drift});
     }
-    if (std::abs(rest) <= 0.25 * rule.noise && !(at.first >= 0.0 && time == from.time)) return time;
-    if (rest > 0.0 && at.first >= 0.0) break;
-    (rest > 0.0 ? low : high) = time;
-    if (high - low <= 2.0 * epsilon * std::max(1.0, std::abs(high))) return high;
-    const double next = time - rest / at.first;
-    time = next > low && next < high && i % 8 != 7 ? next : 0.5 * (low + high);
+    if (std::abs(rest) <= 0.25 * rule.noise && !(landed.first >= 0.0 && time == from.time)) return time;
+    if (rest > 0.0 && landed.first >= 0.0 && i == 0) break;
+    at.take(time, rest, landed.first);
+    if (at.is_narrow()) {
+      if (!at.rises) return at.high;
+      time = at.high;
+      break;
+    }
+    time = at.next(time, rest / landed.first, i % 8 == 7);
   }
   if (at_depth.halvings == deepest) return never;
   // It opens there: halves are searched each by itself.

@@ -76,7 +76,7 @@ private:
   [[nodiscard]] double located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
                                const GapLook& from, const GapLook& to, const Depth& at_depth);
   [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
-  [[nodiscard]] double noise(const Bodies& bodies) const;
+  [[nodiscard]] double noise(const Bodies& bodies, const BodyPairBound& bound) const;
 
   const Assembly* assembly_;
   const Detector* detector_;

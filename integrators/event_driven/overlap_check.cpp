@@ -6,23 +6,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 
 namespace carom {
 
 OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options)
-    : assembly_(&assembly), detector_(&detector), options_(&options) {
+    : assembly_(&assembly), detector_(&detector), options_(&options), lengths_(assembly.length_scales()) {
   constexpr std::size_t few = 8;
   found_.reserve(few);
 }
 
-double allowed_overlap(const EventDriven& options, std::span<const double> places) {
+double allowed_overlap(const EventDriven& options, std::span<const double> places, double speed,
+                       double time) {
   constexpr double tolerances = 10.0;  // output within a step is less exact than its end
+  // Both bodies of a contact move, and times of events are found to a few roundings.
+  constexpr double resolution = 16.0 * std::numeric_limits<double>::epsilon();
   double size = 0.0;
   for (const double place : places) size = std::max(size, std::abs(place));
   const double of_integrator = options.relative_tolerance * size + options.absolute_tolerance;
-  return tolerances * (options.gap_tolerance + of_integrator);
+  return tolerances * (options.gap_tolerance + of_integrator) + resolution * std::abs(time) * speed;
 }
 
 namespace {
@@ -49,7 +54,8 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
     deepest = &contact;
   }
   if (deepest == nullptr || deepest->gap >= -model.options->gap_tolerance) return;
-  const double allowed = -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()));
+  const double allowed =
+      -allowed_overlap(*model.options, at.y.first(model.unknowns.q_size()), at.scales.speed, at.time);
   if (deepest->gap >= allowed) return;
   const std::string name = failure.name(*deepest);
   failure.fail(tell_overlap(name, deepest->gap, allowed), {name});
@@ -57,7 +63,10 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
 void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
-  const double allowed_gap = -allowed_overlap(*options_, state.q);
+  double speed = 0.0;
+  for (std::size_t i = 0; i < state.v.size(); ++i)
+    speed = std::max(speed, std::abs(state.v[i]) * lengths_[i]);
+  const double allowed_gap = -allowed_overlap(*options_, state.q, speed, state.time);
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();

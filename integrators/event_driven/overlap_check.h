@@ -22,10 +22,12 @@
 namespace carom {
 
 /// How deep shapes may be in each other [m]: ten times the tolerance of gaps, and what the tolerances of the
-/// integrator leave of a place. \param places coordinates of bodies
-[[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places);
+/// integrator leave of a place; and the way that bodies go between two times that the clock can tell apart.
+/// \param places coordinates of bodies \param speed of the fastest [m/s] \param time [s]
+[[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places,
+                                               double speed, double time);
 /// Throws SolverError naming the deepest contact of a clock group at an event where one is deeper. \param at
-/// brought to the state
+/// brought to the state, with its scales
 CAROM_API void demand_apart(const EventInstant& at, const GroupFailure& failure);
 
 /// The check of the states of one model. Keeps memory only.
@@ -45,6 +47,7 @@ private:
   GroundPlaces places_;
   BodyContactSearch search_;
   std::vector<Constraint> found_;
+  std::vector<double> lengths_;  // Assembly::length_scales()
 };
 
 }  // namespace carom

@@ -32,9 +32,6 @@ struct FeatureLook {
   double turn = 0.0;    // how fast the two sides turn [rad/s]
 };
 
-/// True if a side of a pair may turn about a point that is not its middle: the gap feels it.
-bool feels_turns(const BodyPairBound& bound) { return bound.on_ground ? bound.lever > 0.0 : !bound.central; }
-
 /// How fast both sides of a pair turn, together [rad/s].
 double turn_of(const PairGap& of, const MotionSample& at) {
   const auto spin_of = [&](const BodySlot& body) {
@@ -119,6 +116,12 @@ private:
 
 }  // namespace
 
+bool has_kinks(const BodyPairBound& bound) {
+  // A side may turn about a point that is not its middle: the gap feels it.
+  const bool feels_turns = bound.on_ground ? bound.lever > 0.0 : !bound.central;
+  return !bound.round || feels_turns;
+}
+
 StepPolynomial::End gap_in(const PairGap& of, const MotionSample& at) {
   if (of.bound.central) return gap_of_discs(of.bound, at);
   Constraint contact;
@@ -135,15 +138,14 @@ StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
 
 double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
                      const GapLook& to) {
-  constexpr double fine = 1e-10;  // a gap this far off the polynomial still counts as found [m]
   const BodyPairBound& bound = of.bound;
   FallRule rule;
   rule.raise = how.noise - how.level;
-  rule.fine = fine;
+  rule.fine = how.fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
   if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;
-  if (!bound.round || feels_turns(bound)) {
+  if (has_kinks(bound)) {
     rule.fastest = how.fastest;
     return KinkedSearch(path, of, rule, how.until).first(from.time, to.time);
   }

@@ -46,12 +46,15 @@ struct GapLook {
 /// How a gap is searched.
 struct ClosingRule {
   double noise = 0.0;         ///< rounding of gaps [m]
+  double fine = 0.0;          ///< a gap this far off a polynomial still counts as found [m]
   double level = 0.0;         ///< a gap closes where it falls below this by the noise, <= 0 [m]
   double fastest = 0.0;       ///< bound of its rate [m/s]
   bool flies_freely = false;  ///< both bodies: nothing but constant fields acts
   double until = 0.0;         ///< later closings are of no interest [s]
 };
 
+/// True of a gap whose rate may have kinks, or that turns: it is searched by looks and a bound of its rate.
+[[nodiscard]] CAROM_API bool has_kinks(const BodyPairBound& bound);
 /// The gap of a pair in a sample, with two derivatives.
 [[nodiscard]] CAROM_API StepPolynomial::End gap_in(const PairGap& of, const MotionSample& at);
 /// (d^2 - rho^2)/(2 rho) by d - rho, with derivatives.

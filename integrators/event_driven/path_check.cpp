@@ -10,7 +10,7 @@ namespace carom {
 namespace {
 
 constexpr double noticeable = 100.0;  // tolerances: the path is less exact than steps are
-constexpr double shortest = 1e-9;     // steps against the scale of time: what is left is rounding
+constexpr double shortest = 1e-9;     // steps against the time: what is left is its rounding
 
 /// How far off the path a coordinate may be.
 double allowed_off_path(const SmoothMotion& motion, std::size_t i, double coordinate) {
@@ -33,7 +33,7 @@ std::size_t follow(SearchedStep& step, double time) {
 
 bool misses_loads(SearchedStep& step, double until) {
   const double begin = step.begin(), length = until - begin;
-  if (!step.motion.has_jacobian() || length <= shortest * std::max(1.0, std::abs(until))) return false;
+  if (!step.motion.has_jacobian() || length <= shortest * std::abs(until)) return false;
   const std::size_t count = follow(step, begin + 0.5 * length);
   DetectionMemory& memory = step.memory;
   step.motion.sample(begin + 0.5 * length, memory.y.data(), Forces::all, memory.within);
@@ -50,7 +50,7 @@ bool misses_loads(SearchedStep& step, double until) {
 bool lands_off_path(SearchedStep& step, const Event& event, Landing& landing) {
   const double length = event.time - step.begin();
   if (event.guard == Guard::nothing || event.guard == Guard::painleve || !step.has_guards()) return false;
-  if (!step.motion.has_jacobian() || length <= shortest * std::max(1.0, std::abs(event.time))) return false;
+  if (!step.motion.has_jacobian() || length <= shortest * std::abs(event.time)) return false;
   if (landing.time != event.time) {
     landing.y.resize(step.motion.size());
     step.flow.land(event.time, landing.y);

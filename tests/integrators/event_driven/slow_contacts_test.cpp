@@ -115,7 +115,7 @@ TEST(SlowContacts, AreSlowUpToTheOption) {
   Instant instant(system);
   const std::vector<Index> pairs = instant.pairs();
   // A fall through four times the rounding of a gap: 2e-6 m/s within a metre of the origin.
-  const double fall = std::sqrt(2.0 * 4.0 * gap_noise_of(1.0) * g);
+  const double fall = std::sqrt(2.0 * 4.0 * gap_noise_of(1.0, EventDriven{}) * g);
   EXPECT_NEAR(speed_of_rounding(pairs, instant.at()), fall, 1e-3 * fall + 1e-6);
   EXPECT_EQ(capture_speed(pairs, instant.at()), EventDriven{}.capture_speed);
 }
@@ -126,7 +126,7 @@ TEST(SlowContacts, AreFasterWhereGapsAreRoundedMore) {
   add_disc(system, mass, radius, {0.0, far + radius});
   add_disc(system, mass, radius, {1.0, far + radius});
   Instant instant(system);
-  const double fall = std::sqrt(2.0 * 4.0 * gap_noise_of(far) * g);
+  const double fall = std::sqrt(2.0 * 4.0 * gap_noise_of(far, EventDriven{}) * g);
   EXPECT_GT(fall, EventDriven{}.capture_speed);
   EXPECT_NEAR(capture_speed(instant.pairs(), instant.at()), fall, 1e-3 * fall);
 }

@@ -1,0 +1,157 @@
+// The same scene in other units: bodies of a micrometre or of ten kilometres, and a second of a microsecond.
+// Nothing in the event-driven mode is a number of metres or seconds but its options, so that the numbers are
+// the same ones scaled.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+
+#include <carom/carom.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace {
+
+using namespace body_scenes;
+
+/// Units, in m, kg and s.
+struct Units {
+  double length, mass, time;
+
+  [[nodiscard]] double speed() const { return length / time; }
+  [[nodiscard]] double acceleration() const { return speed() / time; }
+  [[nodiscard]] Gravity gravity() const { return Gravity{{0.0, -g * acceleration()}}; }
+  [[nodiscard]] EventDriven options() const {
+    EventDriven options;
+    options.absolute_tolerance *= length;
+    options.gap_tolerance *= length;
+    options.capture_speed *= speed();
+    options.interval *= time;
+    options.longest_step *= time;
+    options.event_limit /= time;
+    options.step_limit /= time;
+    return options;
+  }
+  BodyId add_disc(System& system, double m, double radius, const Vec<2>& place, const Vec<2>& velocity,
+                  double spin) const {
+    return body_scenes::add_disc(system, m * mass, radius * length, place * length, velocity * speed(),
+                                 spin / time);
+  }
+};
+
+using Scene = std::function<System(const Units&)>;
+
+/// Places, angles, velocities and spins after 1.5 units of time, in the units.
+std::vector<double> end_of(const Scene& scene, const Units& units) {
+  const System system = scene(units);
+  Simulation simulation(system, units.options());
+  simulation.run_until(1.5 * units.time);
+  std::vector<double> end;
+  for (const BodyId body : system.bodies()) {
+    const Vec<2> x = simulation.state().position(body) / units.length;
+    const Vec<2> v = simulation.state().velocity(body) / units.speed();
+    const double spin = simulation.state().spin(body) * units.time;
+    end.insert(end.end(), {x[0], x[1], simulation.state().angle(body), v[0], v[1], spin});
+  }
+  return end;
+}
+
+void expect_same(const Scene& scene, double tolerance) {
+  const std::vector<double> usual = end_of(scene, {1.0, 1.0, 1.0});
+  constexpr Units others[] = {{0x1p-20, 1.0, 1.0}, {1e-6, 1e-12, 1.0}, {1e-6, 1e-12, 1e-3},
+                              {1e-6, 1e-12, 1e-6}, {1e4, 1e9, 1e2},    {1.0, 1.0, 1e-6}};
+  for (const Units& units : others) {
+    const std::vector<double> end = end_of(scene, units);
+    ASSERT_EQ(end.size(), usual.size());
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      EXPECT_NEAR(end[i], usual[i], tolerance)
+          << i << ", in " << units.length << " m, " << units.mass << " kg, " << units.time << " s";
+    }
+  }
+}
+
+TEST(EventUnits, ABouncingDisc) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.7, .tangential_restitution = 0.2});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
+    units.add_disc(system, 1.2, 0.1, {0.0, 1.0}, {1.0, 0.0}, -4.0);
+    return system;
+  };
+  expect_same(scene, 1e-12);  // rounding of four bounces
+}
+
+TEST(EventUnits, ATumblingBox) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.4, .normal_restitution = 0.3});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
+    const double width = 0.4 * units.length, height = 0.3 * units.length;
+    add_box(system, 1.2 * units.mass, width, height, {0.0, units.length}, 0.3, {units.speed(), 0.0},
+            -4.0 / units.time);
+    return system;
+  };
+  expect_same(scene, 1e-10);  // rounding of impacts and the tolerance of the sliding between them
+}
+
+// Where a sign of a small gap decides which of two contacts an impact has, rounding may change the motion:
+// the numbers below are those of tolerances, times what impacts make of them.
+TEST(EventUnits, DiscsOnASpringBetweenPlanes) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.4, .normal_restitution = 0.5});
+    system.add(HalfPlane{.normal = {0.1, 1.0}});
+    system.add(HalfPlane{.point = {units.length, 0.0}, .normal = {-1.0, 0.2}});
+    const BodyId lower = units.add_disc(system, 1.2, 0.1, {0.0, 0.5}, {1.0, 0.0}, -4.0);
+    const BodyId upper = units.add_disc(system, 0.7, 0.15, {0.05, 1.0}, {1.0, 0.0}, 3.0);
+    system.add(SpringDamper{.from = lower,
+                            .to = upper,
+                            .stiffness = 300.0 * units.mass / (units.time * units.time),
+                            .damping = 0.5 * units.mass / units.time,
+                            .free_length = 0.4 * units.length});
+    return system;
+  };
+  expect_same(scene, 1e-7);
+}
+
+TEST(EventUnits, APendulumHitsABlock) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
+    system.add(HalfPlane{.point = {0.0, -1.2 * units.length}, .normal = {0.0, 1.0}});
+    const BodyId bob = units.add_disc(system, 1.2, 0.1, {-1.0, 0.0}, {0.0, 0.0}, 0.0);
+    add_box(system, units.mass, 0.2 * units.length, 0.4 * units.length, {0.25 * units.length, -units.length});
+    const JointId pivot = system.add(Revolute{.from = ground, .to = {bob, {units.length, 0.0}}});
+    system.add(JointFriction{.joint = pivot, .bound = 0.1 * units.mass * units.speed() * units.speed()});
+    return system;
+  };
+  expect_same(scene, 1e-8);
+}
+
+// Flights of up to 1 s are a thousand of these units: the bound of what a corner may do within one of them
+// said nothing, so that some 10,000 looks were taken at each corner in each step.
+TEST(EventUnits, ShortFlightsAreSearchedWithFewLooks) {
+  for (const Units& units : {Units{1.0, 1.0, 1.0}, Units{1e-6, 1.0, 1e-3}, Units{1.0, 1.0, 1e-6}}) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+    system.add(BoxInside{.lower = {0.0, 0.0}, .upper = {units.length, units.length}});
+    system.add(Peg{.centre = {0.4 * units.length, 0.3 * units.length}, .radius = 0.05 * units.length});
+    add_box(system, units.mass, 0.2 * units.length, 0.1 * units.length,
+            {0.5 * units.length, 0.7 * units.length}, 0.3, {units.speed(), 0.0}, 5.0 / units.time);
+    EventDriven options = units.options();
+    options.evaluation_limit = 10000;  // of one step or event; 40 corners and walls at 200 looks
+    Simulation simulation(system, options);
+    EXPECT_NO_THROW(simulation.run_until(2.0 * units.time)) << units.length << " m, " << units.time << " s";
+  }
+}
+
+}  // namespace
