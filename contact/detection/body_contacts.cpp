@@ -2,6 +2,7 @@
 
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/feature_margin.h>
+#include <carom/contact/detection/touching_kinds.h>
 #include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
@@ -43,8 +44,6 @@ bool has_law_between_bodies(const System& system) {
   }
   return false;
 }
-
-bool is_point(const BodyOutline& outline) { return outline.vertices.size() == 1 && outline.radius == 0.0; }
 
 Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
   Box<2> box{vertices[0], vertices[0]};
@@ -99,16 +98,14 @@ void name_contact(const ConstraintKey& key, const Surface& law, Constraint& out)
   out.friction = law.friction;
 }
 
-/// Whether outlines of two bodies may touch whichever they are. \param laws of all pairs of materials
-bool all_may_touch(const std::vector<BodyOutline>& list, const std::vector<std::optional<Surface>>& laws,
-                   const PairFilter& filter) {
-  if (list.empty() || filter.excludes_any()) return false;
-  const ContactFilter& first = list.front().filter;
-  const auto touches = [&](const BodyOutline& outline) {
-    return !is_point(outline) && outline.filter == first;
-  };
-  return may_touch(first, first) && std::all_of(list.begin(), list.end(), touches) &&
-         std::all_of(laws.begin(), laws.end(), [](const auto& law) { return law.has_value(); });
+/// Laws of all pairs of materials, row-major.
+std::vector<std::optional<Surface>> laws_between(const std::vector<MaterialId>& materials,
+                                                 const System& system) {
+  std::vector<std::optional<Surface>> laws;
+  for (const MaterialId a : materials) {
+    for (const MaterialId b : materials) laws.push_back(system.law(a, b));
+  }
+  return laws;
 }
 
 }  // namespace
@@ -116,23 +113,23 @@ bool all_may_touch(const std::vector<BodyOutline>& list, const std::vector<std::
 BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
   if (assembly.layout()->dimension() != 2 || !has_law_between_bodies(assembly.system())) return;
   outlines_ = BodyOutlines(assembly);
-  find_laws(assembly.system());
+  laws_ = laws_between(outlines_.materials(), assembly.system());
   filter_ = PairFilter(assembly);
   const std::vector<BodyOutline>& list = outlines_.list();
+  const auto by_kind = [this](const BodyOutline& a, const BodyOutline& b) { return kinds_may_touch(a, b); };
+  const TouchingKinds kinds = touching_kinds(list, filter_, by_kind);
+  if (!kinds.any) {
+    outlines_ = BodyOutlines();
+    return;
+  }
+  all_may_touch_ = kinds.all;
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });
-  all_may_touch_ = all_may_touch(list, laws_, filter_);
-}
-
-void BodyContacts::find_laws(const System& system) {
-  const std::vector<MaterialId>& materials = outlines_.materials();
-  for (const MaterialId a : materials) {
-    for (const MaterialId b : materials) {
-      laws_.push_back(system.law(a, b));
-      has_static_friction_ = has_static_friction_ || (laws_.back() && laws_.back()->has_static_friction());
-      resists_rolling_ = resists_rolling_ || (laws_.back() && laws_.back()->resists_rolling());
-      has_other_impact_law_ = has_other_impact_law_ || (laws_.back() && laws_.back()->has_other_impact_law());
-    }
+  for (const std::optional<Surface>& law : laws_) {
+    if (!law) continue;
+    has_static_friction_ = has_static_friction_ || law->has_static_friction();
+    resists_rolling_ = resists_rolling_ || law->resists_rolling();
+    has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();
   }
 }
 
@@ -141,9 +138,13 @@ const Surface* BodyContacts::law(const BodyOutline& a, const BodyOutline& b) con
   return found ? &*found : nullptr;
 }
 
+/// Whether outlines like these may touch, whose ever they are.
+bool BodyContacts::kinds_may_touch(const BodyOutline& a, const BodyOutline& b) const {
+  return law(a, b) != nullptr && !(a.is_point() && b.is_point()) && carom::may_touch(a.filter, b.filter);
+}
+
 bool BodyContacts::may_touch(const BodyOutline& a, const BodyOutline& b) const {
-  return law(a, b) != nullptr && !(is_point(a) && is_point(b)) &&
-         filter_.may_touch(a.body, a.filter, b.body, b.filter);
+  return kinds_may_touch(a, b) && a.body != b.body && !filter_.is_excluded(a.body, b.body);
 }
 
 /// Pairs of outlines, that of the lesser key first: those whose boxes overlap, and those that touched in the

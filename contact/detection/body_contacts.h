@@ -98,9 +98,9 @@ public:
 
 private:
   [[nodiscard]] const Surface* law(const BodyOutline& a, const BodyOutline& b) const;
+  [[nodiscard]] bool kinds_may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
-  void find_laws(const System& system);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;

@@ -27,6 +27,9 @@ struct BodyOutline : OutlineFeatures {
   ContactFilter filter;   ///< what it may touch
   double radius = 0.0;    ///< rounding radius [m]
   double reach = 0.0;     ///< radius of a circle around the centre of mass that holds it [m]
+
+  /// True of a point without radius. Two of them do not touch each other.
+  [[nodiscard]] bool is_point() const { return vertices.size() == 1 && radius == 0.0; }
 };
 
 /// All outlines, ordered by body.

@@ -28,11 +28,8 @@ public:
 
 private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const {
-    return has_law_[a.material * materials_ + b.material] != 0 && !(is_point(a) && is_point(b)) &&
+    return has_law_[a.material * materials_ + b.material] != 0 && !(a.is_point() && b.is_point()) &&
            filter_.may_touch(a.body, a.filter, b.body, b.filter);
-  }
-  [[nodiscard]] static bool is_point(const BodyOutline& outline) {
-    return outline.vertices.size() == 1 && outline.radius == 0.0;
   }
   void append(const BodyOutline& a, Index of_b, std::vector<ContactPair>& out) const;
 
