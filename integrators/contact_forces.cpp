@@ -1,7 +1,9 @@
 #include <carom/core/errors.h>
 #include <carom/integrators/contact_forces.h>
+#include <carom/integrators/forces_of_step.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 namespace carom {
@@ -89,23 +91,33 @@ PartForce force_on(std::span<const LastingContact> forces, ObstacleId obstacle) 
   return sum;
 }
 
-std::vector<LastingContact> lasting_forces(const StepReport& report) {
+bool is_parted(const StepReport& report) {
+  return std::any_of(report.contacts.begin(), report.contacts.end(),
+                     [&](const ContactRecord& contact) { return contact.time != report.time; });
+}
+
+std::vector<LastingContact> forces_of_step(const StepReport& report) {
   std::vector<LastingContact> out;
-  // A step in several parts has a record of each; their directions differ by what turns within the step.
-  const bool parted = std::any_of(report.contacts.begin(), report.contacts.end(),
-                                  [&](const ContactRecord& contact) { return contact.time != report.time; });
+  const bool parted = is_parted(report);
+  std::map<ConstraintKey, std::size_t> places;  // in `out`
   for (const ContactRecord& contact : report.contacts) {
-    if (contact.impact || contact.directions < 2 || !(report.step > 0.0)) continue;
-    const auto is_it = [&](const LastingContact& other) { return other.key == contact.key; };
-    auto force = parted ? std::find_if(out.begin(), out.end(), is_it) : out.end();
-    if (force == out.end()) force = out.insert(out.end(), LastingContact{});
-    static_cast<ContactPlace&>(*force) = contact;
-    force->velocity = contact.velocity_after;
-    for (std::size_t row = 0; row < 3; ++row) force->force[row] += contact.impulse[row] / report.step;
-    force->rolling_moment += contact.rolling_moment / report.step;
-    force->mode = contact.mode;
+    if (contact.impact || !(report.step > 0.0)) continue;
+    const std::size_t place = parted ? places.try_emplace(contact.key, out.size()).first->second : out.size();
+    if (place == out.size()) out.emplace_back();
+    LastingContact& force = out[place];
+    static_cast<ContactPlace&>(force) = contact;
+    force.velocity = contact.velocity_after;
+    for (std::size_t row = 0; row < 3; ++row) force.force[row] += contact.impulse[row] / report.step;
+    force.rolling_moment += contact.rolling_moment / report.step;
+    force.mode = contact.mode;
   }
   return out;
+}
+
+std::vector<LastingContact> lasting_forces(const StepReport& report) {
+  std::vector<LastingContact> forces = forces_of_step(report);
+  std::erase_if(forces, [](const LastingContact& force) { return force.directions < 2; });  // limits
+  return forces;
 }
 
 }  // namespace carom

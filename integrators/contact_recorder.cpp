@@ -1,5 +1,6 @@
 #include <carom/core/csv.h>
 #include <carom/integrators/contact_recorder.h>
+#include <carom/integrators/forces_of_step.h>
 #include <carom/integrators/simulation.h>
 
 #include <algorithm>
@@ -27,22 +28,15 @@ struct ContactRecorder::Impl {
 
   void write_header();
   void write_rows(const Simulation& simulation);
-  void sum_impulses(const StepReport& report);
   [[nodiscard]] std::array<double, 3> mean_force(const ContactRecord& contact, double step) const;
   void write_row(const Simulation& simulation, const ContactRecord& contact);
   /// Empty where there is no number.
   void add(double number) { std::isnan(number) ? file.skip() : file.add(number); }
   void add(std::string_view text) { file.add(text); }
 
-  /// Impulse of a lasting contact over a step.
-  struct Sum {
-    ConstraintKey key;
-    std::array<double, 3> impulse{};
-  };
-
   CsvWriter file;
   long rows = 0;
-  std::vector<Sum> sums;  // of a step in several parts, by key
+  std::vector<LastingContact> forces;  // of a step in several parts, by key
 };
 
 void ContactRecorder::Impl::write_header() {
@@ -68,35 +62,22 @@ void ContactRecorder::Impl::write_header() {
 
 void ContactRecorder::Impl::write_rows(const Simulation& simulation) {
   const StepReport& report = simulation.report();
-  const auto is_part = [&](const ContactRecord& contact) { return contact.time != report.time; };
-  sums.clear();
-  if (std::any_of(report.contacts.begin(), report.contacts.end(), is_part)) sum_impulses(report);
+  forces.clear();
+  if (is_parted(report)) {
+    forces = forces_of_step(report);
+    std::sort(forces.begin(), forces.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  }
   for (const ContactRecord& contact : report.contacts) write_row(simulation, contact);
-}
-
-/// A step in several parts (two halves of step control, parts between closings) has a record of each.
-void ContactRecorder::Impl::sum_impulses(const StepReport& report) {
-  for (const ContactRecord& contact : report.contacts) {
-    if (!contact.impact) sums.push_back({contact.key, contact.impulse});
-  }
-  std::stable_sort(sums.begin(), sums.end(), [](const Sum& a, const Sum& b) { return a.key < b.key; });
-  std::size_t last = 0;
-  for (std::size_t i = 1; i < sums.size(); ++i) {
-    if (sums[i].key != sums[last].key) {
-      sums[++last] = sums[i];
-      continue;
-    }
-    for (std::size_t row = 0; row < 3; ++row) sums[last].impulse[row] += sums[i].impulse[row];
-  }
-  if (!sums.empty()) sums.resize(last + 1);
 }
 
 /// That over the whole step, as Simulation::contact_forces() has it. None of an impact.
 std::array<double, 3> ContactRecorder::Impl::mean_force(const ContactRecord& contact, double step) const {
   if (contact.impact || !(step > 0.0)) return {nothing, nothing, nothing};
-  const auto found = std::lower_bound(sums.begin(), sums.end(), contact.key,
-                                      [](const Sum& sum, const ConstraintKey& key) { return sum.key < key; });
-  std::array<double, 3> force = found == sums.end() ? contact.impulse : found->impulse;
+  const auto found =
+      std::lower_bound(forces.begin(), forces.end(), contact.key,
+                       [](const auto& force, const ConstraintKey& key) { return force.key < key; });
+  if (found != forces.end()) return found->force;
+  std::array<double, 3> force = contact.impulse;
   for (double& number : force) number /= step;
   return force;
 }
