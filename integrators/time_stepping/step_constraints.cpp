@@ -38,7 +38,7 @@ bool is_plain(const Detector& detector) {
   return centres_tell(detector) && !detector.has_static_friction() && !resists_rolling(detector);
 }
 
-/// True if what sticks in contact has a friction of its own.
+/// True if some surface takes more to slip than to slide.
 bool sticks(const Detector& detector) {
   return detector.ground().has_static_friction() || detector.bodies().has_static_friction();
 }
@@ -51,11 +51,12 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              ends_at_rounding(options) ? rounding : 0.0,
              options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
+             sticks(detector_),
              ends_at_rounding(options) || turning_opens(detector_) || sticks(detector_),
              is_plain(detector_)},
       islands_(assembly) {
-  // What is at rest has its static friction: without the contact that rounding opens it would slide away.
-  if (options.project_gaps || sticks(detector_)) rules_.margin = rounding;
+  // A body at rest has its static friction: without the contact that rounding opens it would slide away.
+  if (options.project_gaps || rules_.sticks) rules_.margin = rounding;
 }
 
 void StepConstraints::allow_rounding(double step) {
@@ -74,6 +75,8 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 OpeningSlack StepConstraints::Rules::slack_of(double step) const {
   OpeningSlack openings{slack, slack};
   if (parting == Parting::is_free) openings.of_pressed = step * capture_speed;
+  // Ground that is accelerated opens contacts by an error of the step; contacts that stick are to stay.
+  if (sticks) openings.of_pressed = std::max(openings.of_pressed, step * capture_speed);
   if (keeps_pressed) openings.of_pressed = std::numeric_limits<double>::infinity();
   return openings;
 }
@@ -84,10 +87,7 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
   if (in.companion.modes.empty() && lasting_.empty() && sticking_.empty()) return;
   if (rules_.turning) {
     const double step = std::max(in.step, last_step);
-    OpeningSlack slack = rules_.slack_of(step);
-    // Ground that is accelerated opens contacts by an error of the step, and what sticks is to stay.
-    if (sticks(detector_)) slack.of_pressed = std::max(slack.of_pressed, step * rules_.capture_speed);
-    detector_.remember(in.companion.modes, step, slack, lasting_);
+    detector_.remember(in.companion.modes, step, rules_.slack_of(step), lasting_);
   }
   if (!detector_.has_static_friction()) return;
   sticking_.clear();
