@@ -11,7 +11,8 @@ namespace carom {
 
 namespace {
 
-/// What the law and the filter of an outline depend on, but for its body.
+/// Material, groups and touched groups, and whether it is a point: outlines alike in these touch the same
+/// ones.
 using Kind = std::tuple<Index, std::uint32_t, std::uint32_t, bool>;
 using Members = std::vector<Index>;
 

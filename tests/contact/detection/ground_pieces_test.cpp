@@ -3,6 +3,7 @@
 #include <carom/bodies/rigid_body.h>
 #include <carom/contact/detection/ground_parts.h>
 #include <carom/contact/detection/ground_pieces.h>
+#include <carom/contact/detection/half_space.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/core/system.h>
 

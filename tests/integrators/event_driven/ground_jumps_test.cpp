@@ -128,8 +128,8 @@ PrescribedMotion to_and_fro(const Vec<2>& along) {
   return motion;
 }
 
-// What slides when the ground turns round slides the other way at once: the end of a step at the jump belongs
-// to the motion before it.
+// A body that slides when the ground turns round slides the other way at once: the end of a step at the jump
+// belongs to the motion before it.
 TEST(GroundJumps, TableThatTurnsRoundTurnsTheFrictionRound) {
   System system;
   system.add(Gravity{{0.0, -g}});

@@ -195,7 +195,7 @@ TEST(StaticFriction, IsInTheFingerprint) {
   EXPECT_NE(print(0.4, 0.0), print(0.4, 0.1));
 }
 
-/// What stands on an incline along which it is held by static friction alone.
+/// A body that stands on an incline along which it is held by static friction alone.
 System at_rest_on_incline(double angle, double along, bool is_box) {
   System system;
   system.add(Gravity{{0.0, -g}});
