@@ -9,9 +9,10 @@ namespace carom {
 
 namespace {
 
+constexpr double noise = 1e-12;  // of the velocities and their changes that a velocity is the sum of
+
 /// Velocity along the normal at the start of a step; 0 where it is rounding, or none.
 double opening(const Constraint& at, const StepInput& in) {
-  constexpr double noise = 1e-12;  // of the velocities that it is the sum of
   if (at.has_dry_friction()) return 0.0;
   const double* const v = in.start.v.data();
   const double velocity = at.velocity(0, v);
@@ -57,6 +58,8 @@ bool returns(const Constraint& at, const StepInput& in, const StepRule& rule, do
   const double speed = opening(at, in);
   if (!((1.0 - at.law.normal_restitution) * speed > at.allowed_approach)) return false;
   const ChangeByLoads change = change_by_loads(at, in, rule, trial);
+  // A contact that rests opens by the rounding of the change that its impulse took back.
+  if (!(speed > -noise * change.total)) return false;
   if (!(change.total < -(1.0 + at.law.normal_restitution) * speed)) return false;
   return speed > lasting_speed || change.within < -speed;
 }
