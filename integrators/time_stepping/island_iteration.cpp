@@ -15,13 +15,15 @@ IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
 
 LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge) {
   const LoadsKnown known = iterate(island, in, judge);
-  if (parts_->located.on() || !any_returns(in, parts_->contacts.problems(), parts_->rule,
-                                           parts_->options.capture_speed, parts_->trial)) {
-    return known;
-  }
+  if (!contacts_return(in)) return known;
   allow_return(in, island.constraints);
   judge = FixedPointJudge(parts_->options.tolerance, parts_->options.max_sweeps);
   return iterate(island, in, judge);
+}
+
+bool IslandIteration::contacts_return(const StepInput& in) const {
+  return !parts_->located.on() && any_returns(in, parts_->contacts.problems(), parts_->rule,
+                                              parts_->options.capture_speed, parts_->trial);
 }
 
 /// Sweeps until the next would change no more than the tolerance. Returns what is known of the loads then.
@@ -140,13 +142,24 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
 }
 
-/// Sweeps around contacts alone, and again where loads jump there.
+/// Sweeps around contacts alone, and again where loads jump there, or contacts return: the whole of the
+/// component need not be iterated twice for these.
 void IslandIteration::presolve(const StepIsland& island, const StepInput& in) {
   const SweepStages stages = parts_->stages(in, island.components.front());
   const double tolerance = parts_->options.tolerance;
-  int sweeps = parts_->schedule.presolve(stages, method_.current(), tolerance, false);
-  while (sweeps > 0 && loads_jump(island, in, true)) {
-    sweeps += parts_->schedule.presolve(stages, method_.current(), tolerance, true);
+  int sweeps = 0;
+  bool contract = false;
+  const auto sweep = [&](bool again) {
+    const auto local = parts_->schedule.presolve(stages, method_.current(), tolerance, again);
+    sweeps += local.made;
+    contract = local.contract;
+  };
+  sweep(false);
+  while (sweeps > 0 && loads_jump(island, in, true)) sweep(true);
+  if (contract && contacts_return(in)) {
+    allow_return(in, island.constraints);
+    parts_->contacts.state_problems(in, island, false, parts_->trial);
+    sweep(true);
   }
   local_sweeps_ = std::max(local_sweeps_, sweeps);
 }

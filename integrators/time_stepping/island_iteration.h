@@ -47,6 +47,7 @@ private:
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool find_impacts(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool loads_jump(const StepIsland& island, const StepInput& in, bool local);
+  [[nodiscard]] bool contacts_return(const StepInput& in) const;
   void presolve(const StepIsland& island, const StepInput& in);
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,

@@ -198,9 +198,10 @@ void SweepSchedule::fuse(const SweepStages& stages, bool guessing) {
                        workers_);
 }
 
-int SweepSchedule::presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again) {
+SweepSchedule::LocalSweeps SweepSchedule::presolve(const SweepStages& stages, Iteration iteration,
+                                                   double tolerance, bool again) {
   if (!again) std::fill_n(local_.begin(), stages.blocks().size(), std::uint8_t{untouched});
-  return iteration == Iteration::fixed_point ? presolve_around_contacts(stages, tolerance) : 0;
+  return iteration == Iteration::fixed_point ? presolve_around_contacts(stages, tolerance) : LocalSweeps{};
 }
 
 /// Blocks around those that are upset; false if they are too many, or may depend on any block.
@@ -233,13 +234,14 @@ void SweepSchedule::sweep_upset(const SweepStages& stages) {
 /// Contact upsets the loads around it and, within a step, hardly any others. So few bodies would make all of
 /// the component sweep more often. Upset is a block of which another sweep would change more than the
 /// tolerance.
-int SweepSchedule::presolve_around_contacts(const SweepStages& stages, double tolerance) {
+SweepSchedule::LocalSweeps SweepSchedule::presolve_around_contacts(const SweepStages& stages,
+                                                                   double tolerance) {
   constexpr Index least_blocks = 4;
   constexpr int most_sweeps = 8;
   const Range blocks = stages.blocks();
   const bool any =
       !stages.contacts.problems().empty() || (stages.located != nullptr && !stages.located->empty());
-  if (!any || blocks.size() < least_blocks) return 0;
+  if (!any || blocks.size() < least_blocks) return {};
   upset_.inner.clear();
   for (Index part = 0; part < blocks.size(); ++part) {
     if (stages.contact_upsets(assembly_->blocks()[blocks.begin + part], part))
@@ -263,7 +265,7 @@ int SweepSchedule::presolve_around_contacts(const SweepStages& stages, double to
   for (Index part = 0; part < blocks.size(); ++part) {
     local_[part] = contracts && local_[part] == swept ? swept : untouched;
   }
-  return judge.sweeps();
+  return {judge.sweeps(), judge.sweeps() > 0 && contracts};
 }
 
 }  // namespace carom

@@ -86,8 +86,12 @@ public:
   /// loads are not finite is left as the first sweep made it.
   void fuse(const SweepStages& stages, bool guessing);
   /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
-  /// fixed-point iteration. Returns how many sweeps it made. \param again goes on from the last call
-  int presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again);
+  /// fixed-point iteration. \param again goes on from the last call
+  struct LocalSweeps {
+    int made = 0;
+    bool contract = false;  ///< else all blocks are guessed anew
+  };
+  LocalSweeps presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again);
 
   /// Change that another sweep would make, the largest over all blocks;
   [[nodiscard]] SweepChange change(const SweepStages& stages) const { return largest(changes_, stages); }
@@ -107,7 +111,7 @@ private:
   void find_batches();
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes, BlockTask first);
   [[nodiscard]] SweepChange largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const;
-  int presolve_around_contacts(const SweepStages& stages, double tolerance);
+  LocalSweeps presolve_around_contacts(const SweepStages& stages, double tolerance);
   [[nodiscard]] bool surround_upset(Index blocks);
   void sweep_upset(const SweepStages& stages);
 
