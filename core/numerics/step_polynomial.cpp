@@ -17,60 +17,45 @@ constexpr int most_halvings = 30;
 
 using Coefficients = std::array<double, 7>;
 
-/// The value by de Casteljau's scheme. The compiler knows the degree and keeps all numbers in registers.
-template <std::size_t Degree>
-double value_of(const std::array<double, Degree + 1>& b, double tau) {
-  if constexpr (Degree == 0) {
-    return b[0];
+/// A value and its derivative.
+struct ValueAndSlope {
+  double value, slope;
+};
+
+/// By de Casteljau's scheme. The compiler knows the degree and keeps all numbers in registers.
+template <std::size_t Degree, std::size_t Whole = Degree>
+ValueAndSlope value_of(const std::array<double, Degree + 1>& b, double tau) {
+  if constexpr (Degree == 1) {
+    const double change = b[1] - b[0];
+    return {b[0] + tau * change, static_cast<double>(Whole) * change};
   } else {
     std::array<double, Degree> next;
     for (std::size_t i = 0; i < Degree; ++i) next[i] = b[i] + tau * (b[i + 1] - b[i]);
-    return value_of<Degree - 1>(next, tau);
+    return value_of<Degree - 1, Whole>(next, tau);
   }
 }
 
-/// The root of a polynomial that falls through zero once: regula falsi (Illinois) within an interval that
-/// keeps it, until the root no longer moves. Beside a value that is nothing against that at the other end the
-/// secant hardly moves either, however far the root is: so what has come to stand is looked at from behind,
-/// and an interval that hardly shrinks is halved.
+/// The root of a polynomial that falls through zero once: Newton's method within an interval that keeps it,
+/// until the root no longer moves; halving where it rises, and where a step would leave the interval or be no
+/// shorter than half the step before.
 template <std::size_t Degree>
 double lone_root(const Coefficients& coefficients) {
-  constexpr int most_steps = 150, most_slow = 4;
-  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon(), behind = 8.0 * still;
+  constexpr int most_steps = 150;
+  constexpr double still = 0.5 * std::numeric_limits<double>::epsilon();
   std::array<double, Degree + 1> b;
   std::copy_n(coefficients.begin(), Degree + 1, b.begin());
-  double low = 0.0, high = 1.0, f_low = b[0], f_high = b[Degree], root = 2.0;  // so far none
-  int side = 0, slow = 0;
+  double low = 0.0, high = 1.0, step = 1.0;
+  double root = b[0] / (b[0] - b[Degree]);
+  if (!(root >= low && root <= high)) root = 0.5;
   for (int i = 0; i < most_steps; ++i) {
-    const double width = high - low;
-    double next = low + width * f_low / (f_low - f_high);
-    bool halves = slow > most_slow || !(next > low && next < high);
-    if (!halves && side != 0 && std::abs(next - root) <= still && width > behind) {
-      const double other = next + side * behind;
-      if (!(other > low && other < high) || (value_of<Degree>(b, other) >= 0.0) != (side > 0)) return next;
-      halves = true;
-    }
-    if (halves) next = 0.5 * (low + high);
-    const double moved = std::abs(next - root);
+    const auto [value, slope] = value_of<Degree>(b, root);
+    (value >= 0.0 ? low : high) = root;
+    double next = root - value / slope;
+    const bool fits = slope < 0.0 && next >= low && next <= high && 2.0 * std::abs(next - root) <= step;
+    if (!fits) next = 0.5 * (low + high);
+    step = std::abs(next - root);
     root = next;
-    if (moved <= still || width <= still) break;
-    const double f = value_of<Degree>(b, root);
-    if (f >= 0.0) {
-      low = root;
-      f_low = f;
-      if (side == 1) f_high *= 0.5;
-      side = 1;
-    } else {
-      high = root;
-      f_high = f;
-      if (side == -1) f_low *= 0.5;
-      side = -1;
-    }
-    if (halves) {
-      slow = std::min(slow, most_slow);
-    } else {
-      slow = high - low > 0.5 * width ? slow + 1 : 0;
-    }
+    if (step <= still || high - low <= still) break;
   }
   return root;
 }
