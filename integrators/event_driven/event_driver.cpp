@@ -160,7 +160,7 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
 
 void EventDriver::demand_apart(double from) {
   try {
-    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, from);
+    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, from);
   } catch (...) {
     abandon();
     throw;

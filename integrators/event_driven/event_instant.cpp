@@ -19,7 +19,10 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       before(memory.before),
       before_at(memory.before_at),
       islands(memory.islands),
-      balance(books) {}
+      balance(books) {
+  // Who asks has contact pairs.
+  if (!motion.model().pairs.empty()) acceleration_before.resize(now.acceleration.size());
+}
 
 void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
@@ -43,6 +46,7 @@ void EventInstant::update() {
 }
 
 void EventInstant::take_accelerations_before() {
+  if (motion.model().pairs.empty()) return;
   motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
     std::copy(now.acceleration.begin() + v.begin, now.acceleration.begin() + v.end,
               acceleration_before.begin() + v.begin);

@@ -21,11 +21,10 @@ namespace carom {
 
 /// Memory of an instant, shared by clock groups: an instant at a time uses it.
 struct CAROM_API InstantMemory {
-  explicit InstantMemory(const Assembly& assembly)
-      : now(assembly), acceleration_before(now.acceleration.size()) {}
+  explicit InstantMemory(const Assembly& assembly) : now(assembly) {}
 
   MotionSample now;
-  std::vector<double> acceleration_before;
+  std::vector<double> acceleration_before;  ///< empty before a group with contact pairs
   std::vector<Constraint> contacts;
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;

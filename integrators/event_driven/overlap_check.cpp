@@ -14,7 +14,7 @@
 namespace carom {
 
 OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options)
-    : assembly_(&assembly), detector_(&detector), options_(&options), lengths_(assembly.length_scales()) {
+    : assembly_(&assembly), detector_(&detector), options_(&options) {
   constexpr std::size_t few = 8;
   found_.reserve(few);
 }
@@ -62,10 +62,10 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
 }
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
-void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation, double from) {
+void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation,
+                                const std::vector<double>& lengths, double from) {
   double speed = 0.0;
-  for (std::size_t i = 0; i < state.v.size(); ++i)
-    speed = std::max(speed, std::abs(state.v[i]) * lengths_[i]);
+  for (std::size_t i = 0; i < state.v.size(); ++i) speed = std::max(speed, std::abs(state.v[i]) * lengths[i]);
   const double allowed_gap = -allowed_overlap(*options_, state.q, speed, state.time);
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};

@@ -37,8 +37,10 @@ public:
   OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options);
 
   /// Throws SolverError naming the deepest contact where one is deeper.
-  /// \param evaluation position group up to date \param from begin of the step, the last good state [s]
-  void demand_apart(const State& state, const Evaluation& evaluation, double from);
+  /// \param evaluation position group up to date \param lengths Assembly::length_scales() \param from begin
+  /// of the step, the last good state [s]
+  void demand_apart(const State& state, const Evaluation& evaluation, const std::vector<double>& lengths,
+                    double from);
 
 private:
   const Assembly* assembly_;
@@ -47,7 +49,6 @@ private:
   GroundPlaces places_;
   BodyContactSearch search_;
   std::vector<Constraint> found_;
-  std::vector<double> lengths_;  // Assembly::length_scales()
 };
 
 }  // namespace carom

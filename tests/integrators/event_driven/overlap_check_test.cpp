@@ -39,7 +39,7 @@ public:
     Evaluation evaluation = make_evaluation(assembly);
     evaluate_positions(assembly, start.state().view(), evaluation);
     try {
-      check.demand_apart(start.state(), evaluation, -0.25);
+      check.demand_apart(start.state(), evaluation, assembly.length_scales(), -0.25);
     } catch (const SolverError& error) {
       EXPECT_EQ(error.failure().time, -0.25);
       EXPECT_EQ(error.failure().step, 0.25);
