@@ -1,0 +1,90 @@
+// Problem: the first instant within a flight at which a gap closes.
+
+#include <carom/integrators/time_stepping/flight_closings.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+constexpr double together = 1e-8;  // shares of a step that differ by less are one instant
+
+}  // namespace
+
+std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const MotionPhase& flight,
+                                                    std::span<const ConstraintKey> known, FlightLook& look) {
+  known_.assign(known.begin(), known.end());
+  list_.clear();
+  add(at, flight.end, true, look.find(at, flight.end, 0.0, false));
+  if (list_.empty()) return list_;
+  // Those that are found on the way are looked for too.
+  for (std::size_t i = 0; i < list_.size(); ++i) locate(at, flight, i, look);
+  const auto earlier = [](const FlightClosing& a, const FlightClosing& b) {
+    return a.share < b.share || (a.share == b.share && a.key < b.key);
+  };
+  std::sort(list_.begin(), list_.end(), earlier);
+  const double last = list_.front().share + together;
+  std::erase_if(list_, [&](const FlightClosing& closing) { return closing.share > last; });
+  return list_;
+}
+
+/// Adds contacts that are not open any more and were not known. \param touching also those that touch and
+/// approach
+void FlightClosings::add(const LocatedBody& at, double share, bool touching,
+                         const std::vector<Constraint>& found) {
+  const double* const v = at.trial.end.v.data();
+  for (const Constraint& contact : found) {
+    if (std::find(known_.begin(), known_.end(), contact.key) != known_.end()) continue;
+    const double rate = contact.normal_velocity(v);
+    if (!(contact.gap < 0.0 || (touching && rate < 0.0))) continue;
+    const auto is_it = [&](const FlightClosing& closing) { return closing.key == contact.key; };
+    if (std::any_of(list_.begin(), list_.end(), is_it)) continue;
+    list_.push_back({contact.key, contact.gap, rate, contact.speed(0, v), share, false});
+  }
+}
+
+/// When a gap closes that is not open any more at a time of a flight: by Newton's method, kept between a time
+/// at which the gap is open and one at which it is not. A contact is open where it is not found: the body has
+/// not come to its face yet. Another face may be closed there that the body has left by the end.
+void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, std::size_t which,
+                            FlightLook& look) {
+  constexpr int most_tries = 100;
+  constexpr double close = 1e-15;  // of the step
+  constexpr double caution = 4.0;  // velocities change on the way
+  FlightClosing closing = list_[which];
+  const double margin = std::abs(closing.gap) + caution * at.in.step * closing.speed;
+  double open = flight.begin, closed = closing.share, share = closed;
+  double gap = closing.gap, rate = closing.rate;  // of the last look,
+  bool found = true;                              // where it may not be found
+  bool jumps = false;                             // nor where it was open last
+  for (int tries = 0; tries < most_tries && !(found && gap == 0.0); ++tries) {
+    double next = found ? share - gap / (rate * at.in.step) : open;
+    if (!(next > open && next < closed)) next = 0.5 * (open + closed);
+    if (std::abs(next - share) <= close || !(next > open && next < closed)) break;
+    if (jumps && closed - open <= together) break;
+    share = next;
+    FlightLook::go(at, flight, share);
+    const std::vector<Constraint>& near = look.find(at, share, margin, false);
+    add(at, share, false, near);
+    const auto is_it = [&](const Constraint& contact) { return contact.key == closing.key; };
+    const auto contact = std::find_if(near.begin(), near.end(), is_it);
+    found = contact != near.end();
+    if (found) {
+      gap = contact->gap;
+      rate = contact->normal_velocity(at.trial.end.v.data());
+    }
+    if (found && gap < 0.0) {
+      closed = share;
+      closing.rate = rate;
+    } else {
+      open = share;
+      jumps = !found;
+    }
+  }
+  list_[which].share = found ? share : closed;
+  list_[which].fast = (found ? rate : closing.rate) < -at.capture_speed;
+}
+
+}  // namespace carom

@@ -1,0 +1,40 @@
+#pragma once
+
+/// \file
+/// Looks at one body on its way through a step: where it is, and which shapes on ground are near.
+
+#include <carom/contact/detection/ground_shapes.h>
+#include <carom/core/constraint.h>
+#include <carom/core/export.h>
+#include <carom/integrators/time_stepping/motion_phase.h>
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Looks along a flight. Keeps memory.
+class CAROM_API FlightLook {
+public:
+  /// Brings the body of the trial to a share of the step: impulses of the flight's contacts,
+  /// StepTrial::dv_impulses, act evenly.
+  static void go(const LocatedBody& at, const MotionPhase& flight, double share);
+  /// Brings its rotation to its coordinates.
+  static void rotate(const LocatedBody& at);
+
+  /// Contacts of the body where it is whose gap is at most `margin` [m].
+  /// \param to_end time passes up to the end of the step; else none
+  const std::vector<Constraint>& find(const LocatedBody& at, double share, double margin, bool to_end);
+  /// Some of them, however far they are open, and others that are near: `wanted` closed within the step, so
+  /// that the body is hardly farther from them than it moves in one; where it is, all are found.
+  const std::vector<Constraint>& find(const LocatedBody& at, double share,
+                                      std::span<const ConstraintKey> wanted, bool to_end);
+  /// Makes a list of some of those that were found last, in their order.
+  void take(std::span<const ConstraintKey> wanted, std::vector<Constraint>& out) const;
+
+private:
+  GroundPlaces places_, places_at_end_;
+  std::vector<Constraint> found_;
+};
+
+}  // namespace carom
