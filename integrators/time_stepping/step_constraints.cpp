@@ -245,7 +245,15 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     allow_return(in, out);
   }
   islands_.take(constraints_);
+  share_restitution(in);
   return true;
+}
+
+/// Friction in joints takes the restitution of what approaches fastest in its island.
+void StepConstraints::share_restitution(const StepInput& in) {
+  if (!detector_.joints().has_friction()) return;
+  for (const StepIsland& island : islands())
+    share_impact_restitution(island.constraints, in.start.v.data(), rules_.capture_speed);
 }
 
 /// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each
