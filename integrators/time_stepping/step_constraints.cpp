@@ -43,6 +43,12 @@ bool sticks(const Detector& detector) {
   return detector.ground().has_static_friction() || detector.bodies().has_static_friction();
 }
 
+/// Friction in joints takes the restitution of what approaches fastest in its island.
+void share_restitution(std::span<const StepIsland> islands, const StepInput& in, double capture_speed) {
+  for (const StepIsland& island : islands)
+    share_impact_restitution(island.constraints, in.start.v.data(), capture_speed);
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
@@ -245,15 +251,8 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     allow_return(in, out);
   }
   islands_.take(constraints_);
-  share_restitution(in);
+  if (detector_.joints().has_friction()) share_restitution(islands(), in, rules_.capture_speed);
   return true;
-}
-
-/// Friction in joints takes the restitution of what approaches fastest in its island.
-void StepConstraints::share_restitution(const StepInput& in) {
-  if (!detector_.joints().has_friction()) return;
-  for (const StepIsland& island : islands())
-    share_impact_restitution(island.constraints, in.start.v.data(), rules_.capture_speed);
 }
 
 /// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each

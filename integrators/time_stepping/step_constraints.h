@@ -84,7 +84,6 @@ private:
                                   const StepTrial& trial);
   [[nodiscard]] bool is_left_out(const StepInput& in, const Constraint& constraint) const;
   void allow_return(const StepInput& in, Constraint& constraint) const;
-  void share_restitution(const StepInput& in);
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);
   void take_sticking(std::span<Constraint> found) const;
