@@ -138,8 +138,9 @@ void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size
 
 }  // namespace
 
-void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
-                        Companion& companion, StepReport& report, RecordedEvents& events) {
+void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& state, Companion& companion,
+                        StepReport& report, RecordedEvents& events) {
+  const Detector& detector = driver.detector();
   State trial = state;
   Evaluation evaluation = make_evaluation(assembly);
   SolverChain chain;
@@ -185,6 +186,7 @@ void prepare_for_events(const Assembly& assembly, const Detector& detector, Stat
   }
   // Where bodies were moved their joints stand elsewhere.
   shift = std::max(shift, close_joints(assembly, trial).shift);
+  driver.demand_start(trial);  // bodies are not moved out of each other
   book(stored_energies(assembly, trial.view(), evaluation), chain.statistics(), recorded.size(), companion);
   std::erase_if(companion.modes, [&](const auto& entry) {
     return std::find(opened.begin(), opened.end(), entry.first) != opened.end();

@@ -5,9 +5,9 @@
 /// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
 /// 7).
 
-#include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/recorded_events.h>
 #include <carom/integrators/run/step_report.h>
@@ -17,9 +17,10 @@
 namespace carom {
 
 /// Changes the state so that an event-driven run can start from it, books the energy as `mode_switch`, and
-/// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError; nothing has
-/// changed then.
-CAROM_API void prepare_for_events(const Assembly& assembly, const Detector& detector, State& state,
+/// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError, and
+/// ModelError where bodies are too deep in each other for a start; nothing has changed then. \param driver
+/// that is to run
+CAROM_API void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& state,
                                   Companion& companion, StepReport& report, RecordedEvents& events);
 
 }  // namespace carom

@@ -214,8 +214,7 @@ void Simulation::switch_to(Mode mode) {
   const Assembly& assembly = self.model->assembly;
   ModeMachines machines(assembly, mode, self.stop);
   if (machines.driver && self.model->machines.stepper) {
-    prepare_for_events(assembly, machines.driver->detector(), self.state, self.companion, self.report,
-                       self.events);
+    prepare_for_events(assembly, *machines.driver, self.state, self.companion, self.report, self.events);
   }
   if (machines.driver && self.model->machines.driver) machines.driver->demand_start(self.state);
   if (machines.stepper && self.model->machines.driver) {

@@ -30,6 +30,11 @@ public:
   [[nodiscard]] bool has_friction(Index component) const {
     return !of_component_[component].friction.empty();
   }
+  /// True of friction whose bound depends on the force of its joint.
+  [[nodiscard]] bool depends_on_joint_force(const Constraint& friction) const {
+    const Row& row = rows_[friction.source];
+    return row.kind->dry_friction(row.slot).coefficient > 0.0;
+  }
 
   /// Appends the limits of one component that a query asks for.
   void find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;

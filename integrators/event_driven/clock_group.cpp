@@ -84,10 +84,7 @@ void ClockGroup::demand_start(const State& state) {
   for (std::size_t i = 0; i < parts_.motion.model().pairs.size(); ++i) {
     if (parts_.motion.model().pairs[i].rolling) continue;
     parts_.motion.contact(i, now, contact);
-    if (contact.gap >= -tolerance) continue;
-    throw ModelError("event-driven mode: gap of " + parts_.failure.name(contact) + " is " +
-                     to_text(contact.gap) + " m at the start; allowed: not below -gap_tolerance, " +
-                     to_text(-tolerance) + " m");
+    if (contact.gap < -tolerance) refuse_start(parts_.failure.name(contact), contact.gap, tolerance);
   }
 }
 

@@ -78,6 +78,9 @@ void EventDriver::demand_start(const State& state) {
   within_limit(state.time, [&] {
     if (meetings_) meetings_->regroup(state), started_ = false;
     groups_.for_each([&](ClockGroup& group) { group.demand_start(state); });
+    Evaluation& evaluation = memory_.instant.now.evaluation;
+    evaluate_positions(*assembly_, state.view(), evaluation);
+    overlaps_.demand_start(state, evaluation);
   });
 }
 

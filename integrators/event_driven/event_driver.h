@@ -32,8 +32,8 @@ public:
   /// \param stop asked within the work, may be null; must outlive this
   EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop = nullptr);
 
-  /// Throws ModelError naming the contact where a body is too deep in a shape on ground for a start,
-  /// SolverError for more evaluations than the options allow.
+  /// Throws ModelError naming the contact where a body is too deep in another one, or in a shape on ground,
+  /// for a start, SolverError for more evaluations than the options allow.
   void demand_start(const State& state);
   /// Advances to a time, not before the state's. On success state and companion are those then, `report`
   /// tells what happened and `events` got what there was; on an error none of them has changed. Throws

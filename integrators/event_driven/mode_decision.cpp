@@ -196,6 +196,7 @@ void ModeDecision::settle_modes(SmoothMotion& motion, MotionSample& now, std::sp
                                 SlipDirections::no_acceleration * size_};
   const auto take_forces = [&] { take_modes(by_forces_, candidates); };
   open_where_parting(decided, candidates);
+  open_where_carried_off(decided, problem_, candidates);
   follow_contacts(slips_, candidates);
   by_forces_.clear();
   by_forces_.reserve(candidates.size());

@@ -35,6 +35,20 @@ void open_where_parting(const DecidedContacts& decided, std::span<Candidate> can
   }
 }
 
+void open_where_carried_off(const DecidedContacts& decided, const IslandProblem& problem,
+                            std::span<Candidate> candidates) {
+  for (std::size_t c = 0; c < decided.contacts.size(); ++c) {
+    Candidate& candidate = candidates[decided.taking_part[c]];
+    const Constraint& contact = decided.contacts[c];
+    if (candidate.mode != ContactMode::stick || contact.rows < 2 || contact.friction == 0.0) continue;
+    const int normal = problem.first_row(c);
+    const double force = problem.impulses()[static_cast<std::size_t>(normal)];
+    if (force * problem.problem().diagonal(normal) > decided.small) continue;
+    if (std::abs(contact.tangential_acceleration(decided.acceleration)) > decided.small)
+      candidate.mode = ContactMode::open;
+  }
+}
+
 namespace {
 
 /// True of a contact that may have friction of any size and direction: it does not slip and does not start

@@ -45,6 +45,10 @@ struct MotionComparison {
 [[nodiscard]] CAROM_API double size_by_rounding(const IslandProblem& problem);
 /// Opens closed candidates whose contacts part.
 CAROM_API void open_where_parting(const DecidedContacts& decided, std::span<Candidate> candidates);
+/// Opens candidates that stick by a force of rounding while the others carry them off along the contact: a
+/// certificate is satisfied by any mode of such a force, and a flow would hold what the answer moves.
+CAROM_API void open_where_carried_off(const DecidedContacts& decided, const IslandProblem& problem,
+                                      std::span<Candidate> candidates);
 /// Lets closed candidates stick that have no velocity of slip and get none, except where friction is
 /// exhausted.
 CAROM_API void stick_where_still(const DecidedContacts& decided, std::span<Candidate> candidates);

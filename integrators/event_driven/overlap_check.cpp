@@ -46,6 +46,11 @@ std::string tell_overlap(const std::string& contact, double gap, double allowed)
 
 }  // namespace
 
+void refuse_start(const std::string& contact, double gap, double tolerance) {
+  throw ModelError("event-driven mode: gap of " + contact + " is " + to_text(gap) +
+                   " m at the start; allowed: not below -gap_tolerance, " + to_text(-tolerance) + " m");
+}
+
 void demand_apart(const EventInstant& at, const GroupFailure& failure) {
   const GroupModel& model = at.motion.model();
   const Constraint* deepest = nullptr;
@@ -62,21 +67,16 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
 }
 
 /// Component by component: of many contacts that last hardly any are kept at a time.
-void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation,
-                                const std::vector<double>& lengths, double from) {
-  double speed = 0.0;
-  for (std::size_t i = 0; i < state.v.size(); ++i) speed = std::max(speed, std::abs(state.v[i]) * lengths[i]);
-  const double allowed_gap = -allowed_overlap(*options_, state.q, speed, state.time);
+OverlapCheck::Deepest OverlapCheck::find_deepest(const State& state, const Evaluation& evaluation,
+                                                 double limit) {
   detector_->place(state.time, places_);
   const ContactQuery query{state.view(), evaluation, places_};
   found_.clear();
-  double deepest = allowed_gap;
-  ConstraintKey worst;
+  Deepest deepest{.gap = limit};
   const auto judge = [&] {
     for (const Constraint& at : found_) {
-      if (at.type != ConstraintType::contact || at.gap >= deepest) continue;
-      deepest = at.gap;
-      worst = at.key;
+      if (at.type != ConstraintType::contact || at.gap >= deepest.gap) continue;
+      deepest = {.key = at.key, .gap = at.gap, .is_deeper = true};
     }
     found_.clear();
   };
@@ -87,13 +87,27 @@ void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation
   }
   if (detector_->bodies_touch()) detector_->bodies().find(query, search_, found_);
   judge();
-  if (deepest == allowed_gap) return;
+  return deepest;
+}
+
+void OverlapCheck::demand_start(const State& state, const Evaluation& evaluation) {
+  const Deepest deepest = find_deepest(state, evaluation, -options_->gap_tolerance);
+  if (deepest.is_deeper) refuse_start(detector_->name(deepest.key), deepest.gap, options_->gap_tolerance);
+}
+
+void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation,
+                                const std::vector<double>& lengths, double from) {
+  double speed = 0.0;
+  for (std::size_t i = 0; i < state.v.size(); ++i) speed = std::max(speed, std::abs(state.v[i]) * lengths[i]);
+  const double allowed = -allowed_overlap(*options_, state.q, speed, state.time);
+  const Deepest deepest = find_deepest(state, evaluation, allowed);
+  if (!deepest.is_deeper) return;
   SolverFailure failure;
   failure.time = from;
   failure.step = state.time - from;
-  failure.parts.push_back(detector_->name(worst));
+  failure.parts.push_back(detector_->name(deepest.key));
   const std::string what = "event-driven at t = " + to_text(state.time) +
-                           " s: " + tell_overlap(failure.parts.front(), deepest, allowed_gap) +
+                           " s: " + tell_overlap(failure.parts.front(), deepest.gap, allowed) +
                            uneven_masses_of(*assembly_);
   throw SolverError(what, std::move(failure));
 }

@@ -17,6 +17,7 @@
 #include <carom/integrators/run/event_driven.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -26,6 +27,9 @@ namespace carom {
 /// \param places coordinates of bodies \param speed of the fastest [m/s] \param time [s]
 [[nodiscard]] CAROM_API double allowed_overlap(const EventDriven& options, std::span<const double> places,
                                                double speed, double time);
+/// Throws the ModelError of a state that cannot be a start, \param contact its name, \param gap [m]
+/// \param tolerance EventDriven::gap_tolerance [m]
+[[noreturn]] CAROM_API void refuse_start(const std::string& contact, double gap, double tolerance);
 /// Throws SolverError naming the deepest contact of a clock group at an event where one is deeper. \param at
 /// brought to the state, with its scales
 CAROM_API void demand_apart(const EventInstant& at, const GroupFailure& failure);
@@ -36,6 +40,10 @@ public:
   /// All must outlive it.
   OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options);
 
+  /// Throws ModelError naming the deepest contact where one is deeper than the tolerance of gaps. The pairs
+  /// of a group do not show that: of two shapes that cross no corner need be in the other one.
+  /// \param evaluation position group up to date
+  void demand_start(const State& state, const Evaluation& evaluation);
   /// Throws SolverError naming the deepest contact where one is deeper.
   /// \param evaluation position group up to date \param lengths Assembly::length_scales() \param from begin
   /// of the step, the last good state [s]
@@ -43,6 +51,13 @@ public:
                     double from);
 
 private:
+  struct Deepest {
+    ConstraintKey key{};
+    double gap = 0.0;  // [m]
+    bool is_deeper = false;
+  };
+  [[nodiscard]] Deepest find_deepest(const State& state, const Evaluation& evaluation, double limit);
+
   const Assembly* assembly_;
   const Detector* detector_;
   const EventDriven* options_;

@@ -104,8 +104,9 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   JointStage* const joints = joints_of(island);
   const bool joined = parts_->joined.takes(island);
   if (joined &&
-      std::any_of(island.constraints.begin(), island.constraints.end(), [](const Constraint& constraint) {
-        return constraint.has_dry_friction() && constraint.type != ConstraintType::rolling;
+      std::any_of(island.constraints.begin(), island.constraints.end(), [&](const Constraint& constraint) {
+        return constraint.type == ConstraintType::joint_friction &&
+               parts_->constraints.detector().joints().depends_on_joint_force(constraint);
       })) {
     parts_->errors(in, front).fail_joined(island.constraints);
   }

@@ -59,7 +59,6 @@ JointStage::JointStage(const Assembly& assembly, Index component, Index first_ro
 
 void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
                        StepTrial& trial) {
-  for (Constraint& constraint : contacts.constraints) constraint.friction_bound *= in.step;
   trial.expect_impulses();
   joints_.clear(joints_.arrays->dv_contact);
   struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),

@@ -71,8 +71,7 @@ public:
   JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
 
   /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
-  /// the positions that the present velocities lead to. Bounds of friction in joints become those of
-  /// impulses.
+  /// the positions that the present velocities lead to.
   void start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
              StepTrial& trial);
   /// One sweep. False if the contact problem is not solved.

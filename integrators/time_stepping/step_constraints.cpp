@@ -43,6 +43,12 @@ bool sticks(const Detector& detector) {
   return detector.ground().has_static_friction() || detector.bodies().has_static_friction();
 }
 
+/// Friction in joints takes the restitution of what approaches fastest in its island.
+void share_restitution(std::span<const StepIsland> islands, const StepInput& in, double capture_speed) {
+  for (const StepIsland& island : islands)
+    share_impact_restitution(island.constraints, in.start.v.data(), capture_speed);
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
@@ -143,7 +149,10 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   }
   // Components with joints come alone.
   if (detector_.joints().has_friction() && components.size() == 1) {
+    const auto friction = static_cast<std::ptrdiff_t>(out.size());
     detector_.joints().find_friction(components.begin, start, trial.at_start, out);
+    // Impulses over the step, also where it is repeated.
+    std::for_each(out.begin() + friction, out.end(), [&](Constraint& at) { at.friction_bound *= in.step; });
   }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
@@ -242,6 +251,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     allow_return(in, out);
   }
   islands_.take(constraints_);
+  if (detector_.joints().has_friction()) share_restitution(islands(), in, rules_.capture_speed);
   return true;
 }
 

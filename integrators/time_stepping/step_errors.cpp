@@ -252,9 +252,10 @@ void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
   for (const Constraint& constraint : constraints) {
     if (constraint.bodies > 1) failure.parts.push_back(detector_.name(constraint.key));
   }
-  const std::string message = place(in_) + listed(failure.parts) +
-                              " joins a mechanism with friction in its joints to other bodies; allowed: "
-                              "between mechanisms without friction in joints";
+  const std::string message =
+      place(in_) + listed(failure.parts) +
+      " joins a mechanism, with friction in its joints that is bound by their force, to other "
+      "bodies; allowed: friction in joints with a constant bound there";
   throw SolverError(message, std::move(failure));
 }
 

@@ -86,6 +86,27 @@ TEST(JointFriction, AWheelStopsInTime) {
   }
 }
 
+// Steps with lasting contact of bodies that turn are repeated, and with each of them friction lost a factor
+// of the step in mechanisms that touch nothing.
+TEST(JointFriction, ContactElsewhereLeavesItsBound) {
+  Wheel wheel(3.0, {.bound = 0.7});
+  wheel.system.add(Gravity{{0.0, -g}});  // acts at the pin
+  wheel.system.set_default_law({.friction = 0.3, .normal_restitution = 0.5, .tangential_restitution = 0.5});
+  wheel.system.add(HalfPlane{.normal = {0.0, 1.0}});
+  for (const Vec<2>& place : {Vec<2>(3.0, 0.3), Vec<2>(3.01, 0.6)}) {
+    const BodyId ball = wheel.system.add(RigidBody{.mass = disc(1.0, 0.1), .position = place});
+    wheel.system.add(Disc{.body = ball, .radius = 0.1});
+  }
+  for (const ImpactTimes impacts : {ImpactTimes::at_step_start, ImpactTimes::located}) {
+    Simulation stepping(wheel.system, TimeStepping{.step = 1e-3, .impacts = impacts});
+    stepping.run_until(2.0);
+    // Rounding of 2,000 steps and their parts.
+    EXPECT_NEAR(stepping.state().spin(wheel.wheel), 1.6, 1e-12) << to_string(impacts);
+    EXPECT_NEAR(stepping.energy().flow(EnergyFlow::joint_friction), 0.5 * (9.0 - 1.6 * 1.6), 1e-11)
+        << to_string(impacts);
+  }
+}
+
 TEST(JointFriction, APendulumRestsOffItsLowestPoint) {
   // Between turning points weight works what friction takes: m g s (sin a - sin b) = M |a - b|. It stays
   // where the moment of the weight is below M.

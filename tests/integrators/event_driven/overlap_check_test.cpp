@@ -1,6 +1,7 @@
 // The check at the end of a step: what is in each other is named, what touches is left alone.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/model_error.h"
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <variant>
 
 namespace {
 
@@ -100,6 +102,39 @@ TEST(OverlapCheck, LooksAtTheContactsOfAnEventToo) {
   EXPECT_NE(TwoBoxes(0.01, -1.3e-8).told_at_event(), "");
   const std::string of_ground = TwoBoxes(-1e-4, -2e-3).told_at_event();
   EXPECT_NE(of_ground.find("on half-plane #0 is -0.002"), std::string::npos) << of_ground;
+}
+
+/// Two shapes that cross each other, or one and a wall. No corner of either is in the other one.
+System crossing_shapes(bool capsules, bool wall) {
+  System system;
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.3});
+  for (int i = 0; i < (wall ? 1 : 2); ++i) {
+    const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.2), .angle = 0.1 + 1.5 * i});
+    if (capsules) {
+      system.add(Segment{.body = body, .from = {-0.5, 0.0}, .to = {0.5, 0.0}, .radius = 0.02});
+    } else {
+      system.add(Polygon{.body = body, .vertices = {{-0.5, -0.05}, {0.5, -0.05}, {0.5, 0.05}, {-0.5, 0.05}}});
+    }
+  }
+  if (wall) system.add(Wall{.from = {0.0, -1.0}, .to = {0.0, 1.0}, .radius = 0.01}, "wall");
+  return system;
+}
+
+// They were taken for apart, and the first step failed by a closing that it was said to have missed.
+TEST(OverlapCheck, RefusesAStartInWhichShapesCross) {
+  for (const bool capsules : {false, true}) {
+    const System bodies = crossing_shapes(capsules, false), wall = crossing_shapes(capsules, true);
+    EXPECT_MODEL_ERROR(Simulation(bodies, EventDriven{}), "of rigid body #0", "of rigid body #1",
+                       "m at the start; allowed: not below -gap_tolerance");
+    EXPECT_MODEL_ERROR(Simulation(wall, EventDriven{}), "of rigid body #0", "on wall 'wall'",
+                       "m at the start; allowed: not below -gap_tolerance");
+  }
+}
+
+TEST(OverlapCheck, RefusesAChangeOfTheModeWhereShapesCross) {
+  Simulation simulation(crossing_shapes(false, false), TimeStepping{});
+  EXPECT_MODEL_ERROR(simulation.switch_to(EventDriven{}), "of rigid body #0", "at the start");
+  EXPECT_TRUE(std::holds_alternative<TimeStepping>(simulation.mode()));
 }
 
 }  // namespace
