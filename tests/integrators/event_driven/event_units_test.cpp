@@ -3,6 +3,7 @@
 // seconds but its options, so that the numbers are the same ones scaled.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/round_hill.h"
 
 #include <carom/carom.h>
 
@@ -136,6 +137,23 @@ TEST(EventUnits, APendulumHitsABlock) {
     return system;
   };
   expect_same(scene, 1e-8);
+}
+
+// The curvature of a user's ground shape is found by differences: a length that had been 1e-5 m for all of
+// them.
+TEST(EventUnits, ADiscSlidesDownARoundHill) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.0, .normal_restitution = 0.0});
+    system.add(carom_test::RoundHill{.centre = {0.0, -units.length}, .radius = units.length});
+    constexpr double from_top = 0.1, apart = 1.1;
+    units.add_disc(system, 1.0, 0.1, {apart * std::sin(from_top), apart * std::cos(from_top) - 1.0},
+                   {0.0, 0.0}, 0.0);
+    return system;
+  };
+  // Rounding over the differences: 2e-16 over 1e-5 m of 1e4 m. It leaves the hill.
+  expect_same(scene, 1e-6);
 }
 
 // Below its depth terrain touches nothing (GroundEnds). From how deep on that was asked was a number of
