@@ -10,19 +10,38 @@
 
 namespace carom {
 
-std::string pressed_by(const System& system, const IslandProblem& problem) {
+namespace {
+
+/// Names of the shapes on ground that move along a row of contacts, each once: "a, b"; empty where none does.
+std::string moving_along(std::size_t row, const System& system, const IslandProblem& problem) {
   std::vector<std::string> names;
   for (const Constraint& contact : problem.constraints()) {
     const FeatureKey& ground = contact.key.b;
     if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
-    if (contact.surface_velocity_after[0] == 0.0) continue;
+    if (contact.surface_velocity_after[row] == 0.0) continue;
     const std::string name = system.name(ObstacleId{ground.serial, system.token()});
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+std::string pressed_by(const System& system, const IslandProblem& problem) {
+  const std::string names = moving_along(0, system, problem);
   if (names.empty()) return {};
-  std::string text = "; bodies are pressed by the motion of ";
-  for (const std::string& name : names) text += name + (name == names.back() ? "" : ", ");
-  return text + " (allowed: motion that leaves them room, or friction on which they slide out)";
+  return "; bodies are pressed by the motion of " + names +
+         " (allowed: motion that leaves them room, or friction on which they slide out)";
+}
+
+std::string carried_by(const System& system, const IslandProblem& problem) {
+  if (problem.constraints().size() < 2) return {};
+  const std::string names = moving_along(1, system, problem);
+  if (names.empty()) return {};
+  return "; bodies are carried by the surfaces of " + names +
+         " (allowed: surfaces that do not carry a body against what stops it, or less friction)";
 }
 
 std::string uneven_masses(const IslandProblem& problem) {

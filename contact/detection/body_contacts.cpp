@@ -110,7 +110,8 @@ std::vector<std::optional<Surface>> laws_between(const std::vector<MaterialId>& 
 
 }  // namespace
 
-BodyContacts::BodyContacts(const Assembly& assembly) : assembly_(&assembly) {
+BodyContacts::BodyContacts(const Assembly& assembly, const FeatureLengths& lengths)
+    : assembly_(&assembly), lengths_(lengths) {
   if (assembly.layout()->dimension() != 2 || !has_law_between_bodies(assembly.system())) return;
   outlines_ = BodyOutlines(assembly);
   laws_ = laws_between(outlines_.materials(), assembly.system());
@@ -289,7 +290,7 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
   GapPoint gap = found[0];
-  const bool is_near = std::abs(gap.gap) <= FeatureMargin::corner_follows;
+  const bool is_near = std::abs(gap.gap) <= lengths_.corner_follows();
   if (a.radius + b.radius == 0.0 && (is_near || FeatureRegions::is_flat(outlines_.described(b)))) {
     const Index nearest = FeatureRegions(outline_pair(pair, state, evaluation)).nearest();
     gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
@@ -321,6 +322,7 @@ OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView&
   out.vertex = outlines_.vertices()[pair.feature];
   out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
   out.outline = outlines_.described(outlines_.list()[pair.outline]);
+  out.lengths = lengths_;
   return out;
 }
 

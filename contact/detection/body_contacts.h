@@ -9,6 +9,7 @@
 #include <carom/contact/detection/broad_phase.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
@@ -48,8 +49,8 @@ struct BodyContactSearch {
 /// Outlines of the bodies of an assembly, which of them may touch, and by which law.
 class CAROM_API BodyContacts {
 public:
-  /// \param assembly outlives it
-  explicit BodyContacts(const Assembly& assembly);
+  /// \param assembly outlives it \param lengths to which features are told apart
+  explicit BodyContacts(const Assembly& assembly, const FeatureLengths& lengths = {});
 
   /// True if no two bodies can touch.
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
@@ -109,6 +110,7 @@ private:
             const StateView& state, Constraint& out) const;
 
   const Assembly* assembly_;
+  FeatureLengths lengths_;
   BodyOutlines outlines_;
   PairFilter filter_;
   std::vector<std::optional<Surface>> laws_;  // row-major, by material

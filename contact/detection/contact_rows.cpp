@@ -77,19 +77,33 @@ void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const
 
 std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,
                                       const GroundShapes& shapes, Index shape, const GroundMotion* motion) {
-  // Rounding of the normals and the third derivative of the boundary share the error: radii from 1e-3 m on.
-  constexpr double step = 1e-5;  // [m]
   Vec<2> velocity = relative_velocity(at, state, motion == nullptr ? GroundMotion{} : *motion);
   if (motion != nullptr) {
     velocity -= Space<2>::lever_velocity(&motion->spin, Vec<2>(at.centre - planar_part(motion->point)));
   }
   const double speed = velocity.norm();
   if (speed == 0.0) return {};
-  const Vec<2> along = step / speed * velocity;
-  const Vec<2> ahead = at.centre + along, behind = at.centre - along;
-  const Vec<2> turn = (planar_part(shapes.gap(shape, motion, ahead.data()).normal) -
-                       planar_part(shapes.gap(shape, motion, behind.data()).normal)) *
-                      (0.5 * speed / step);
+  const auto turn_over = [&](double step) -> Vec<2> {
+    const Vec<2> along = step / speed * velocity;
+    const Vec<2> ahead = at.centre + along, behind = at.centre - along;
+    return planar_part(shapes.gap(shape, motion, ahead.data()).normal) -
+           planar_part(shapes.gap(shape, motion, behind.data()).normal);
+  };
+  // Rounding of the normals and the third derivative of the boundary share the error: they are small where
+  // the normal turns by some 1e-5 rad. Steps are shorter where it turns by too much; a normal that jumps does
+  // so over any step.
+  constexpr double longest = 1e-5;               // [m]
+  constexpr double good = 1e-5, too_far = 1e-3;  // [rad]
+  double step = longest;
+  Vec<2> turned = turn_over(step);
+  for (double angle = turned.norm(); angle > too_far; angle = turned.norm()) {
+    const double shorter = step * good / angle;
+    const Vec<2> next = turn_over(shorter);
+    if (!(next.norm() < 0.5 * angle)) break;
+    step = shorter;
+    turned = next;
+  }
+  const Vec<2> turn = turned * (0.5 * speed / step);
   return {turn.dot(velocity), Space<2>::tangent_frame(turn)[0].dot(velocity)};
 }
 

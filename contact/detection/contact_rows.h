@@ -48,8 +48,8 @@ void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const
                        const GroundMotion* after, Constraint& out);
 
 /// Share of the drift [m/s^2] by the curvature of a boundary that gap() describes, normal and tangential: the
-/// normal turns as the feature's centre moves along. By differences over 1e-5 m. \param motion of the shape;
-/// null: at rest
+/// normal turns as the feature's centre moves along. By differences over 1e-5 m, or less where it is small.
+/// \param motion of the shape; null: at rest
 [[nodiscard]] std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,
                                                     const GroundShapes& shapes, Index shape,
                                                     const GroundMotion* motion);

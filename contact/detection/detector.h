@@ -7,6 +7,7 @@
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/ground_contacts.h>
 #include <carom/contact/detection/joint_rows.h>
 #include <carom/contact/detection/piece_contacts.h>
@@ -27,8 +28,13 @@ namespace carom {
 class CAROM_API Detector {
 public:
   /// Throws ModelError where a feature and a shape on ground have no contact law. \param assembly outlives it
-  explicit Detector(const Assembly& assembly)
-      : assembly_(&assembly), ground_(assembly), pieces_(assembly), bodies_(assembly), joints_(assembly) {}
+  /// \param lengths to which features of outlines are told apart
+  explicit Detector(const Assembly& assembly, const FeatureLengths& lengths = {})
+      : assembly_(&assembly),
+        ground_(assembly),
+        pieces_(assembly, lengths),
+        bodies_(assembly, lengths),
+        joints_(assembly) {}
 
   /// True if a shape on ground moves.
   [[nodiscard]] bool has_moving_ground() const { return ground_.shapes().any_moves(); }

@@ -32,7 +32,7 @@ bool FaceChain::is_beyond(Index vertex, const OutlineEdge& edge, const Vec<2>& p
   if (corners[vertex] != ChainCorner::concave) return true;
   // A sharp corner that stands in the inner corner is before both faces.
   const Vec<2> off = point - outline.vertices[vertex];
-  return std::max(std::abs(off[0]), std::abs(off[1])) > FeatureMargin::corner_follows;
+  return std::max(std::abs(off[0]), std::abs(off[1])) > lengths.corner_follows();
 }
 
 FaceChain::Nearest FaceChain::nearest(const Vec<2>& point) const {

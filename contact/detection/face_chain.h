@@ -37,6 +37,7 @@ struct CAROM_API FaceChain {
   std::span<const ChainCorner> corners;  ///< by vertex
   bool is_closed = false;                ///< the last vertex is joined to the first
   double depth = 0.0;                    ///< what is deeper does not touch it [m]
+  FeatureLengths lengths{};              ///< to which features are told apart
 
   /// Number of faces.
   [[nodiscard]] Index faces() const { return outline.size() - (is_closed ? 0U : 1U); }

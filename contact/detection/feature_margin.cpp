@@ -17,7 +17,8 @@ FeatureRegions::FeatureRegions(const OutlinePair& pair)
       chain_(pair.chain),
       of_vertex_(pair.around),
       vertex_(pair.vertex),
-      sharp_(pair.is_sharp()) {
+      sharp_(pair.is_sharp()),
+      lengths_(pair.lengths) {
   const PlaneFrame &of_vertex = pair.vertex_frame, &frame = pair.outline_frame;
   const Vec<2> arm = of_vertex.turned(pair.vertex);
   const Vec<2> from_centre = of_vertex.centre + arm - frame.centre;
@@ -43,11 +44,11 @@ Index FeatureRegions::nearest() const {
     distance = found[0].gap;
   }
   if (!sharp_ || !has_several()) return feature;
-  if (std::abs(distance) > FeatureMargin::corner_follows) return face_of_segment(feature);
+  if (std::abs(distance) > lengths_.corner_follows()) return face_of_segment(feature);
   // In the place of a corner rounding decides which feature is nearest.
   for (Index corner = 0; corner < outline_.size(); ++corner) {
     const Vec<2> off = place_ - outline_.vertices[corner];
-    if (std::max(std::abs(off[0]), std::abs(off[1])) <= FeatureMargin::corner_follows)
+    if (std::max(std::abs(off[0]), std::abs(off[1])) <= lengths_.corner_follows())
       return touching_at(corner, feature);
   }
   return face_of_segment(feature);
@@ -97,7 +98,7 @@ Index FeatureRegions::edge_at(Index corner, Index found) const {
 /// more.
 Index FeatureRegions::touching_at(Index corner, Index found) const {
   const Index edge = edge_at(corner, found);
-  if (chain_ || margin(edge).value >= -FeatureMargin::corner_touches) return edge;
+  if (chain_ || margin(edge).value >= -lengths_.corner) return edge;
   const auto end = std::find(of_vertex_.vertices.begin(), of_vertex_.vertices.end(), vertex_);
   const auto vertex = static_cast<Index>(end - of_vertex_.vertices.begin());
   if (vertex == of_vertex_.size()) return edge;
@@ -110,7 +111,7 @@ Index FeatureRegions::touching_at(Index corner, Index found) const {
     largest = separation;
     along = std::min(other.coordinate(place), other.length - other.coordinate(place));
   }
-  const bool other_touches = along >= -FeatureMargin::corner_touches;
+  const bool other_touches = along >= -lengths_.corner;
   const bool separates = separation_along(OutlineEdge(outline_, edge - outline_.size())) >= largest;
   return separates && !other_touches ? edge : corner;
 }
@@ -139,18 +140,18 @@ double FeatureRegions::separation_along(const OutlineEdge& edge) const {
   return least;
 }
 
-Index FeatureRegions::coming(double slow) const {
+Index FeatureRegions::coming(double slow, double near) const {
   const Index feature = nearest();
   if (sharp_) return feature;
   const FeatureMargin at = margin(feature);
-  return at.value <= 2.0 * border() && at.rate < -slow ? at.beyond : feature;
+  return at.value <= std::max(2.0 * border(), near) && at.rate < -slow ? at.beyond : feature;
 }
 
 bool FeatureRegions::may_touch() const {
   if (!sharp_ || !has_several()) return true;
   const Index feature = nearest();
   if (!outline_.is_edge(feature)) return false;
-  return !chain_ || margin(feature).value >= -FeatureMargin::corner_touches;
+  return !chain_ || margin(feature).value >= -lengths_.corner;
 }
 
 double FeatureRegions::clearance(Index feature) const {

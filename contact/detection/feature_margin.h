@@ -23,10 +23,6 @@ namespace carom {
 /// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.
 class CAROM_API FeatureRegions {
 public:
-  /// How far beyond the border a rounded feature is taken to be left: where the next one is the nearest, and
-  /// its normal has not turned by more than rounding [m].
-  static constexpr double past_border = 2e-14;
-
   /// \param pair what it is a view of must outlive it
   explicit FeatureRegions(const OutlinePair& pair);
 
@@ -38,16 +34,17 @@ public:
   }
   /// True if neither vertex nor outline are rounded.
   [[nodiscard]] bool is_sharp() const { return sharp_; }
-  /// The nearest feature; of sharp corners at most FeatureMargin::corner_follows from each other the edge
+  /// The nearest feature; of sharp corners at most FeatureLengths::corner_follows() from each other the edge
   /// that one of them touches, where the vertex of the pair is that one.
   [[nodiscard]] Index nearest() const;
   /// The feature of the motion from now on: the nearest one, of rounded ones at their border that which comes
-  /// next. \param slow rates of margins up to this are none [m/s]
-  [[nodiscard]] Index coming(double slow) const;
-  /// False of a sharp corner that stands before no edge, by more than FeatureMargin::corner_touches.
+  /// next. \param slow rates of margins up to this are none [m/s] \param near margins up to this are rounding
+  /// of where their zeros were found [m]
+  [[nodiscard]] Index coming(double slow, double near) const;
+  /// False of a sharp corner that stands before no edge, by more than FeatureLengths::corner.
   [[nodiscard]] bool may_touch() const;
   /// Distance beyond the border of a feature at which it is taken to be left [m].
-  [[nodiscard]] double border() const { return sharp_ ? FeatureMargin::corner_leaves : past_border; }
+  [[nodiscard]] double border() const { return sharp_ ? lengths_.corner_leaves() : lengths_.past_border(); }
   /// Margin of a feature.
   [[nodiscard]] FeatureMargin margin(Index feature) const;
   /// Distance within which the gap is smooth, if the feature is the nearest one [m].
@@ -69,6 +66,7 @@ private:
   Vec<2> shift_;                      // stands here in the frame of the first,
   double cosine_ = 1.0, sine_ = 0.0;  // turned by this
   bool sharp_ = false;
+  FeatureLengths lengths_;
 };
 
 }  // namespace carom

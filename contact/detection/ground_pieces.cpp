@@ -41,7 +41,8 @@ bool goes_on(const GroundPiece& face, const GroundPiece& next) {
 
 }  // namespace
 
-GroundPieces::GroundPieces(const System& system, const GroundShapes& shapes) {
+GroundPieces::GroundPieces(const System& system, const GroundShapes& shapes, const FeatureLengths& lengths)
+    : lengths_(lengths) {
   const auto& registry = system.ground_shape_kinds();
   std::vector<GroundPiece> pieces, faces;
   for (Index shape = 0; shape < shapes.size(); ++shape) {
@@ -214,9 +215,9 @@ bool GroundPieces::is_through(const Piece& piece, const ConvexOutline& a, const 
 }
 
 bool GroundPieces::is_out_behind(Index outline, double height, const Vec<2>& point) const {
-  constexpr double sunk = 1e-6;  // what touches is hardly deeper, and need not be looked at further [m]
   const GroundOutline& of = outlines_[outline];
-  return height < -sunk && (height < -of.depth || is_free(of.shape, point));
+  // What touches is hardly deeper, and need not be looked at further.
+  return height < -lengths_.sunk() && (height < -of.depth || is_free(of.shape, point));
 }
 
 /// True if a point is in front of what is nearest to it of the faces of a shape.
@@ -254,7 +255,8 @@ ConvexOutline GroundPieces::view(Index outline) const {
 FaceChain GroundPieces::chain(Index outline) const {
   const GroundOutline& of = outlines_[outline];
   const std::span<const ChainCorner> corners(corners_);
-  return {view(outline), corners.subspan(of.vertices.begin, of.vertices.size()), of.is_closed, of.depth};
+  return {view(outline), corners.subspan(of.vertices.begin, of.vertices.size()), of.is_closed, of.depth,
+          lengths_};
 }
 
 GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feature_a,

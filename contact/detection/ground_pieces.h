@@ -10,6 +10,7 @@
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/contact/detection/face_chain.h>
+#include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_face.h>
 #include <carom/contact/detection/gap_point.h>
 #include <carom/contact/detection/ground_shapes.h>
@@ -46,8 +47,11 @@ struct GroundOutline : OutlineFeatures {
 /// Pieces of all shapes that have any, by number: shape after shape, in the order of GroundShapes.
 class CAROM_API GroundPieces {
 public:
-  /// \param shapes of the system, in the same order
-  GroundPieces(const System& system, const GroundShapes& shapes);
+  /// \param shapes of the system, in the same order \param lengths to which features are told apart
+  GroundPieces(const System& system, const GroundShapes& shapes, const FeatureLengths& lengths);
+
+  /// Lengths to which features are told apart.
+  [[nodiscard]] const FeatureLengths& lengths() const { return lengths_; }
 
   /// Number of pieces.
   [[nodiscard]] Index size() const { return static_cast<Index>(pieces_.size()); }
@@ -106,6 +110,7 @@ private:
   [[nodiscard]] bool is_through(const Piece& piece, const ConvexOutline& a, const GapPoint& at) const;
   [[nodiscard]] bool is_free(Index shape, const Vec<2>& point) const;
 
+  FeatureLengths lengths_;
   std::vector<Piece> pieces_;
   std::vector<GroundOutline> outlines_;
   std::vector<Vec<2>> vertices_;

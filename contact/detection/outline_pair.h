@@ -5,6 +5,7 @@
 
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/contact/detection/face_chain.h>
+#include <carom/contact/detection/feature_region.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/layout.h>
@@ -66,6 +67,7 @@ struct OutlinePair {
   ConvexOutline around;            ///< outline that the vertex is part of, in its frame
   ConvexOutline outline;           ///< in its frame
   std::optional<FaceChain> chain;  ///< given if the outline is a chain on ground
+  FeatureLengths lengths{};        ///< to which features are told apart
 
   /// True if neither side is rounded.
   [[nodiscard]] bool is_sharp() const { return outline.radius + around.radius == 0.0; }

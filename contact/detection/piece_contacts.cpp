@@ -35,8 +35,8 @@ struct PieceContacts::Search {
   std::size_t first;  // contact of the outline
 };
 
-PieceContacts::PieceContacts(const Assembly& assembly)
-    : assembly_(&assembly), shapes_(assembly.system()), pieces_(assembly.system(), shapes_) {
+PieceContacts::PieceContacts(const Assembly& assembly, const FeatureLengths& lengths)
+    : assembly_(&assembly), shapes_(assembly.system()), pieces_(assembly.system(), shapes_, lengths) {
   if (pieces_.size() == 0 || assembly.layout()->dimension() != 2) return;
   outlines_ = BodyOutlines(assembly);
   const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
@@ -209,6 +209,7 @@ OutlinePair PieceContacts::outline_pair(const ContactPair& pair, const StateView
                                         const Evaluation& evaluation, const GroundMotion* motion) const {
   const PlaneFrame of_body(assembly_->layout()->bodies()[pair.body], state, evaluation), of_ground(motion);
   OutlinePair out;
+  out.lengths = pieces_.lengths();
   if (pair.ground_outline != none) {
     out.vertex_frame = of_body;
     out.outline_frame = of_ground;

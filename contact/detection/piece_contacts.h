@@ -8,6 +8,7 @@
 #include <carom/contact/detection/box_grid.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_point.h>
 #include <carom/contact/detection/ground_pieces.h>
 #include <carom/contact/detection/ground_shapes.h>
@@ -27,8 +28,8 @@ namespace carom {
 class CAROM_API PieceContacts {
 public:
   /// Throws ModelError where a body's polygon is not convex. Laws must be known to be there (GroundLaws).
-  /// \param assembly outlives it
-  explicit PieceContacts(const Assembly& assembly);
+  /// \param assembly outlives it \param lengths to which features are told apart
+  explicit PieceContacts(const Assembly& assembly, const FeatureLengths& lengths = {});
 
   /// True if there are no pieces, or nothing that may touch them.
   [[nodiscard]] bool empty() const { return outlines_.empty(); }

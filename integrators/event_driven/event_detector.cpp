@@ -74,7 +74,7 @@ void EventDetector::take_features(double time, const double* y) {
     sampled = true;
     const FeatureRegions regions = motion_->regions(closed.pair, memory_->within);
     if (!regions.has_several()) continue;
-    closed.feature = regions.coming(scales_.speed_noise);
+    closed.feature = regions.coming(scales_.speed_noise, margin_noise(scales_));
   }
 }
 

@@ -44,7 +44,7 @@ void check_options(const EventDriven& options) {
 EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, const StopRequest* stop)
     : assembly_(&assembly),
       options_((check_options(options), options)),
-      detector_(assembly),
+      detector_(assembly, {.corner = options.gap_tolerance}),
       laws_(assembly, detector_),
       overlaps_(assembly, detector_, options_),
       memory_(assembly, options, stop),

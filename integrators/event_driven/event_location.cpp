@@ -100,7 +100,7 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
     const FeatureRegions regions = motion.regions(closed.pair, at);
     const FeatureMargin margin = regions.margin(closed.feature);
     return {margin.value + regions.border() - step.ends.feature_level(predicted.which), margin.rate,
-            step.scales.gap_noise / 16.0, true};
+            margin_noise(step.scales), true};
   }
   if (predicted.guard == Guard::switching_point) {
     motion.read_guards(at, memory.guards);

@@ -37,6 +37,9 @@ struct EventScales {
 /// mode
 [[nodiscard]] CAROM_API double speed_noise_of(double velocity, double absolute_tolerance);
 
+/// A margin of a feature is found to be zero to this [m].
+[[nodiscard]] inline double margin_noise(const EventScales& scales) { return scales.gap_noise / 16.0; }
+
 /// Scales at a state. \param contacts of all pairs there
 [[nodiscard]] CAROM_API EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                                                  std::span<const Constraint> contacts);

@@ -35,7 +35,7 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
   if (problem == nullptr) {
     message += uneven_masses_of(*model_);
   } else if (!problem->report().usable()) {
-    message += uneven_masses(*problem);
+    message += carried_by(assembly.system(), *problem) + uneven_masses(*problem);
   }
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));

@@ -31,8 +31,9 @@ void record_event(const Event& event, GroupParts& group, EventBalance& balance) 
 /// True if nothing moves, and forces of contact keep what loads would move. \param now sample of the present,
 /// overwritten
 bool is_at_rest(GroupParts& group, MotionSample& now) {
-  constexpr double no_speed = 1e-14, no_acceleration = 1e-12;
+  constexpr double no_acceleration = 1e-12;
   const GroupModel& model = group.motion.model();
+  const double no_speed = 1e-3 * model.options->absolute_tolerance;  // [m/s]
   if (model.loads.depends_on_time || model.unknowns.z_size() != 0) return false;
   // The surface of a conveyor does work on what stands.
   for (const ActiveContact& contact : group.motion.active().list()) {

@@ -22,8 +22,10 @@ constexpr int most_closings_at_once = 16;
 
 /// True of two contacts of the same two outlines that are one: where two round corners meet, each of them
 /// stands against the outline of the other.
-bool is_repeated(const Constraint& contact, const Constraint& other) {
-  constexpr double rounding = 1e-12;  // of directions and levers, which both follow from the same two corners
+/// \param gap_noise rounding of places, and so of levers [m]
+bool is_repeated(const Constraint& contact, const Constraint& other, double gap_noise) {
+  // Directions and levers follow from the same two corners.
+  constexpr double of_directions = 1e-12, roundings = 16.0;
   const auto same_owner = [](const FeatureKey& one, const FeatureKey& two) {
     return one.owner == two.owner && one.serial == two.serial;
   };
@@ -32,10 +34,18 @@ bool is_repeated(const Constraint& contact, const Constraint& other) {
       !same_owner(contact.key.b, other.key.b)) {
     return false;
   }
-  const auto* const end = contact.jacobian.data() + contact.rows * contact.columns();
-  return std::equal(contact.jacobian.data(), end, other.jacobian.data(), [](double one, double two) {
-    return std::abs(one - two) <= rounding * std::max(1.0, std::abs(one));
-  });
+  constexpr int moved = 2;  // columns of places; behind them that of a spin
+  for (int row = 0; row < contact.rows; ++row) {
+    int column = row * contact.columns();
+    for (int body = 0; body < contact.bodies; ++body) {
+      for (int k = 0; k < contact.blocks[static_cast<std::size_t>(body)].columns; ++k, ++column) {
+        const auto at = static_cast<std::size_t>(column);
+        const double allowed = k < moved ? of_directions : roundings * gap_noise;
+        if (!(std::abs(contact.jacobian[at] - other.jacobian[at]) <= allowed)) return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -99,7 +109,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
-  if (!captured) leave_out_repeated();
+  if (!captured) leave_out_repeated(at.scales.gap_noise);
   memory_->note = {};
   memory_->note.cut_sequence =
       sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
@@ -180,12 +190,12 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
 }
 
 /// Leaves out contacts that are listed twice, with their rolling resistance: one contact is solved as such.
-void ImpactStage::leave_out_repeated() {
+void ImpactStage::leave_out_repeated(double gap_noise) {
   std::vector<Constraint>& touching = memory_->touching;
   std::size_t kept = 0;
   bool leaves_out = false;
   for (std::size_t i = 0; i < touching.size(); ++i) {
-    const auto is_same = [&](const Constraint& other) { return is_repeated(touching[i], other); };
+    const auto is_same = [&](const Constraint& other) { return is_repeated(touching[i], other, gap_noise); };
     if (touching[i].type != ConstraintType::rolling) {
       const auto end = touching.begin() + static_cast<std::ptrdiff_t>(kept);
       leaves_out = std::find_if(touching.begin(), end, is_same) != end;

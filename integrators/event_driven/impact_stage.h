@@ -85,7 +85,7 @@ private:
   [[nodiscard]] IslandProblem& problem_by_law();
   void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
-  void leave_out_repeated();
+  void leave_out_repeated(double gap_noise);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);
   void close_captured(std::span<const Index> pairs, EventInstant& at);
   // Contacts that a projection closes: those that part slower than the capture speed, where those that slide

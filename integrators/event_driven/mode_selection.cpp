@@ -165,7 +165,7 @@ void ModeSelection::take_coming_feature(const EventInstant& at, Candidate& candi
   if (!candidate.pair.has_outline()) return;
   const FeatureRegions regions = at.motion.regions(candidate.pair, at.now);
   if (regions.is_sharp() || !regions.has_several()) return;
-  const Index feature = regions.coming(at.scales.speed_noise);
+  const Index feature = regions.coming(at.scales.speed_noise, margin_noise(at.scales));
   if (feature == regions.nearest()) return;
   follow(*at.motion.model().detector, candidate.pair, feature, at.now.view(), at.now.evaluation,
          at.now.places, candidate.at);

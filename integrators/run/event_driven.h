@@ -56,8 +56,9 @@ struct EventDriven {
   double longest_step = 0.1;
 
   /// Surfaces at most this far apart at the start are in contact; deeper penetration is refused, > 0 [m].
-  /// Rounding of gaps is judged against a billion times this where all coordinates are smaller: choose it
-  /// smaller for bodies much smaller than 1 mm.
+  /// Rounding of gaps is judged against a billion times this where all coordinates are smaller, and a sharp
+  /// corner this far beyond the end of an edge still touches it: scale it with bodies much smaller than 1 mm,
+  /// or larger than 1 km.
   double gap_tolerance = 1e-9;
   /// Impacts with no faster approach than this are solved without restitution and close the contacts, > 0
   /// [m/s]: they end accumulations of impacts (Zeno). The neglected bounces are not higher than its square

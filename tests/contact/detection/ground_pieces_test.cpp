@@ -32,7 +32,7 @@ const Surface law{.friction = 0.0, .normal_restitution = 1.0};
 
 // The pieces of a system at a time.
 struct Ground {
-  explicit Ground(const System& system, double time = 0.0) : shapes(system), pieces(system, shapes) {
+  explicit Ground(const System& system, double time = 0.0) : shapes(system), pieces(system, shapes, {}) {
     place(time);
   }
   void place(double time) { shapes.place(time, places); }

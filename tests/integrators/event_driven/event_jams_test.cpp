@@ -175,4 +175,23 @@ TEST(EventForces, AreSearchedUpToTheEndOfSlidingOnly) {
   }
 }
 
+// Friction of belts that run against each other wedges a body between them.
+TEST(EventJams, BeltsThatJamABodyAreNamed) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law({.friction = 1.5, .normal_restitution = 0.3, .static_friction = 1.95});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .surface_speed = 1.0}, "floor");
+  system.add(Wall{.from = {1.0, 0.0}, .to = {1.0, 1.0}, .radius = 0.05, .surface_speed = -1.0}, "wall");
+  const BodyId body =
+      system.add(RigidBody{.mass = disc(1.0, 0.08), .position = {0.8, 0.12}, .velocity = {0.5, 0.0}});
+  system.add(Polygon{.body = body, .vertices = {{-0.07, -0.04}, {0.07, -0.04}, {0.07, 0.04}, {-0.07, 0.04}}});
+  Simulation by_events(system, EventDriven{});
+  EXPECT_THROWS(SolverError, by_events.run_until(0.7),
+                "carried by the surfaces of half-plane 'floor', wall 'wall'",
+                "allowed: surfaces that do not carry a body against what stops it, or less friction");
+  Simulation by_steps(system, TimeStepping{.step = 5e-4});
+  EXPECT_THROWS(SolverError, by_steps.run_until(0.7), "carried by the surfaces of", "'floor'", "'wall'",
+                "less friction");
+}
+
 }  // namespace

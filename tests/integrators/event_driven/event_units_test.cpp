@@ -1,8 +1,9 @@
-// The same scene in other units: bodies of a micrometre or of ten kilometres, and a second of a microsecond.
-// Nothing in the event-driven mode is a number of metres or seconds but its options, so that the numbers are
-// the same ones scaled.
+// The same scene in other units: numbers in millimetres and grams, bodies of a micrometre or of ten
+// kilometres, and a second of a microsecond. Nothing in the event-driven mode is a number of metres or
+// seconds but its options, so that the numbers are the same ones scaled.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/round_hill.h"
 
 #include <carom/carom.h>
 
@@ -11,7 +12,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <random>
 #include <vector>
 
 namespace {
@@ -45,11 +48,11 @@ struct Units {
 
 using Scene = std::function<System(const Units&)>;
 
-/// Places, angles, velocities and spins after 1.5 units of time, in the units.
-std::vector<double> end_of(const Scene& scene, const Units& units) {
+/// Places, angles, velocities and spins after some units of time, in the units.
+std::vector<double> end_of(const Scene& scene, const Units& units, double time = 1.5) {
   const System system = scene(units);
   Simulation simulation(system, units.options());
-  simulation.run_until(1.5 * units.time);
+  simulation.run_until(time * units.time);
   std::vector<double> end;
   for (const BodyId body : system.bodies()) {
     const Vec<2> x = simulation.state().position(body) / units.length;
@@ -62,8 +65,9 @@ std::vector<double> end_of(const Scene& scene, const Units& units) {
 
 void expect_same(const Scene& scene, double tolerance) {
   const std::vector<double> usual = end_of(scene, {1.0, 1.0, 1.0});
-  constexpr Units others[] = {{0x1p-20, 1.0, 1.0}, {1e-6, 1e-12, 1.0}, {1e-6, 1e-12, 1e-3},
-                              {1e-6, 1e-12, 1e-6}, {1e4, 1e9, 1e2},    {1.0, 1.0, 1e-6}};
+  constexpr Units others[] = {{1e3, 1e3, 1.0},    {1e-3, 1e-3, 1.0},   {0x1p-20, 1.0, 1.0},
+                              {1e-6, 1e-12, 1.0}, {1e-6, 1e-12, 1e-3}, {1e-6, 1e-12, 1e-6},
+                              {1e4, 1e9, 1e2},    {1.0, 1.0, 1e-6}};
   for (const Units& units : others) {
     const std::vector<double> end = end_of(scene, units);
     ASSERT_EQ(end.size(), usual.size());
@@ -134,6 +138,91 @@ TEST(EventUnits, APendulumHitsABlock) {
     return system;
   };
   expect_same(scene, 1e-8);
+}
+
+// The curvature of a user's ground shape is found by differences: a length that had been 1e-5 m for all of
+// them.
+TEST(EventUnits, ADiscSlidesDownARoundHill) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.0, .normal_restitution = 0.0});
+    system.add(carom_test::RoundHill{.centre = {0.0, -units.length}, .radius = units.length});
+    constexpr double from_top = 0.1, apart = 1.1;
+    units.add_disc(system, 1.0, 0.1, {apart * std::sin(from_top), apart * std::cos(from_top) - 1.0},
+                   {0.0, 0.0}, 0.0);
+    return system;
+  };
+  // Rounding over the differences: 2e-16 over 1e-5 m of 1e4 m. It leaves the hill.
+  expect_same(scene, 1e-6);
+}
+
+// Below its depth terrain touches nothing (GroundEnds). From how deep on that was asked was a number of
+// metres.
+TEST(EventUnits, ADiscFallsBelowTerrain) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+    std::vector<Vec<2>> line{{-1.0, 0.0}, {0.0, 0.0}, {1.0, 0.0}};
+    for (Vec<2>& place : line) place *= units.length;
+    system.add(Terrain{.vertices = line, .depth = 0.3 * units.length});
+    units.add_disc(system, 1.0, 0.1, {0.1, -0.6}, {0.2, 0.0}, 1.0);
+    return system;
+  };
+  expect_same(scene, 1e-12);  // rounding of a flight
+}
+
+/// Four boxes, two of them rounded, that fall within a box.
+System boxes_in_a_box(const Units& units, std::uint32_t seed, const Vec<2>& origin) {
+  System system;
+  system.add(units.gravity());
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.1});
+  system.add(BoxInside{.lower = origin, .upper = origin + Vec<2>(units.length, units.length)});
+  std::mt19937 random(seed);
+  const auto between = [&](double a, double b) {
+    constexpr double numbers = 0x1p32;
+    return a + (b - a) * static_cast<double>(random()) / numbers;
+  };
+  for (int k = 0; k < 4; ++k) {
+    const double width = between(0.3, 0.38), height = between(0.2, 0.3), radius = k % 2 == 1 ? 0.0 : 0.05;
+    const Vec<2> place(0.28 + 0.44 * (k % 2), 0.28 + (k < 2 ? 0.0 : 0.44));
+    const double angle = between(-3.0, 3.0), u = between(-2.0, 2.0), w = between(-2.0, 2.0);
+    const BodyId body =
+        system.add(RigidBody{.mass = {.mass = units.mass,
+                                      .inertia = units.mass * (width * width + height * height) / 12.0 *
+                                                 units.length * units.length},
+                             .position = origin + place * units.length,
+                             .angle = angle,
+                             .velocity = Vec<2>(u, w) * units.speed(),
+                             .spin = between(-5.0, 5.0) / units.time});
+    const double inner = width - 2.0 * radius, high = height - 2.0 * radius + 0.02;
+    system.add(Polygon{.body = body,
+                       .vertices = corners_of(inner * units.length, high * units.length),
+                       .radius = radius * units.length});
+  }
+  return system;
+}
+
+// Where a corner came to a rounded end of another outline the zero of its way there is found to the rounding
+// of places, and was taken to be passed where it was within 2e-14 m: at bodies of 1e5 m one event followed
+// the other at one instant, until `event_limit` ended the run.
+TEST(EventUnits, BoxesInABox) {
+  const auto scene = [](const Units& units) { return boxes_in_a_box(units, 86, Vec<2>::Zero()); };
+  const std::vector<double> usual = end_of(scene, {1.0, 1.0, 1.0}, 0.6);
+  for (const Units& units : {Units{1e4, 1.0, 1.0}, Units{1e6, 1.0, 1.0}, Units{1e6, 1.0, 1e3}}) {
+    const std::vector<double> end = end_of(scene, units, 0.6);
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      EXPECT_NEAR(end[i], usual[i], 1e-6) << i << ", in " << units.length << " m, " << units.time << " s";
+    }
+  }
+}
+
+// Places far from the origin are rounded, and levers of contacts with them: that moved forces by more than
+// was taken for their rounding, so that one was at its end again and again at one instant.
+TEST(EventUnits, BoxesFarFromTheOrigin) {
+  Simulation simulation(boxes_in_a_box({1.0, 1.0, 1.0}, 28, Vec<2>(1e6, 1e6)), EventDriven{});
+  EXPECT_NO_THROW(simulation.run_until(0.5));
 }
 
 // Flights of up to 1 s are a thousand of these units: the bound of what a corner may do within one of them
