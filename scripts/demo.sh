@@ -19,6 +19,7 @@ programs=build/release/examples
 data=build/demo/data
 figures=build/demo/figures
 
+source scripts/compiler_cache.sh
 scripts/setup.sh
 cmake --preset release
 cmake --build --preset release --parallel "$(nproc)" --target all_examples

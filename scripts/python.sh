@@ -4,16 +4,13 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Without, ccache keeps nothing that is compiled with precompiled headers.
-export CCACHE_SLOPPINESS=pch_defines,time_macros
-# Compilers know a header that is precompiled by all of its text.
-export CCACHE_COMMENTS=true
+source scripts/compiler_cache.sh
 
 scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
 venv="$PWD/build/python-test"
 # Reads what carom.vtk writes; there is not one for every Python.
-"$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2
-cmake --build build/release --target all_examples reference_runs --parallel "$(nproc)"
+flock build/python.lock "$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2
+flock build/python.lock cmake --build build/release --target all_examples reference_runs --parallel "$(nproc)"
 
 status=0
 (cd build && "$venv/bin/mypy" --strict --no-error-summary --cache-dir mypy -p carom) || status=1

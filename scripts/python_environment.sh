@@ -6,12 +6,13 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Without, ccache keeps nothing that is compiled with precompiled headers.
-export CCACHE_SLOPPINESS=pch_defines,time_macros
-# Compilers know a header that is precompiled by all of its text.
-export CCACHE_COMMENTS=true
+source scripts/compiler_cache.sh
 
 scripts/setup.sh --python
+mkdir -p build
+# Scripts may run side by side: one at a time.
+exec 9>build/python.lock
+flock 9
 cmake --preset release >/dev/null
 cmake --build build/release --target carom --parallel "$(nproc)"
 

@@ -2,23 +2,28 @@
 # Builds the page of the viewer, python/carom/viewer.html, which the Python package takes along.
 #   scripts/viewer.sh            also runs its tests in a browser; the last line is "N passed, M failed"
 #   scripts/viewer.sh --build    only the page
+#   scripts/viewer.sh --test     only its tests
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-only_build=false
+build=true
+test=true
 case "${1:-}" in
   "") ;;
-  --build) only_build=true ;;
+  --build) test=false ;;
+  --test) build=false ;;
   *)
-    echo "usage: $0 [--build]" >&2
+    echo "usage: $0 [--build | --test]" >&2
     exit 2
     ;;
 esac
 
-# Of node and npm any installation does.
-command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --node
-(cd viewer && npm ci --silent --no-audit --no-fund && node build.mjs)
-if $only_build; then exit 0; fi
+if $build; then
+  # Of node and npm any installation does.
+  command -v node >/dev/null && command -v npm >/dev/null || scripts/setup.sh --node
+  (cd viewer && npm ci --silent --no-audit --no-fund && node build.mjs)
+fi
+if ! $test; then exit 0; fi
 
 scripts/setup.sh --browser
 scripts/python_environment.sh pytest h5py selenium pillow

@@ -8,9 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-export CCACHE_SLOPPINESS=pch_defines,time_macros
-# Compilers know a header that is precompiled by all of its text.
-export CCACHE_COMMENTS=true
+source scripts/compiler_cache.sh
 scripts/setup.sh --python
 
 pythons=("$@")

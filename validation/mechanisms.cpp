@@ -134,12 +134,14 @@ void add_mechanism(Page& page, const Mechanism& at) {
   });
 }
 
-void add_windows(Page& page, int number, const char* problem, const std::vector<std::string>& times) {
+void add_windows(Page& page, int number, const char* problem, const std::vector<std::string>& times,
+                 const std::function<void(Simulation&)>& watch) {
   const Scene scene = joint_scenes::windows(number);
   const Json data = reference("smooth_planar.json", problem, "reference");
   const Clock clock;
   Comparison angle, spin;
   Simulation simulation(scene.system, fine());
+  if (watch) watch(simulation);
   for (const std::string& time : times) {
     simulation.run_until(std::stod(time));
     for (std::size_t i = 0; i <= static_cast<std::size_t>(number); ++i) {
@@ -182,7 +184,9 @@ Curve slider_course() {
 
 }  // namespace
 
-Page mechanisms() {
+Page mechanisms() { return mechanisms({}); }
+
+Page mechanisms(const std::function<void(Simulation&)>& watch) {
   Page page;
   page.name = "mechanisms";
   page.title = "Mechanisms";
@@ -197,8 +201,8 @@ Page mechanisms() {
       {"mechanisms",
        "Slider-crank: place of the slider and speed of the crank, event-driven; dots: reference."}};
   for (const Mechanism& at : mechanisms_of_the_files()) add_mechanism(page, at);
-  add_windows(page, 2, "A02_double_fourbar_N2", {"0.5", "1", "2", "5", "10"});
-  add_windows(page, 40, "A02_fourbar_N40", {"0.5", "1", "2", "5", "10"});
+  add_windows(page, 2, "A02_double_fourbar_N2", {"0.5", "1", "2", "5", "10"}, watch);
+  add_windows(page, 40, "A02_fourbar_N40", {"0.5", "1", "2", "5", "10"}, watch);
   Curve points{
       .name = "slider_reference", .columns = {"time [s]", "slider [m]", "crank speed [rad/s]"}, .rows = {}};
   const Json known = reference("smooth_planar.json", "slider_crank", "reference");

@@ -6,6 +6,11 @@
 #include "validation/report.h"
 
 #include <array>
+#include <functional>
+
+namespace carom {
+class Simulation;
+}
 
 namespace validation {
 
@@ -38,6 +43,8 @@ Page lcp_cases();
 
 // Smooth motion.
 Page mechanisms();
+/// The same page. \param watch sees each event-driven run of the windows before it begins
+Page mechanisms(const std::function<void(carom::Simulation&)>& watch);
 Page springs();
 
 // Error against step and cost.

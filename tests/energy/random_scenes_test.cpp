@@ -8,6 +8,7 @@
 
 #include "tests/energy/ledger_check.h"
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -174,8 +175,9 @@ TEST(RandomScenes, FixedPointSettlesWhereContactHasSeveralSolutions) {
 }
 
 TEST(RandomScenesLong, AccountClosesAndContactIsSolved) {
-  const Findings findings = run_scenes(1000, 5000);
-  expect_sound(findings, 5000);
+  const std::uint64_t count = carom_test::seeds(5000);
+  const Findings findings = run_scenes(1000, count);
+  expect_sound(findings, count);
   RecordProperty("contact_steps", std::to_string(findings.contact_steps));
   RecordProperty("worst_residual", to_text(findings.worst_residual));
 }

@@ -124,7 +124,7 @@ TEST(JointFrictionWithContactsLong, ModesAreDecidedByTheForcesOfTheFlow) {
 // and forces do not settle. None ends at event_limit.
 TEST(JointFrictionWithContactsLong, RandomBars) {
   Random random(11);
-  const std::uint64_t count = carom_test::all_seeds() ? 1000 : 200;
+  const std::uint64_t count = carom_test::seeds(200, 1000);
   std::uint64_t failed = 0;
   for (std::uint64_t seed = 1000; seed < 1000 + count; ++seed) {
     const int bars = 2 + static_cast<int>(random.below(3));

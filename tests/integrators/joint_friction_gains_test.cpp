@@ -149,7 +149,7 @@ TEST(JointFrictionGains, WithUnequalOnesTheyAreTold) {
 }
 
 TEST(JointFrictionGainsLong, AllAreTold) {
-  const std::uint64_t count = carom_test::all_seeds() ? 3000 : 300;
+  const std::uint64_t count = carom_test::seeds(300, 3000);
   for (const bool events : {false, true}) {
     EXPECT_EQ(expect_all_told(1000, 1000 + count, false, events).gains, 0);
     EXPECT_GE(expect_all_told(1000, 1000 + count, true, events).by_joints, 1);

@@ -132,7 +132,7 @@ TEST(MixedScenes, AnObstacleThatPressesIsNamed) {
 }
 
 TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
-  const std::uint64_t count = carom_test::all_seeds() ? 10000 : 1000;
+  const std::uint64_t count = carom_test::seeds(1000, 10000);
   const Findings findings = run_scenes(0, count);
   expect_sound(findings, count);
   EXPECT_GT(findings.jams, 0);  // else no scene jams
@@ -256,7 +256,7 @@ TEST(MixedScenes, JamsAreSolvedWithoutRestitutionFromEventToEvent) {
 }
 
 TEST(MixedScenesLong, AccountsCloseAndContactsPushFromEventToEvent) {
-  const std::uint64_t count = carom_test::all_seeds() ? 10000 : 300;
+  const std::uint64_t count = carom_test::seeds(300, 10000);
   const EventFindings findings = run_scenes_by_events(0, count);
   expect_sound(findings, count);
   RecordProperty("pressed", std::to_string(findings.pressed));
@@ -361,7 +361,7 @@ TEST(MixedScenes, BothModesTellTheSame) { compare_modes(0, 3); }
 
 TEST(MixedScenesLong, BothModesTellTheSame) {
   compare_modes(3, 7);
-  compare_modes(100, 150);
+  compare_modes(100, carom_test::seeds(150));
 }
 
 }  // namespace

@@ -131,9 +131,9 @@ void rubbing(std::uint64_t first, std::uint64_t last) {
 TEST(RandomMechanisms, Trees) { trees(0, 4); }
 TEST(RandomMechanisms, Loops) { loops(0, 4); }
 
-// A share of the seeds; all of them with CAROM_ALL_SEEDS=1, which takes some minutes.
-TEST(RandomMechanismsLong, Trees) { trees(4, carom_test::all_seeds() ? 500 : 60); }
-TEST(RandomMechanismsLong, TreesThatRub) { rubbing(0, carom_test::all_seeds() ? 200 : 15); }
-TEST(RandomMechanismsLong, Loops) { loops(4, carom_test::all_seeds() ? 200 : 24); }
+// All seeds (shares.h) take some minutes.
+TEST(RandomMechanismsLong, Trees) { trees(4, 4 + carom_test::seeds(56, 496)); }
+TEST(RandomMechanismsLong, TreesThatRub) { rubbing(0, carom_test::seeds(15, 200)); }
+TEST(RandomMechanismsLong, Loops) { loops(4, 4 + carom_test::seeds(20, 196)); }
 
 }  // namespace

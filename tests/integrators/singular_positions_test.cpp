@@ -117,7 +117,7 @@ void expect_passages(std::uint64_t first, std::uint64_t last) {
   }
 }
 TEST(SingularPositions, RandomParallelCranks) { expect_passages(0, 1); }
-TEST(SingularPositionsLong, RandomParallelCranks) { expect_passages(1, carom_test::all_seeds() ? 200 : 30); }
+TEST(SingularPositionsLong, RandomParallelCranks) { expect_passages(1, 1 + carom_test::seeds(29, 199)); }
 
 /// Against time stepping, of order 2; both pass the position on the branch that they came on.
 void expect_kites_pass(std::uint64_t first, std::uint64_t last) {
@@ -145,9 +145,7 @@ void expect_kites_pass(std::uint64_t first, std::uint64_t last) {
   EXPECT_GE(2 * compared, last - first);
 }
 TEST(SingularPositions, RandomRedundantKites) { expect_kites_pass(0, 6); }
-TEST(SingularPositionsLong, RandomRedundantKites) {
-  expect_kites_pass(6, carom_test::all_seeds() ? 200 : 40);
-}
+TEST(SingularPositionsLong, RandomRedundantKites) { expect_kites_pass(6, 6 + carom_test::seeds(34, 194)); }
 
 // With a bound that no projection keeps the error names the joints, and the last good state stays.
 TEST(SingularPositions, AProjectionThatTakesTooMuchIsAnError) {

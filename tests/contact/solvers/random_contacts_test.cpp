@@ -5,6 +5,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 
 #include "tests/contact/random_problems.h"
+#include "tests/shares.h"
 
 #include <gtest/gtest.h>
 
@@ -117,13 +118,15 @@ void solve_jams(std::uint64_t first, int count) {
 
 TEST(RandomContacts, JamsAreSolvedOrNamed) { solve_jams(1, 500); }
 
-TEST(RandomContactsLong, JamsAreSolvedOrNamed) { solve_jams(1'000'000, 10'000); }
+int count_of(std::uint64_t seeds) { return static_cast<int>(carom_test::seeds(seeds)); }
+
+TEST(RandomContactsLong, JamsAreSolvedOrNamed) { solve_jams(1'000'000, count_of(10'000)); }
 
 TEST(RandomContacts, TenThousandProblems) { solve_many(1, 10'000, 3.0); }
 
-TEST(RandomContactsLong, HundredThousandProblems) { solve_many(1'000'000, 100'000, 3.0); }
+TEST(RandomContactsLong, HundredThousandProblems) { solve_many(1'000'000, count_of(100'000), 3.0); }
 
-TEST(RandomContactsLong, MassesOverSixDecades) { solve_many(3'000'000, 50'000, 6.0); }
+TEST(RandomContactsLong, MassesOverSixDecades) { solve_many(3'000'000, count_of(50'000), 6.0); }
 
 }  // namespace
 }  // namespace carom

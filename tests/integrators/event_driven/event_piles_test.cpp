@@ -2,6 +2,7 @@
 
 #include "tests/integrators/event_driven/random_piles.h"
 #include "tests/integrators/event_run.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -294,7 +295,7 @@ TEST(EventPiles, ContactsThatCannotAllStartToSlideTogetherGoOn) {
 
 TEST(EventPilesLong, LargerOnes) {
   Runs runs;
-  run_all({.bodies = 6}, 1, 6, 1.5, runs);
+  run_all({.bodies = 6}, 1, carom_test::seeds(6), 1.5, runs);
   EXPECT_GT(runs.jams, 0);  // else what jams was not tried
   EXPECT_EQ(runs.failed, 0);
   record(runs);
@@ -302,7 +303,7 @@ TEST(EventPilesLong, LargerOnes) {
 
 TEST(EventPilesLong, OfSharpPolygons) {
   Runs runs;
-  run_all({.bodies = 4, .sharp = true}, 1, 16, 1.5, runs);
+  run_all({.bodies = 4, .sharp = true}, 1, carom_test::seeds(16), 1.5, runs);
   EXPECT_EQ(runs.failed, 0);
   record(runs);
 }

@@ -3,6 +3,7 @@
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/falling_polygon.h"
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -116,8 +117,8 @@ TEST(Jams, SequentialImpactsTakeOneContactAtATime) {
 }
 
 TEST(JamsLong, RandomTroughsAreAlwaysSolved) {
-  expect_jams(run_troughs(4, {.step = 1e-3}, 40));
-  expect_jams(run_troughs(1, {.step = 1e-3, .impacts = ImpactTimes::located}, 200));
+  expect_jams(run_troughs(4, {.step = 1e-3}, carom_test::seeds(40)));
+  expect_jams(run_troughs(1, {.step = 1e-3, .impacts = ImpactTimes::located}, carom_test::seeds(200)));
 }
 
 }  // namespace
