@@ -30,15 +30,16 @@ std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const
   return list_;
 }
 
-/// Adds contacts that are not open any more and were not known. \param touching also those that touch and
-/// approach
-void FlightClosings::add(const LocatedBody& at, double share, bool touching,
+/// Adds contacts that are not open any more and were not known. At the end of a flight those that touch and
+/// approach too; on the way only what goes deeper: what was hit before may still be leaving.
+void FlightClosings::add(const LocatedBody& at, double share, bool at_end,
                          const std::vector<Constraint>& found) {
   const double* const v = at.trial.end.v.data();
   for (const Constraint& contact : found) {
     if (std::find(known_.begin(), known_.end(), contact.key) != known_.end()) continue;
     const double rate = contact.normal_velocity(v);
-    if (!(contact.gap < 0.0 || (touching && rate < 0.0))) continue;
+    const bool inside = contact.gap < 0.0, approaches = rate < 0.0;
+    if (!(at_end ? inside || approaches : inside && approaches)) continue;
     const auto is_it = [&](const FlightClosing& closing) { return closing.key == contact.key; };
     if (std::any_of(list_.begin(), list_.end(), is_it)) continue;
     list_.push_back({contact.key, contact.gap, rate, contact.speed(0, v), share, false});

@@ -35,7 +35,7 @@ public:
                                                     std::span<const ConstraintKey> known, FlightLook& look);
 
 private:
-  void add(const LocatedBody& at, double share, bool touching, const std::vector<Constraint>& found);
+  void add(const LocatedBody& at, double share, bool at_end, const std::vector<Constraint>& found);
   void locate(const LocatedBody& at, const MotionPhase& flight, std::size_t which, FlightLook& look);
 
   std::vector<ConstraintKey> known_;

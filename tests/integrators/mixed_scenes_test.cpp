@@ -132,7 +132,7 @@ TEST(MixedScenes, AnObstacleThatPressesIsNamed) {
 }
 
 TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
-  const std::uint64_t count = carom_test::seeds(1000, 10000);
+  const std::uint64_t count = carom_test::seeds(1000, 10000, 1000);
   const Findings findings = run_scenes(0, count);
   expect_sound(findings, count);
   EXPECT_GT(findings.jams, 0);  // else no scene jams
