@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 TIMES = ("real_time", "cpu_time", "per_particle", "per_impact", "per_problem", "per_event", "per_second", "per_rod",
-         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc", "per_box", "ms")
+         "eigen_per_rod", "per_wheel", "seconds", "per_unknown", "per_disc", "per_box", "per_step", "ms")
 
 
 def load(folder, program):
