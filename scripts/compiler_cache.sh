@@ -4,6 +4,6 @@
 export CCACHE_SLOPPINESS=pch_defines,time_macros
 # Compilers know a header that is precompiled by all of its text.
 export CCACHE_COMMENTS=true
-# What a source includes is what the compiler says: nothing is preprocessed for the cache alone, a tenth of what
+# The compiler says which files a source includes: nothing is preprocessed for the cache alone, a tenth of what
 # compiling into an empty cache costs.
 export CCACHE_DEPEND=true

@@ -216,7 +216,7 @@ bool GroundPieces::is_through(const Piece& piece, const ConvexOutline& a, const 
 
 bool GroundPieces::is_out_behind(Index outline, double height, const Vec<2>& point) const {
   const GroundOutline& of = outlines_[outline];
-  // What touches is hardly deeper, and need not be looked at further.
+  // A point that touches is hardly deeper, and need not be looked at further.
   return height < -lengths_.sunk() && (height < -of.depth || is_free(of.shape, point));
 }
 

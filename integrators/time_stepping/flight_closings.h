@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What closes in a flight of a body, and when.
+/// Contacts that close in a flight of a body, and when.
 ///
 /// A body may come to a face and leave it again within a flight: at its end another one is closed. Where a
 /// look on the way finds more that is closed, that is looked for too.

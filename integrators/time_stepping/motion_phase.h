@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What the step of a body that is hit within it is made of: loads, flights and impacts.
+/// Loads, flights and impacts: the parts of a step of a body that is hit within it.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>

@@ -85,12 +85,13 @@ public:
   /// Two sweeps in one pass, and the loads by cause of the second; of the first changes only. A block whose
   /// loads are not finite is left as the first sweep made it.
   void fuse(const SweepStages& stages, bool guessing);
-  /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
-  /// fixed-point iteration. \param again goes on from the last call
+  /// Sweeps around contacts alone.
   struct LocalSweeps {
     int made = 0;
     bool contract = false;  ///< else all blocks are guessed anew
   };
+  /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
+  /// fixed-point iteration. \param again goes on from the last call
   LocalSweeps presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again);
 
   /// Change that another sweep would make, the largest over all blocks;
