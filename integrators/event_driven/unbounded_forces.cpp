@@ -8,15 +8,19 @@
 namespace carom {
 
 bool UnboundedForces::find(std::span<const ActiveContact> contacts, double bound) {
-  pairs_.clear();
+  clear();
   for (const ActiveContact& contact : contacts) {
-    if (std::abs(contact.normal) > bound) pairs_.push_back(contact.pair);
+    if (!(std::abs(contact.normal) > bound)) continue;
+    if (!found_) found_ = std::make_unique<Found>();
+    found_->pairs.push_back(contact.pair);
   }
-  return !pairs_.empty();
+  return found_ != nullptr;
 }
 
 bool UnboundedForces::contains(const ContactPair& pair) const {
-  return std::find(pairs_.begin(), pairs_.end(), pair) != pairs_.end();
+  if (!found_) return false;
+  const std::vector<ContactPair>& pairs = found_->pairs;
+  return std::find(pairs.begin(), pairs.end(), pair) != pairs.end();
 }
 
 }  // namespace carom

@@ -7,8 +7,10 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/core/export.h>
 
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -23,20 +25,26 @@ public:
   static constexpr double least_growth = 1e2;
 
   /// Forgets all.
-  void clear() { pairs_.clear(); }
+  void clear() { found_.reset(); }
   /// Finds them among closed contacts, with their forces. True if there are any. \param bound of forces [N]
   bool find(std::span<const ActiveContact> contacts, double bound);
   /// True if that of a pair is one.
   [[nodiscard]] bool contains(const ContactPair& pair) const;
 
-  /// Reason why the flow ended there, for messages.
-  [[nodiscard]] const std::string& reason() const { return reason_; }
-  /// Sets it.
-  void set_reason(std::string reason) { reason_ = std::move(reason); }
+  /// Reason why the flow ended there, for messages; empty where there are none.
+  [[nodiscard]] std::string reason() const { return found_ ? found_->reason : std::string(); }
+  /// Sets it, where some are found.
+  void set_reason(std::string reason) {
+    if (found_) found_->reason = std::move(reason);
+  }
 
 private:
-  std::vector<ContactPair> pairs_;
-  std::string reason_;
+  struct Found {
+    std::vector<ContactPair> pairs;
+    std::string reason;
+  };
+
+  std::unique_ptr<Found> found_;  // hardly any group ever has some, and there are many groups
 };
 
 }  // namespace carom

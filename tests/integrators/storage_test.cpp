@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace {
@@ -68,6 +69,14 @@ std::int64_t storage(const Net& net) {
   return carom_test::bytes_in_use() - before;
 }
 
+/// What a run of a system holds at a time, the user's own System apart [bytes].
+std::int64_t storage(const System& system, const Mode& mode, double time) {
+  const std::int64_t before = carom_test::bytes_in_use();
+  Simulation simulation(system, mode);
+  simulation.run_until(time);
+  return carom_test::bytes_in_use() - before;
+}
+
 // Storage of nets with and without diagonals, which differ in springs only, tells springs from particles.
 class Storage : public testing::TestWithParam<bool> {};
 
@@ -90,5 +99,59 @@ TEST_P(Storage, OfANetIsAtMost200BytesForAParticleAnd128ForASpring) {
 }
 
 INSTANTIATE_TEST_SUITE_P(PartsAlikeOrNot, Storage, testing::Bool());
+
+System falling(int balls) {
+  constexpr double radius = 0.01;
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.8});
+  for (int i = 0; i < balls; ++i) {
+    const BodyId ball = system.add(RigidBody{.mass = solid_sphere(0.01, radius),
+                                             .position = {0.1 * i, radius + 0.02 + 0.001 * (i % 20)},
+                                             .velocity = {0.5, 0.0}});
+    system.add(Disc{.body = ball, .radius = radius});
+  }
+  return system;
+}
+
+// Balls that have come to roll, some 40 impacts each, without what a run holds once.
+TEST(EventDrivenStorage, OfABallAfterItsImpactsIsBelow4000Bytes) {
+  constexpr int few = 40, many = 120;
+  constexpr double at_rest = 2.0;
+  const EventDriven mode{.record_events = false};
+  const auto more =
+      static_cast<double>(storage(falling(many), mode, at_rest) - storage(falling(few), mode, at_rest));
+  const double bytes = more / (many - few);
+  RecordProperty("bytes_per_ball", std::to_string(bytes));
+  // The allocator takes 8 bytes more for each of some 15 blocks; of 1,000 balls 100 are what a run holds
+  // once.
+  EXPECT_LT(bytes, 4000.0 - 120.0 - 100.0);
+}
+
+System chain(int rods) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  BodyId before = ground;
+  for (int i = 0; i < rods; ++i) {
+    const BodyId body = system.add(
+        RigidBody{.mass = rod(1.0, 1.0), .position = {0.0, -0.5 - i}, .angle = -1.5707963267948966});
+    const End<2> end = i == 0 ? End<2>(ground) : End<2>(before, {0.5, 0.0});
+    system.add(Revolute{.from = end, .to = {body, {-0.5, 0.0}}});
+    before = body;
+  }
+  return system;
+}
+
+// Event-driven, factors of Eigen take some 650 bytes a rod more, without operator new.
+TEST(ChainStorage, OfARodIsBelow2500Bytes) {
+  constexpr int rods = 400;
+  const System system = chain(rods);
+  const auto stepped = static_cast<double>(storage(system, TimeStepping{.step = 1e-4}, 3e-4)) / rods;
+  const auto event_driven = static_cast<double>(storage(system, EventDriven{.interval = 1e-4}, 3e-4)) / rods;
+  RecordProperty("bytes_per_rod_stepped", std::to_string(stepped));
+  RecordProperty("bytes_per_rod_event_driven", std::to_string(event_driven));
+  EXPECT_LT(stepped, 2500.0);
+  EXPECT_LT(event_driven, 2500.0 - 650.0);
+}
 
 }  // namespace
