@@ -127,8 +127,11 @@ Decision ModeDecision::solve(SmoothMotion& motion, MotionSample& now, std::span<
   }
   take_accelerations(motion, now);
   problem_.map().add_velocities(acceleration_.data());
-  if (!follow && decision == Decision::made) settle_modes(motion, now, candidates);
-  return decision;
+  if (follow || decision != Decision::made) return decision;
+  settle_modes(motion, now, candidates);
+  if (!pulls_again(motion, now, candidates)) return decision;
+  name_cause(problem_, taking_part_, slips_, candidates);
+  return Decision::impossible;
 }
 
 /// True if a problem with rolling resistance has several answers, which its solvers do not count (Painleve).
@@ -222,6 +225,26 @@ bool ModeDecision::keeps_motion(SmoothMotion& motion, MotionSample& now,
   if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))
     return false;
   return motion_apart(problem_, active_, motion.active(), comparison_) <= same * size_;
+}
+
+/// True if a contact whose force has come to its end, and which the answer closes again, pulls in the modes
+/// of the answer. There the contact has next to no lever (a box that stands against a wall turns about its
+/// corner on the floor): the answer holds to rounding with any force on it, and none keeps it closed.
+bool ModeDecision::pulls_again(SmoothMotion& motion, MotionSample& now,
+                               std::span<const Candidate> candidates) {
+  constexpr double clearly = 1e-6;  // against the other forces
+  const auto returns = [](const Candidate& at) { return at.releases && at.mode != ContactMode::open; };
+  if (std::none_of(candidates.begin(), candidates.end(), returns)) return false;
+  list_closed(candidates);
+  double change = 0.0, largest = 0.0;
+  BoundIteration once;
+  if (!motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change))
+    return false;
+  for (const ActiveContact& closed : active_) largest = std::max(largest, std::abs(closed.normal));
+  return std::any_of(active_.begin(), active_.end(), [&](const ActiveContact& closed) {
+    const auto same = [&](const Candidate& at) { return at.place == closed.place && at.releases; };
+    return closed.normal < -clearly * largest && std::any_of(candidates.begin(), candidates.end(), same);
+  });
 }
 
 /// The contacts that stay closed, in their modes.

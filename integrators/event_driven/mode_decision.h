@@ -67,6 +67,8 @@ private:
   void settle_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   [[nodiscard]] bool keeps_motion(SmoothMotion& motion, MotionSample& now,
                                   std::span<const Candidate> candidates);
+  [[nodiscard]] bool pulls_again(SmoothMotion& motion, MotionSample& now,
+                                 std::span<const Candidate> candidates);
   void complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 

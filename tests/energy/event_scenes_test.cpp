@@ -253,6 +253,10 @@ TEST(EventScenes, WhatMovesTogetherStopsTogether) { expect_sound_scenes({101074,
 // A corner was stopped at the price of pushing another one off, which came back at once.
 TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({17418, 36733}); }
 
+// A box that stands flat against a wall turns about its corner on the floor. Its corner at the wall, which has no
+// lever but that of its friction, slid by rounding and was closed again without end in a mode in which it pulls.
+TEST(EventScenes, AContactWithoutLever) { expect_sound_scenes({1801691}); }
+
 // Three corners jam, two of them almost without friction: no solution, which was not seen beside candidates
 // with impulses of 1e8 times all others.
 TEST(EventScenes, JamsOfThreeCornersAreProvedToHaveNoSolution) {
