@@ -2,6 +2,7 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/integrators/event_driven/mode_selection.h>
+#include <carom/integrators/run/time_resolution.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,12 +22,13 @@ void ModeSelection::forget_ends() {
 }
 
 void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
-  // Events of several bodies at one instant are resolved one after the other: ends of contacts stay ends.
-  if (event.time != ended_at_) {
+  // Events of several bodies at one instant are resolved one after the other: ends of contacts stay ends. So
+  // does a force that ends again at the next times there are: where all loads vanish, it is rounding.
+  if (!(event.time - ended_at_ <= shortest_step_at(event.time))) {
     exhausted_.clear();
     releasing_.clear();
-    ended_at_ = event.time;
   }
+  ended_at_ = event.time;
   const std::vector<ActiveContact>& closed = active.list();
   stopped_ = event.guard == Guard::slip ? closed[event.which].pair : ContactPair{};
   if (event.guard != Guard::force) return;
@@ -155,7 +157,9 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
       candidate.exhausted_friction = exhausted->force;
       candidate.noise = exhausted->noise;
     }
-    candidate.releases = std::find(releasing_.begin(), releasing_.end(), candidate.pair) != releasing_.end();
+    const auto ends = std::count(releasing_.begin(), releasing_.end(), candidate.pair);
+    candidate.releases = ends > 0;
+    candidate.stays_open = ends > 1;
   }
 }
 

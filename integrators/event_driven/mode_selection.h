@@ -80,8 +80,8 @@ private:
   ModeMemory* memory_;
   SolverChain* chain_;
   std::vector<ExhaustedFriction> exhausted_;
-  std::vector<ContactPair> releasing_;  // forces that came to their end
-  double ended_at_ = 0.0;               // time of both [s]
+  std::vector<ContactPair> releasing_;  // forces that came to their end, each as often as it did
+  double ended_at_ = 0.0;               // time of the latest of both [s]
   ContactPair stopped_;                 // has just stopped slipping
 };
 

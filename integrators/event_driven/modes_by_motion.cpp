@@ -77,10 +77,11 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
   for (std::size_t c = 0; c < decided.contacts.size(); ++c) {
     Candidate& candidate = candidates[decided.taking_part[c]];
     const Constraint& contact = decided.contacts[c];
-    // Static friction larger than sliding friction would change the force.
     const bool rolling = contact.type == ConstraintType::rolling;
     if (!is_still(decided, c, candidate)) continue;
-    if (!rolling && (contact.has_dry_friction() || contact.law.has_static_friction())) continue;
+    // Friction that falls at once when sliding begins would change the force.
+    const bool drops = contact.law.has_static_friction() && !contact.law.falls_with_speed();
+    if (!rolling && (contact.has_dry_friction() || drops)) continue;
     const auto row = static_cast<std::size_t>(problem.first_row(rolling ? c - 1 : c));
     const auto along = static_cast<std::size_t>(problem.first_row(c) + contact.tangent_row());
     const double normal = problem.impulses()[row], tangential = problem.impulses()[along];

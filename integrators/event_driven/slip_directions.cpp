@@ -56,6 +56,7 @@ bool SlipDirections::revise(std::span<const Candidate> candidates, const Contact
     const double opening = candidate.at.normal_acceleration(acceleration);
     const double along = candidate.at.tangential_acceleration(acceleration);
     if (slip.open) {
+      if (candidate.stays_open) continue;
       if (opening >= -no_acceleration * std::max(size, std::abs(opening))) continue;
       slip.open = false;
       changed = true;

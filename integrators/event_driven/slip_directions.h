@@ -27,6 +27,7 @@ struct Candidate {
   bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
   bool frictionless = false;        ///< without friction
   bool releases = false;            ///< its force has come to an end: it opens, unless that cannot be
+  bool stays_open = false;          ///< likewise, for the second time at once: it opens
   double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N],
   double noise = 0.0;               ///< to this much
   // Where the problem was Painleve's:

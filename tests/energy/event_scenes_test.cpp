@@ -253,9 +253,17 @@ TEST(EventScenes, WhatMovesTogetherStopsTogether) { expect_sound_scenes({101074,
 // A corner was stopped at the price of pushing another one off, which came back at once.
 TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({17418, 36733}); }
 
-// A box that stands flat against a wall turns about its corner on the floor. Its corner at the wall, which has no
-// lever but that of its friction, slid by rounding and was closed again without end in a mode in which it pulls.
+// A box that stands flat against a wall turns about its corner on the floor. Its corner at the wall, which
+// has no lever but that of its friction, slid by rounding and was closed again without end in a mode in which
+// it pulls.
 TEST(EventScenes, AContactWithoutLever) { expect_sound_scenes({1801691}); }
+
+// Likewise a disc that a slack spring left: where all loads vanished its force was rounding, above zero.
+TEST(EventScenes, AForceThatEndsWhereAllLoadsVanish) { expect_sound_scenes({10830589}); }
+
+// Of two corners in line one begins to slide while the friction of the other, which falls with the speed, is
+// at its bound: held to stick, it had none.
+TEST(EventScenes, FrictionAtItsBoundInASingularPosition) { expect_sound_scenes({10800775}); }
 
 // Three corners jam, two of them almost without friction: no solution, which was not seen beside candidates
 // with impulses of 1e8 times all others.
