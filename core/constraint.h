@@ -58,7 +58,6 @@ enum class ConstraintType : std::uint8_t {
   contact,         ///< row 0 along the normal, P_n >= 0; the others tangential, bounded by friction times P_n
   limit,           ///< one row, P >= 0: limit of a joint's coordinate
   joint_friction,  ///< one row, |P| <= friction times friction_bound: dry friction along a joint's coordinate
-  motor_bound,     ///< likewise: a motor whose force has a largest size
   rolling          ///< likewise, |M| <= friction times P_n: rolling resistance of the contact before it
 };
 

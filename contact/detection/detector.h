@@ -90,11 +90,8 @@ public:
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
-  /// The contact of a pair, or its rolling resistance, whatever its gap. The position group of `evaluation`
-  /// must be up to date. Places its shape on ground by itself.
-  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               Constraint& out) const;
-  /// Likewise with the ground at `places`, which must be of the state's time.
+  /// The contact of a pair, or its rolling resistance, whatever its gap, with the ground at `places`, which
+  /// must be of the state's time. The position group of `evaluation` must be up to date.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
