@@ -5,7 +5,6 @@
 #include <carom/integrators/event_driven/group_model.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace carom {
 

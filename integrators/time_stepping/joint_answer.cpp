@@ -1,7 +1,6 @@
 // Problem: joints answer contact by the same convention by which contact acts.
 
 #include <carom/integrators/time_stepping/joint_answer.h>
-#include <carom/integrators/time_stepping/step_errors.h>
 
 #include <cmath>
 

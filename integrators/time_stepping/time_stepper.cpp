@@ -7,7 +7,6 @@
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace carom {
