@@ -127,10 +127,7 @@ BodyContacts::BodyContacts(const Assembly& assembly, const FeatureLengths& lengt
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });
   for (const std::optional<Surface>& law : laws_) {
-    if (!law) continue;
-    has_static_friction_ = has_static_friction_ || law->has_static_friction();
-    resists_rolling_ = resists_rolling_ || law->resists_rolling();
-    has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();
+    if (law) law_facts_.add(*law);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/law_facts.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
 #include <carom/contact/detection/pair_rows.h>
@@ -54,15 +55,12 @@ public:
 
   /// True if no two bodies can touch.
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
-  /// True if some law takes more to slip than to slide.
-  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
-  /// True if some law of impact is not Newton's.
-  [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
-  /// True if some law has rolling resistance.
-  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
-  /// True if the law of such a contact has.
+  /// Facts of the laws of all pairs.
+  [[nodiscard]] const LawFacts& law_facts() const { return law_facts_; }
+  /// True if the law of such a contact has rolling resistance.
   [[nodiscard]] bool resists_rolling(const BodyTouch& touch) const {
-    return resists_rolling_ && law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
+    return law_facts_.rolling_resistance &&
+           law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
   }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
@@ -114,9 +112,7 @@ private:
   BodyOutlines outlines_;
   PairFilter filter_;
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
-  bool has_static_friction_ = false;
-  bool has_other_impact_law_ = false;
-  bool resists_rolling_ = false;
+  LawFacts law_facts_;
   bool all_may_touch_ = false;     // outlines of any two bodies
   bool in_order_of_keys_ = false;  // outlines are
 };
