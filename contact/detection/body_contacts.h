@@ -88,7 +88,9 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;
 
-  /// Brings the contact of such a pair to a state, as follow_feature().
+  /// Brings rows, gap and drift of the contact of such a pair to a state as long as its vertex stays with one
+  /// feature of the outline (ConvexOutline), whichever is the nearest: a smooth function of the motion, also
+  /// a little beyond the border where another feature takes over. Key and law stay.
   void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
               Constraint& contact) const;
   /// The vertex and the outline of such a pair.
@@ -99,7 +101,6 @@ private:
   [[nodiscard]] const Surface* law(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] bool kinds_may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
-  [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
