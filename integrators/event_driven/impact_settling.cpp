@@ -27,8 +27,7 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     pile = pile || contact.bodies > 1;
     Constraint& listed = touching_.emplace_back(contact);
     places_.push_back(i);
-    listed.law.normal_restitution = listed.law.tangential_restitution = 0.0;
-    listed.law.rolling_restitution = 0.0;
+    listed.remove_restitution();
     listed.friction_bound = 0.0;
     const double sliding = contact.sliding_speed(at.velocities());
     listed.friction =

@@ -111,14 +111,17 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
   if (!captured) leave_out_repeated(at.scales.gap_noise);
   memory_->note = {};
-  memory_->note.cut_sequence =
-      sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
-  if (sequential && !captured && !memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
-  if (sequential && !captured) ++counts.sequence;
+  if (sequential && !captured) {
+    memory_->note.cut_sequence = counts.sequence++ >= options_->impact_rules.sequence_limit;
+    if (!memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
+  }
   share_impact_restitution(touching, at.velocities(), 0.0);
   if (captured) add_captured(pairs, at);
-  if (captured || memory_->note.cut_sequence) remove_restitution();
-  IslandProblem& problem = captured || memory_->note.cut_sequence ? memory_->problem : problem_by_law();
+  const bool closes = captured || memory_->note.cut_sequence;
+  if (closes) {
+    for (Constraint& contact : touching) contact.remove_restitution();
+  }
+  IslandProblem& problem = closes ? memory_->problem : problem_by_law();
   const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
   if (!solve(problem, at)) {
     if (!closes_slow) fail_unsolved(problem, at);
@@ -130,7 +133,6 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
     if (!problem.report().usable()) fail_unsolved(problem, at);
   }
   memory_->note.restitution_factor *= problem.restitution_factor();
-  const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
   if (closes_slow) close_captured(pairs, at);
 }
@@ -156,13 +158,6 @@ IslandProblem& ImpactStage::problem_by_law() {
   return memory_->of_other_law;
 }
 
-void ImpactStage::remove_restitution() {
-  for (Constraint& contact : memory_->touching) {
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    contact.law.rolling_restitution = 0.0;
-  }
-}
-
 /// Lists the contacts of an impact, with the friction of their present sliding.
 void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Constraint>& touching = memory_->touching;
@@ -183,9 +178,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     const double sliding = contact.sliding_speed(at.velocities());
     if (!rolling) contact.friction = contact.law.friction_at(sliding > at.scales.speed_noise ? sliding : 0.0);
     // Before the jump of a driver it did not approach: there is nothing to give back.
-    if (at.rate_jumps && at.before_at[i] != none) {
-      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    }
+    if (at.rate_jumps && at.before_at[i] != none) contact.remove_restitution();
   }
 }
 

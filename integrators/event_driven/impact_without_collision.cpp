@@ -99,9 +99,7 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
   double fastest = 0.0, pull = 0.0;
   for (std::size_t c = 0; c < touching_.size(); ++c) {
     Constraint& contact = touching_[c];
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    for (int row = 0; row < contact.rows; ++row)
-      pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
+    contact.remove_restitution();
     if (contact.type == ConstraintType::rolling) continue;
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
