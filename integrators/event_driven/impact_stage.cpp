@@ -24,7 +24,6 @@ constexpr int most_closings_at_once = 16;
 /// stands against the outline of the other.
 /// \param gap_noise rounding of places, and so of levers [m]
 bool is_repeated(const Constraint& contact, const Constraint& other, double gap_noise) {
-  // Directions and levers follow from the same two corners.
   constexpr double of_directions = 1e-12, roundings = 16.0;
   const auto same_owner = [](const FeatureKey& one, const FeatureKey& two) {
     return one.owner == two.owner && one.serial == two.serial;
@@ -34,18 +33,11 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
       !same_owner(contact.key.b, other.key.b)) {
     return false;
   }
-  constexpr int moved = 2;  // columns of places; behind them that of a spin
-  for (int row = 0; row < contact.rows; ++row) {
-    int column = row * contact.columns();
-    for (int body = 0; body < contact.bodies; ++body) {
-      for (int k = 0; k < contact.blocks[static_cast<std::size_t>(body)].columns; ++k, ++column) {
-        const auto at = static_cast<std::size_t>(column);
-        const double allowed = k < moved ? of_directions : roundings * gap_noise;
-        if (!(std::abs(contact.jacobian[at] - other.jacobian[at]) <= allowed)) return false;
-      }
-    }
-  }
-  return true;
+  // Directions and levers both follow from the places of the same two corners.
+  const double allowed = std::max(of_directions, roundings * gap_noise);
+  const double* const row = contact.jacobian.data();
+  return std::equal(row, row + contact.rows * contact.columns(), other.jacobian.data(),
+                    [=](double one, double two) { return std::abs(one - two) <= allowed; });
 }
 
 }  // namespace
