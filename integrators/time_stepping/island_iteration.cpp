@@ -7,6 +7,23 @@
 
 namespace carom {
 
+namespace {
+
+/// Sweeps under the same loads until no violation of joints, in units of its rounding, is left, or sweeps
+/// hardly reduce it any more. \param left violation now \param most sweeps
+template <class Sweep, class Violation>
+void sweep_onto_joints(double left, int most, Sweep&& sweep, Violation&& violation) {
+  constexpr double improved = 0.8;
+  for (int sweeps = 0; sweeps < most && left > 1.0; ++sweeps) {
+    sweep();
+    const double now = violation();
+    if (!(now < improved * left)) return;
+    left = now;
+  }
+}
+
+}  // namespace
+
 IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
     : parts_(&parts), stop_(stop), method_(*parts.assembly) {
   sweeps_.assign(parts.assembly->components().size(), 1);
@@ -277,34 +294,26 @@ void IslandIteration::follow(const StepInput& in, Index component) {
 /// A change below the tolerance may leave the constraints above their rounding. Sweeps under the same loads
 /// bring the joints there however badly couplings contract. True if there were any.
 bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
-  constexpr double improved = 0.8;
   const Index component = island.components.front();
   JointStage& joints = *parts_->joints.of(component);
   JointContacts contacts = contacts_of(island);
-  double left = joints.violation(in, parts_->trial);
+  const auto violation = [&] { return joints.violation(in, parts_->trial); };
+  const double left = violation();
   if (!joints.rows().is_near_singular() && !(left > 1.0)) return false;
-  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
-    sweep_joints(in, component, joints, contacts);
-    const double now = joints.violation(in, parts_->trial);
-    if (!(now < improved * left)) break;
-    left = now;
-  }
-  if (joints.rows().is_near_singular()) joints.settle_velocities(in, parts_->trial);
+  sweep_onto_joints(
+      left, parts_->options.max_sweeps, [&] { sweep_joints(in, component, joints, contacts); }, violation);
+  if (joints.rows().is_near_singular()) joints.settle_velocities(parts_->trial);
   follow(in, component);
   return true;
 }
 
 /// Likewise of several components.
 bool IslandIteration::converge_joined(const StepIsland& island, const StepInput& in) {
-  constexpr double improved = 0.8;
-  double left = parts_->joined.violation(in, island, parts_->trial);
+  const auto violation = [&] { return parts_->joined.violation(in, island, parts_->trial); };
+  const double left = violation();
   if (!(left > 1.0)) return false;
-  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
-    sweep_joined(island, in);
-    const double now = parts_->joined.violation(in, island, parts_->trial);
-    if (!(now < improved * left)) break;
-    left = now;
-  }
+  sweep_onto_joints(
+      left, parts_->options.max_sweeps, [&] { sweep_joined(island, in); }, violation);
   for (const Index component : island.components) follow(in, component);
   return true;
 }

@@ -16,7 +16,7 @@ JointAnswer::JointAnswer(Index component, const JointConstraints& like)
 void JointAnswer::place(const StepInput& in, StepTrial& trial) {
   if (halfway_) return;
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
-  update_rows(rows_, {in.start.view(), trial.at_start.rotation.data()}, in);
+  rows_.update({in.start.view(), trial.at_start.rotation.data()});
 }
 
 bool JointAnswer::follow_path(const StepInput& in, const State& middle, StepJointRows& joints,
@@ -29,7 +29,7 @@ bool JointAnswer::follow_path(const StepInput& in, const State& middle, StepJoin
   for (std::size_t row = 0; row < end.size(); ++row) rate_at_start_[row] = rows_.rate(row);
   halfway_ = true;
   evaluate_positions(in.assembly, component_, middle.view(), trial.at_midpoint);
-  update_rows(rows_, {middle.view(), trial.at_midpoint.rotation.data()}, in);
+  rows_.update({middle.view(), trial.at_midpoint.rotation.data()});
   joints.place_end(in, trial);
   end.residuals_and_sizes(v, constant_.data(), sizes_.data());
   bool turns = false;
