@@ -63,7 +63,7 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     // A contact that was open before bounces as ever.
     const bool bounces = at.before_at[place] == none && -at.approach(place) > noise;
     if (contact.has_dry_friction() || bounces) continue;
-    if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
+    if (!(problem_.map().impulse(c, 0) > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
     // A contact at rest is not to start by what stops others: accelerations decide about that.
     const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));

@@ -234,8 +234,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     if (contact.has_dry_friction()) continue;
-    if (problem.impulses()[static_cast<std::size_t>(problem.first_row(c))] > 0.0)
-      accumulation_.remember(at.time, contact.key);
+    if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
   if (gain == 0.0 || options_->impact_rules.energy_gain != EnergyGain::refuse) return;
   failure_->fail("an impact adds " + to_text(gain) + " J, which impact_rules.energy_gain forbids",
