@@ -7,23 +7,6 @@
 
 namespace carom {
 
-namespace {
-
-/// Sweeps under the same loads until no violation of joints, in units of its rounding, is left, or sweeps
-/// hardly reduce it any more. \param left violation now \param most sweeps
-template <class Sweep, class Violation>
-void sweep_onto_joints(double left, int most, Sweep&& sweep, Violation&& violation) {
-  constexpr double improved = 0.8;
-  for (int sweeps = 0; sweeps < most && left > 1.0; ++sweeps) {
-    sweep();
-    const double now = violation();
-    if (!(now < improved * left)) return;
-    left = now;
-  }
-}
-
-}  // namespace
-
 IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
     : parts_(&parts), stop_(stop), method_(*parts.assembly) {
   sweeps_.assign(parts.assembly->components().size(), 1);
@@ -75,8 +58,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
-      const bool moved =
-          joined ? converge_joined(island, in) : joints != nullptr && converge_joints(island, in);
+      const bool moved = (joined || joints != nullptr) && converge_joints(island, in);
       return moved ? LoadsKnown::total : made.known;
     }
     for (const Index component : island.components) {
@@ -294,26 +276,27 @@ void IslandIteration::follow(const StepInput& in, Index component) {
 /// A change below the tolerance may leave the constraints above their rounding. Sweeps under the same loads
 /// bring the joints there however badly couplings contract. True if there were any.
 bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
-  const Index component = island.components.front();
-  JointStage& joints = *parts_->joints.of(component);
+  constexpr double improved = 0.8;
+  JointStage* const joints = joints_of(island);  // null: of several components
+  const auto violation = [&] {
+    return joints != nullptr ? joints->violation(in, parts_->trial)
+                             : parts_->joined.violation(in, island, parts_->trial);
+  };
+  const auto is_near_singular = [&] { return joints != nullptr && joints->rows().is_near_singular(); };
+  double left = violation();
+  if (!is_near_singular() && !(left > 1.0)) return false;
   JointContacts contacts = contacts_of(island);
-  const auto violation = [&] { return joints.violation(in, parts_->trial); };
-  const double left = violation();
-  if (!joints.rows().is_near_singular() && !(left > 1.0)) return false;
-  sweep_onto_joints(
-      left, parts_->options.max_sweeps, [&] { sweep_joints(in, component, joints, contacts); }, violation);
-  if (joints.rows().is_near_singular()) joints.settle_velocities(parts_->trial);
-  follow(in, component);
-  return true;
-}
-
-/// Likewise of several components.
-bool IslandIteration::converge_joined(const StepIsland& island, const StepInput& in) {
-  const auto violation = [&] { return parts_->joined.violation(in, island, parts_->trial); };
-  const double left = violation();
-  if (!(left > 1.0)) return false;
-  sweep_onto_joints(
-      left, parts_->options.max_sweeps, [&] { sweep_joined(island, in); }, violation);
+  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
+    if (joints != nullptr) {
+      sweep_joints(in, island.components.front(), *joints, contacts);
+    } else {
+      sweep_joined(island, in);
+    }
+    const double now = violation();
+    if (!(now < improved * left)) break;
+    left = now;
+  }
+  if (is_near_singular()) joints->settle_velocities(parts_->trial);
   for (const Index component : island.components) follow(in, component);
   return true;
 }
