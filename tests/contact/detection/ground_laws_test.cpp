@@ -57,4 +57,15 @@ TEST(GroundLaws, AreLookedUpByPair) {
                   .static_friction);
 }
 
+TEST(LawFacts, OneLawIsEnoughForAFact) {
+  LawFacts facts;
+  facts.add({.friction = 0.3, .normal_restitution = 0.5});
+  EXPECT_FALSE(facts.static_friction || facts.other_impact_law || facts.rolling_resistance);
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .static_friction = 0.4});
+  EXPECT_TRUE(facts.static_friction && !facts.other_impact_law && !facts.rolling_resistance);
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .impact_law = ImpactLaw::poisson});
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .rolling_resistance = 0.01});
+  EXPECT_TRUE(facts.static_friction && facts.other_impact_law && facts.rolling_resistance);
+}
+
 }  // namespace
