@@ -40,15 +40,6 @@ void check(const EquilibriumOptions& options) {
   if (options.most_steps < 1) refuse("most_steps", std::to_string(options.most_steps), ">= 1");
 }
 
-SolverError failure(const RestingModel& model, const std::string& message, double residual,
-                    std::vector<std::string> parts) {
-  SolverFailure what;
-  what.time = model.state().time;
-  what.residual = residual;
-  what.parts = std::move(parts);
-  return {message, std::move(what)};
-}
-
 /// The search: where it stands, and what counts there.
 class Search {
 public:
@@ -163,13 +154,13 @@ private:
       if (std::abs(motion[i]) <= takes_part * most) continue;
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
     }
-    std::string message = "equilibrium: ";
+    std::string message;
     for (std::size_t i = 0; i < names.size() && i < 3; ++i) message += (i == 0 ? "" : ", ") + names[i];
     if (names.size() > 3) message += " and others";
     message += " can move without being held back";
     if (!balanced) message += ", out of balance by " + to_text(largest(model_->left())) + " N";
     message += "; allowed: models that loads and joints hold";
-    throw failure(*model_, message, largest(model_->left()), names);
+    model_->fail(message, largest(model_->left()), names);
   }
 
   [[noreturn]] void give_up() const {
@@ -179,17 +170,15 @@ private:
         largest(model_->constraints().gaps()) / size_ > (scale_ > 0.0 ? largest(left) / scale_ : 0.0)) {
       const double gap = model_->constraints().gaps().cwiseAbs().maxCoeff(&worst);
       const std::string who = model_->constraints().row_name(worst);
-      throw failure(*model_,
-                    "equilibrium: none found, " + who + " cannot be closed, it is off by " + to_text(gap) +
-                        "; allowed: a start near an equilibrium",
-                    gap, {who});
+      model_->fail("none found, " + who + " cannot be closed, it is off by " + to_text(gap) +
+                       "; allowed: a start near an equilibrium",
+                   gap, {who});
     }
     left.cwiseAbs().maxCoeff(&worst);
     const std::string who = model_->body_name(worst);
-    throw failure(*model_,
-                  "equilibrium: none found, " + who + " is out of balance by " +
-                      to_text(std::abs(left[worst])) + " N; allowed: a start near an equilibrium",
-                  std::abs(left[worst]), {who});
+    model_->fail("none found, " + who + " is out of balance by " + to_text(std::abs(left[worst])) +
+                     " N; allowed: a start near an equilibrium",
+                 std::abs(left[worst]), {who});
   }
 
   RestingModel* model_;

@@ -16,15 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-SolverError failure(const State& state, const std::string& message, double residual,
-                    std::vector<std::string> parts) {
-  SolverFailure what;
-  what.time = state.time;
-  what.residual = residual;
-  what.parts = std::move(parts);
-  return {message, std::move(what)};
-}
-
 /// The state with velocities zero. Refuses one that a model cannot rest in.
 State at_rest(const Assembly& assembly, const State& start, const std::string& purpose) {
   check_state(assembly, start);
@@ -39,15 +30,9 @@ State at_rest(const Assembly& assembly, const State& start, const std::string& p
   return state;
 }
 
-void evaluate_all_positions(const Assembly& assembly, const State& state, Evaluation& evaluation) {
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    evaluate_positions(assembly, component, state.view(), evaluation);
-  }
-}
-
 Evaluation evaluation_at(const Assembly& assembly, const State& state) {
   Evaluation evaluation = make_evaluation(assembly);
-  evaluate_all_positions(assembly, state, evaluation);
+  evaluate_positions(assembly, state.view(), evaluation);
   return evaluation;
 }
 
@@ -166,16 +151,23 @@ void RestingModel::check_supports(double allowed) {
           ? "would have to pull with " + to_text(-normal) + " N; allowed: contacts that press"
           : "would slip: it needs a friction of " + to_text(along) + " N at a normal force of " +
                 to_text(normal) + " N; allowed: up to " + to_text(worst->friction()) + " times that";
-  throw failure(state_, purpose_ + ": " + who + " " + what, outside_cone(constraints_, *worst, l_), {who});
+  fail(who + " " + what, outside_cone(constraints_, *worst, l_), {who});
 }
 
 void RestingModel::check_open_contacts(double tolerance) const {
   const auto entered = constraints_.find_entered(state_.view(), evaluation_, tolerance);
   if (!entered) return;
-  throw failure(state_,
-                purpose_ + ": " + entered->name + " is entered by " + to_text(-entered->gap) +
-                    " m; allowed: contacts that are closed at the start, or stay open",
-                -entered->gap, {entered->name});
+  fail(entered->name + " is entered by " + to_text(-entered->gap) +
+           " m; allowed: contacts that are closed at the start, or stay open",
+       -entered->gap, {entered->name});
+}
+
+void RestingModel::fail(const std::string& what, double residual, std::vector<std::string> parts) const {
+  SolverFailure failure;
+  failure.time = state_.time;
+  failure.residual = residual;
+  failure.parts = std::move(parts);
+  throw SolverError(purpose_ + ": " + what, std::move(failure));
 }
 
 JointReaction RestingModel::reaction(const RestingConstraints::Joint& joint) const {

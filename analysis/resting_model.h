@@ -65,6 +65,8 @@ public:
   void check_supports(double allowed);
   /// Demands that no open contact is penetrated. Throws SolverError.
   void check_open_contacts(double tolerance) const;
+  /// Throws a SolverError. \param residual of it \param parts that it names
+  [[noreturn]] void fail(const std::string& what, double residual, std::vector<std::string> parts) const;
 
   /// Multiplier of a row as the joint or contact means it.
   [[nodiscard]] double multiplier(Eigen::Index row) const { return l_[row] / constraints_.norms()[row]; }

@@ -2,8 +2,6 @@
 
 #include <carom/contact/delassus.h>
 
-#include <algorithm>
-
 namespace carom {
 
 /// A body that has no slot yet gets one; no_slot where it does not answer for itself in the plane.

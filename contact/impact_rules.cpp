@@ -67,7 +67,6 @@ double limit_gain(const IslandProblem& problem, std::span<Constraint> constraint
       Surface& law = constraints[c].law;
       law.normal_restitution = factor * laws[c].normal_restitution;
       law.tangential_restitution = factor * laws[c].tangential_restitution;
-      law.rolling_restitution = factor * laws[c].rolling_restitution;
     }
     solved = solved && solve();
     if (!solved) return false;

@@ -16,16 +16,6 @@ void ImpulseMap::add_loads(double scale, double* load) const {
   }
 }
 
-double ImpulseMap::surface_work(std::size_t constraint) const {
-  const Constraint& at = constraints_[constraint];
-  double work = 0.0;
-  for (int row = 0; row < at.rows; ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    work += impulse_work(impulse(constraint, row), at.surface_velocity[i], at.surface_velocity_after[i]);
-  }
-  return work;
-}
-
 /// From the velocities that a unit impulse along each normal gives the bodies of its contact.
 double ImpulseMap::mass_ratio() const {
   if (!delassus_->slots().empty()) return 1.0;

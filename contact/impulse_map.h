@@ -78,9 +78,6 @@ public:
   [[nodiscard]] double before(std::size_t constraint, int row) const {
     return before_[place(constraint, row)];
   }
-  /// Work of the impulses of a constraint on the moving ground shape that it touches, P.(w^- + w^+)/2 with
-  /// the velocities w of the surface: what enters as external work [J].
-  [[nodiscard]] double surface_work(std::size_t constraint) const;
   /// By how much the bodies differ in what impulses make of their velocities: about the ratio of their
   /// masses; 1 where W is left in factors. Allocates.
   [[nodiscard]] double mass_ratio() const;

@@ -10,14 +10,11 @@
 #include <carom/contact/free_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
-#include <carom/contact/solvers/contact_mode.h>
-#include <carom/contact/solvers/factor_products.h>
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 #include <utility>
 

@@ -129,13 +129,6 @@ void Assembly::find_batches() {
   }
 }
 
-std::vector<double> Assembly::masses() const {
-  std::vector<double> masses;
-  masses.reserve(layout_->bodies().size());
-  for (const BodySlot& slot : layout_->bodies()) masses.push_back(body_kinds_[slot.kind]->mass(slot.slot));
-  return masses;
-}
-
 std::vector<double> Assembly::length_scales() const {
   std::vector<double> lengths;
   lengths.reserve(layout_->v_size());

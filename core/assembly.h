@@ -42,8 +42,6 @@ public:
   [[nodiscard]] Range bodies_of(Range components) const {
     return {components_[components.begin].bodies.begin, components_[components.end - 1].bodies.end};
   }
-  /// Masses of the bodies, in the order of assembly [kg]. Made at each call.
-  [[nodiscard]] std::vector<double> masses() const;
   /// Lengths that weight changes of the velocity coordinates (BodyKind::length_scale). Made at each
   /// call.
   [[nodiscard]] std::vector<double> length_scales() const;
@@ -165,10 +163,6 @@ CAROM_API void evaluate_loads_twice(const Assembly& assembly, Index component, c
                                     const BlockTasks& first_tasks, const Loads& second,
                                     const BlockTasks& second_tasks, StoredEnergies& stored,
                                     const Workers& workers = Workers());
-
-/// Adds the kinetic energy of one component.
-CAROM_API void add_kinetic_energy(const Assembly& assembly, Index component, const StateView& state,
-                                  StoredEnergies& out);
 
 /// Zeroes the given arrays over one component and adds the mean loads of all its elements over a step
 /// (ForceKind::evaluate_mean).

@@ -255,13 +255,6 @@ double internal_loss(const Assembly& assembly, Index component, const StepContex
   return loss;
 }
 
-void add_kinetic_energy(const Assembly& assembly, Index component, const StateView& state,
-                        StoredEnergies& out) {
-  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
-  });
-}
-
 void evaluate(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
   evaluate_positions(assembly, component, state, out);
   double* const force = out.force.data();
@@ -270,7 +263,9 @@ void evaluate(const Assembly& assembly, Index component, const StateView& state,
 
 void add_stored_energies(const Assembly& assembly, Index component, const StateView& state,
                          const Evaluation& evaluation, StoredEnergies& out) {
-  add_kinetic_energy(assembly, component, state, out);
+  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    out[StoredEnergy::kinetic] += kind.kinetic_energy(slots, state.v + v);
+  });
   add_potentials(assembly, component, state, evaluation, out);
 }
 

@@ -58,7 +58,6 @@ enum class ConstraintType : std::uint8_t {
   contact,         ///< row 0 along the normal, P_n >= 0; the others tangential, bounded by friction times P_n
   limit,           ///< one row, P >= 0: limit of a joint's coordinate
   joint_friction,  ///< one row, |P| <= friction times friction_bound: dry friction along a joint's coordinate
-  motor_bound,     ///< likewise: a motor whose force has a largest size
   rolling          ///< likewise, |M| <= friction times P_n: rolling resistance of the contact before it
 };
 
@@ -110,12 +109,12 @@ struct Constraint {
   [[nodiscard]] bool has_dry_friction() const { return type >= ConstraintType::joint_friction; }
   /// Row along which it may stick: the first tangential one.
   [[nodiscard]] int tangent_row() const { return has_dry_friction() ? 0 : 1; }
-  /// True if a row is bounded by friction.
-  [[nodiscard]] bool is_tangential(int i) const { return i >= tangent_row(); }
   /// Restitution along a row.
   [[nodiscard]] double restitution(int i) const {
-    return is_tangential(i) ? law.tangential_restitution : law.normal_restitution;
+    return i >= tangent_row() ? law.tangential_restitution : law.normal_restitution;
   }
+  /// Makes it an impact without rebound. Rolling resistance is a constraint of its own.
+  void remove_restitution() { law.normal_restitution = law.tangential_restitution = 0.0; }
   /// Its first body.
   [[nodiscard]] Index body() const { return blocks[0].body; }
   /// Appends a body, before rows are written. \param v first of its velocities \param width their number

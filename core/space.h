@@ -48,7 +48,6 @@ template <>
 struct Space<2> {
   static constexpr int dimension = 2;
   static constexpr bool has_orientation = true;  ///< bodies may have an orientation
-  static constexpr int orientation_size = 1;     ///< the angle
   static constexpr int spin_size = 1;            ///< the angular velocity
   static constexpr int rotation_size = 2;        ///< cosine and sine of the angle
   static constexpr int tangents = 1;

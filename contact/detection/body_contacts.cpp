@@ -3,7 +3,6 @@
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/touching_kinds.h>
-#include <carom/contact/detection/tracked_contact.h>
 
 #include <algorithm>
 #include <array>
@@ -45,19 +44,9 @@ bool has_law_between_bodies(const System& system) {
   return false;
 }
 
-Box<2> box_around(const Vec<2>* vertices, const BodyOutline& outline) {
-  Box<2> box{vertices[0], vertices[0]};
-  for (Index i = 1; i < outline.vertices.size(); ++i) {
-    box.min = box.min.cwiseMin(vertices[i]);
-    box.max = box.max.cwiseMax(vertices[i]);
-  }
-  box.min.array() -= outline.radius;
-  box.max.array() += outline.radius;
-  return box;
-}
-
-ConvexOutline view(const BodyOutline& outline, const Vec<2>* vertices) {
-  return {{vertices, outline.vertices.size()}, outline.radius};
+/// An outline where its body is.
+ConvexOutline view(const BodyOutline& outline, std::span<const Vec<2>> placed) {
+  return {placed.subspan(outline.vertices.begin, outline.vertices.size()), outline.radius};
 }
 
 /// Outlines of the contacts of the step before. Mostly those contacts are the same as in the step before
@@ -127,10 +116,7 @@ BodyContacts::BodyContacts(const Assembly& assembly, const FeatureLengths& lengt
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });
   for (const std::optional<Surface>& law : laws_) {
-    if (!law) continue;
-    has_static_friction_ = has_static_friction_ || law->has_static_friction();
-    resists_rolling_ = resists_rolling_ || law->resists_rolling();
-    has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();
+    if (law) law_facts_.add(*law);
   }
 }
 
@@ -156,7 +142,7 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
   pairs.clear();
   memory.boxes.clear();
   for (const BodyOutline& outline : list) {
-    memory.boxes.push_back(box_around(memory.placed.data() + outline.vertices.begin, outline));
+    memory.boxes.push_back(box_around(view(outline, memory.placed).vertices, outline.radius));
   }
   if (memory.broad.size() != list.size()) {
     std::vector<Index> owners;
@@ -209,8 +195,7 @@ void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
 void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const {
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
-  const ConvexOutline of_a = view(a, memory.placed.data() + a.vertices.begin),
-                      of_b = view(b, memory.placed.data() + b.vertices.begin);
+  const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
   const auto add_if_any = [&](const BodyTouch& touch) {
     if (touch.gap.gap <= query.margin) {
       memory.touching.push_back(touch);
@@ -260,15 +245,6 @@ void BodyContacts::write_rows(const BodyTouch& touch, const BodyContactSearch& m
   out.allowed_approach = touch.allowed_approach;
 }
 
-/// A vertex stands against the outline of the other body, whichever of its features is nearest. Of two
-/// vertices it is the one of the outline with fewer.
-ConstraintKey BodyContacts::key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap) {
-  const bool of_a = gap.kind == GapKind::edge_of_b ||
-                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
-  return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
-              : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
-}
-
 void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b,
                         const GapPoint& gap, const StateView& state, Constraint& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
@@ -297,9 +273,7 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;
-  gap.normal = frame_b.turned(gap.normal);
-  gap.point_a = frame_b.outside(gap.point_a);
-  gap.point_b = frame_b.outside(gap.point_b);
+  gap = in_space(frame_b, gap);
   out = {};  // it may have held a contact of other bodies
   if (b.key < a.key) {
     fill({b.surface(), vertex_key}, b, a, gap.swapped(), state, out);
@@ -310,7 +284,21 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
 
 void BodyContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
                           const Evaluation& evaluation, Constraint& contact) const {
-  follow_feature(*assembly_, outlines_, pair, feature, state, evaluation, contact);
+  const BodySlots& bodies = assembly_->layout()->bodies();
+  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
+                    &b = outlines_.list()[pair.outline];
+  const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
+  const PlaneFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
+  const Vec<2> vertex = frame_b.inside(frame_a.outside(outlines_.vertices()[pair.feature]));
+  const GapPoint gap =
+      in_space(frame_b, tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), feature));
+  const PairSide side_a = PairSide::of_body(slot_a, a.body, a.radius, state);
+  const PairSide side_b = PairSide::of_body(slot_b, b.body, b.radius, state);
+  if (contact.body() == a.body) {
+    fill_pair_rows(side_a, side_b, gap, contact);
+  } else {
+    fill_pair_rows(side_b, side_a, gap.swapped(), contact);
+  }
 }
 
 OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView& state,

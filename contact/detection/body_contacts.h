@@ -11,6 +11,7 @@
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/law_facts.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
 #include <carom/contact/detection/pair_rows.h>
@@ -54,15 +55,12 @@ public:
 
   /// True if no two bodies can touch.
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
-  /// True if some law takes more to slip than to slide.
-  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
-  /// True if some law of impact is not Newton's.
-  [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
-  /// True if some law has rolling resistance.
-  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
-  /// True if the law of such a contact has.
+  /// Facts of the laws of all pairs.
+  [[nodiscard]] const LawFacts& law_facts() const { return law_facts_; }
+  /// True if the law of such a contact has rolling resistance.
   [[nodiscard]] bool resists_rolling(const BodyTouch& touch) const {
-    return resists_rolling_ && law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
+    return law_facts_.rolling_resistance &&
+           law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
   }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
@@ -90,7 +88,9 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                Constraint& out) const;
 
-  /// Brings the contact of such a pair to a state, as follow_feature().
+  /// Brings rows, gap and drift of the contact of such a pair to a state as long as its vertex stays with one
+  /// feature of the outline (ConvexOutline), whichever is the nearest: a smooth function of the motion, also
+  /// a little beyond the border where another feature takes over. Key and law stay.
   void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
               Constraint& contact) const;
   /// The vertex and the outline of such a pair.
@@ -101,7 +101,6 @@ private:
   [[nodiscard]] const Surface* law(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] bool kinds_may_touch(const BodyOutline& a, const BodyOutline& b) const;
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const;
-  [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const BodyOutline& b, const GapPoint& gap);
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
@@ -114,9 +113,7 @@ private:
   BodyOutlines outlines_;
   PairFilter filter_;
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
-  bool has_static_friction_ = false;
-  bool has_other_impact_law_ = false;
-  bool resists_rolling_ = false;
+  LawFacts law_facts_;
   bool all_may_touch_ = false;     // outlines of any two bodies
   bool in_order_of_keys_ = false;  // outlines are
 };

@@ -7,6 +7,7 @@
 #include <carom/core/space.h>
 
 #include <compare>
+#include <span>
 
 namespace carom {
 
@@ -16,6 +17,18 @@ struct Box {
   Vec<D> min = Vec<D>::Zero();  ///< least coordinates
   Vec<D> max = Vec<D>::Zero();  ///< largest coordinates
 };
+
+/// The box around some points, one at least, wider by some distance on all sides [m].
+[[nodiscard]] inline Box<2> box_around(std::span<const Vec<2>> points, double wider) {
+  Box<2> box{points[0], points[0]};
+  for (const Vec<2>& point : points.subspan(1)) {
+    box.min = box.min.cwiseMin(point);
+    box.max = box.max.cwiseMax(point);
+  }
+  box.min.array() -= wider;
+  box.max.array() += wider;
+  return box;
+}
 
 /// Two boxes that overlap, first < second.
 struct BoxPair {

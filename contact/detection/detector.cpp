@@ -80,22 +80,6 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
 }
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                       Constraint& out) const {
-  if (pair.rolling) {
-    GroundPlaces places;
-    place(state.time, places);
-    return contact(pair, state, evaluation, places, out);
-  }
-  if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
-  if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
-  GroundMotion now;
-  if (moves(*this, pair)) now = ground_.shapes().motion(pair.ground_shape, state.time);
-  const GroundMotion* const motion = moves(*this, pair) ? &now : nullptr;
-  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, motion, out);
-  ground_.contact(pair, state, evaluation, motion, out);
-}
-
-void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        const GroundPlaces& places, Constraint& out) const {
   assert(!has_moving_ground() || places.time() == state.time);
   if (pair.rolling) {

@@ -90,17 +90,15 @@ public:
 
   /// All pairs of one component, in the order of find(); without those of two bodies. Made at each call.
   [[nodiscard]] std::vector<ContactPair> pairs(Index component) const;
-  /// The contact of a pair, or its rolling resistance, whatever its gap. The position group of `evaluation`
-  /// must be up to date. Places its shape on ground by itself.
-  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               Constraint& out) const;
-  /// Likewise with the ground at `places`, which must be of the state's time.
+  /// The contact of a pair, or its rolling resistance, whatever its gap, with the ground at `places`, which
+  /// must be of the state's time. The position group of `evaluation` must be up to date.
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
-    return ground_.has_static_friction() || bodies_.has_static_friction() || joints_.has_friction();
+    return ground_.law_facts().static_friction || bodies_.law_facts().static_friction ||
+           joints_.has_friction();
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
@@ -121,13 +119,14 @@ private:
 
 /// True if some law of impact is not Newton's.
 [[nodiscard]] inline bool has_other_impact_law(const Detector& detector) {
-  return detector.ground().has_other_impact_law() || detector.bodies().has_other_impact_law();
+  return detector.ground().law_facts().other_impact_law || detector.bodies().law_facts().other_impact_law;
 }
 /// True if some law has rolling resistance.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector) {
-  return detector.ground().resists_rolling() || detector.bodies().resists_rolling();
+  return detector.ground().law_facts().rolling_resistance || detector.bodies().law_facts().rolling_resistance;
 }
-/// True if the law of a pair of shapes has; not of the pair of such a resistance.
+/// True if the law of a pair of shapes has rolling resistance. False of the pair that stands for that
+/// resistance, and of joints.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector, const ContactPair& pair) {
   if (pair.joint_row != none || pair.rolling) return false;
   if (pair.other != none) return detector.bodies().law(pair).resists_rolling();

@@ -64,8 +64,8 @@ Index FeatureRegions::face_of_segment(Index nearest) const {
   Vec<2> sum = Vec<2>::Zero();
   for (const Vec<2>& vertex : of_vertex_.vertices) sum += vertex;
   const Vec<2> middle = sum / static_cast<double>(of_vertex_.size());
-  const Vec<2> turned(cosine_ * middle[0] - sine_ * middle[1], sine_ * middle[0] + cosine_ * middle[1]);
-  const double behind = -face.height(Vec<2>(shift_ + turned));
+  const Vec<2> placed_middle = in_frame_of_outline(middle);
+  const double behind = -face.height(placed_middle);
   if (!(behind > 0.0)) return nearest;
   const double above = std::max(0.0, face.height(place_)), share = above / (above + behind);
   // Two segments cross each other at the end that has gone through by the least.
@@ -75,7 +75,7 @@ Index FeatureRegions::face_of_segment(Index nearest) const {
       if (std::abs(other.height(in_frame_of_vertex(end))) < above) return nearest;
     }
   }
-  const double at_vertex = face.coordinate(place_), at_middle = face.coordinate(Vec<2>(shift_ + turned));
+  const double at_vertex = face.coordinate(place_), at_middle = face.coordinate(placed_middle);
   const double along = at_vertex + share * (at_middle - at_vertex);
   return along >= 0.0 && along <= face.length ? n + face.head : nearest;
 }
@@ -121,6 +121,11 @@ Vec<2> FeatureRegions::in_frame_of_vertex(const Vec<2>& point) const {
   return {cosine_ * apart[0] + sine_ * apart[1], cosine_ * apart[1] - sine_ * apart[0]};
 }
 
+Vec<2> FeatureRegions::in_frame_of_outline(const Vec<2>& point) const {
+  const Vec<2> turned(cosine_ * point[0] - sine_ * point[1], sine_ * point[0] + cosine_ * point[1]);
+  return shift_ + turned;
+}
+
 /// Height of the outline over an edge of that of the vertex.
 double FeatureRegions::separation_along_other(const OutlineEdge& edge) const {
   double least = std::numeric_limits<double>::infinity();
@@ -134,8 +139,7 @@ double FeatureRegions::separation_along_other(const OutlineEdge& edge) const {
 double FeatureRegions::separation_along(const OutlineEdge& edge) const {
   double least = std::numeric_limits<double>::infinity();
   for (const Vec<2>& vertex : of_vertex_.vertices) {
-    const Vec<2> turned(cosine_ * vertex[0] - sine_ * vertex[1], sine_ * vertex[0] + cosine_ * vertex[1]);
-    least = std::min(least, edge.height(Vec<2>(shift_ + turned)));
+    least = std::min(least, edge.height(in_frame_of_outline(vertex)));
   }
   return least;
 }

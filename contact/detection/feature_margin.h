@@ -55,6 +55,7 @@ private:
   [[nodiscard]] Index touching_at(Index corner, Index found) const;
   [[nodiscard]] Index edge_at(Index corner, Index found) const;
   [[nodiscard]] Vec<2> in_frame_of_vertex(const Vec<2>& point) const;
+  [[nodiscard]] Vec<2> in_frame_of_outline(const Vec<2>& point) const;
   [[nodiscard]] double separation_along_other(const OutlineEdge& edge) const;
   [[nodiscard]] double separation_along(const OutlineEdge& edge) const;
 

@@ -38,12 +38,8 @@ public:
 
   /// The shapes on ground.
   [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
-  /// True if some law takes more to slip than to slide.
-  [[nodiscard]] bool has_static_friction() const { return laws_.has_static_friction(); }
-  /// True if some law of impact is not Newton's.
-  [[nodiscard]] bool has_other_impact_law() const { return laws_.has_other_impact_law(); }
-  /// True if some law has rolling resistance.
-  [[nodiscard]] bool resists_rolling() const { return laws_.resists_rolling(); }
+  /// Facts of the laws of all pairs.
+  [[nodiscard]] const LawFacts& law_facts() const { return laws_.facts(); }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return features_.any_off_centre(); }
 

@@ -46,9 +46,7 @@ GroundLaws::GroundLaws(const Assembly& assembly, const BodyFeatures& features, c
       }
       if (!shapes.has_pieces(shape)) touched_.push_back(shape);
       laws_.push_back(*law);
-      has_static_friction_ = has_static_friction_ || law->has_static_friction();
-      resists_rolling_ = resists_rolling_ || law->resists_rolling();
-      has_other_impact_law_ = has_other_impact_law_ || law->has_other_impact_law();
+      facts_.add(*law);
     }
     begin_.push_back(static_cast<Index>(touched_.size()));
   }

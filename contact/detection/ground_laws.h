@@ -3,6 +3,7 @@
 /// \file
 /// Laws of the contacts between features of bodies and shapes on ground, looked up once.
 
+#include <carom/contact/detection/law_facts.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 #include <carom/core/surface.h>
@@ -31,21 +32,15 @@ public:
   [[nodiscard]] const Surface& law(Index material, Index shape) const {
     return laws_[material * shapes_ + shape];
   }
-  /// True if some law takes more to slip than to slide.
-  [[nodiscard]] bool has_static_friction() const { return has_static_friction_; }
-  /// True if some law of impact is not Newton's.
-  [[nodiscard]] bool has_other_impact_law() const { return has_other_impact_law_; }
-  /// True if some law has rolling resistance.
-  [[nodiscard]] bool resists_rolling() const { return resists_rolling_; }
+  /// Facts of all laws.
+  [[nodiscard]] const LawFacts& facts() const { return facts_; }
 
 private:
   Index shapes_;               // number of shapes
   std::vector<Surface> laws_;  // row-major: material, shape
   std::vector<Index> begin_;   // of each material: its first in `touched_`
   std::vector<Index> touched_;
-  bool has_static_friction_ = false;
-  bool has_other_impact_law_ = false;
-  bool resists_rolling_ = false;
+  LawFacts facts_;
 };
 
 }  // namespace carom

@@ -134,20 +134,15 @@ void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t 
 void GroundPieces::finish(GroundOutline outline) {
   outline.vertices.end = static_cast<Index>(vertices_.size());
   outline_of_.resize(vertices_.size(), static_cast<Index>(outlines_.size()));
-  outline.box = {vertices_[outline.vertices.begin], vertices_[outline.vertices.begin]};
-  for (Index i = outline.vertices.begin; i < outline.vertices.end; ++i) {
-    outline.box.min = outline.box.min.cwiseMin(vertices_[i]);
-    outline.box.max = outline.box.max.cwiseMax(vertices_[i]);
-    outline.reach = std::max(outline.reach, vertices_[i].norm() + outline.radius);
-  }
+  const std::span<const Vec<2>> own = vertices().subspan(outline.vertices.begin, outline.vertices.size());
+  outline.box = box_around(own, outline.radius);
+  for (const Vec<2>& vertex : own) outline.reach = std::max(outline.reach, vertex.norm() + outline.radius);
   const Index first = outline.vertices.begin, last = outline.vertices.end - 1;
   for (Index i = first; i <= last; ++i) {
     const Index before = i > first ? i - 1 : outline.is_closed ? last : i;
     const Index behind = i < last ? i + 1 : outline.is_closed ? first : i;
     around_.push_back({vertices_[i], vertices_[behind], vertices_[before]});
   }
-  outline.box.min.array() -= outline.radius;
-  outline.box.max.array() += outline.radius;
   outlines_.push_back(outline);
 }
 
@@ -158,22 +153,11 @@ bool GroundPieces::is_bounded(Index piece) const {
 
 Box<2> GroundPieces::box(Index piece) const {
   const GroundPiece& of = pieces_[piece].at;
-  const bool is_face = of.form == Form::face;
-  const auto first = of.points.begin() + (is_face ? 1 : 0), last = is_face ? first + 2 : of.points.end();
-  Box<2> box{*first, *first};
-  const auto hold = [&](const Vec<2>& point) {
-    box.min = box.min.cwiseMin(point);
-    box.max = box.max.cwiseMax(point);
-  };
-  for (auto point = first; point != last; ++point) hold(*point);
-  if (is_face) {
-    const Vec<2> along = direction(first[0], first[1]), inwards(-along[1], along[0]);
-    hold(first[0] + of.depth * inwards);
-    hold(first[1] + of.depth * inwards);
-  }
-  box.min.array() -= of.radius;
-  box.max.array() += of.radius;
-  return box;
+  if (of.form != Form::face) return box_around(of.points, of.radius);
+  const Vec<2>&tail = of.points[1], &head = of.points[2];
+  const Vec<2> along = direction(tail, head), inwards(-along[1], along[0]);
+  const std::array<Vec<2>, 4> corners{tail, head, tail + of.depth * inwards, head + of.depth * inwards};
+  return box_around(corners, of.radius);
 }
 
 int GroundPieces::find(Index piece, const ConvexOutline& a, double margin,

@@ -20,7 +20,6 @@ GroundShapes::GroundShapes(const System& system) : system_(&system) {
     kind.pieces(place.slot, pieces);
     shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty(),
                        kind.is_flat(place.slot)});
-    any_has_pieces_ = any_has_pieces_ || !pieces.empty();
   }
 }
 

@@ -53,8 +53,6 @@ public:
   }
   /// True if outlines of bodies touch a shape (GroundShapeKind::pieces).
   [[nodiscard]] bool has_pieces(Index shape) const { return shapes_[shape].has_pieces; }
-  /// True if any shape is one of these.
-  [[nodiscard]] bool any_has_pieces() const { return any_has_pieces_; }
   /// True if the boundary of a shape without pieces is flat.
   [[nodiscard]] bool is_flat(Index shape) const { return shapes_[shape].is_flat; }
   /// Velocity of a conveyor's surface along itself [m/s].
@@ -107,7 +105,6 @@ private:
   const System* system_;
   std::vector<Shape> shapes_;
   Index moving_ = 0;  // shapes that move
-  bool any_has_pieces_ = false;
 };
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 /// \file
 /// Names of the features of an outline in the keys of contacts (ConstraintKey).
 
+#include <carom/contact/detection/gap_point.h>
 #include <carom/core/constraint.h>
 #include <carom/core/ids.h>
 
@@ -28,5 +29,15 @@ struct OutlineFeatures {
     return vertices.begin + (vertex.feature - key.feature);
   }
 };
+
+/// Names a contact: a vertex stands against the outline of the other side, whichever of its features is
+/// nearest. Of two vertices it is the one of the outline with fewer.
+[[nodiscard]] inline ConstraintKey key_of(const OutlineFeatures& a, const OutlineFeatures& b,
+                                          const GapPoint& gap) {
+  const bool of_a = gap.kind == GapKind::edge_of_b ||
+                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
+  return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
+              : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+}
 
 }  // namespace carom

@@ -6,6 +6,7 @@
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/contact/detection/face_chain.h>
 #include <carom/contact/detection/feature_region.h>
+#include <carom/contact/detection/gap_point.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/layout.h>
@@ -59,6 +60,15 @@ struct PlaneFrame {
     return {velocity[0] - spin * arm[1], velocity[1] + spin * arm[0]};
   }
 };
+
+/// A gap that was found in a frame, in space.
+[[nodiscard]] inline GapPoint in_space(const PlaneFrame& frame, const GapPoint& gap) {
+  GapPoint out = gap;
+  out.normal = frame.turned(gap.normal);
+  out.point_a = frame.outside(gap.point_a);
+  out.point_b = frame.outside(gap.point_b);
+  return out;
+}
 
 /// A vertex and an outline that it may touch. A view.
 struct OutlinePair {

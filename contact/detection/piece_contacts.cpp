@@ -13,18 +13,6 @@
 
 namespace carom {
 
-namespace {
-
-GapPoint in_space(const PlaneFrame& frame, const GapPoint& gap) {
-  GapPoint out = gap;
-  out.normal = frame.turned(gap.normal);
-  out.point_a = frame.outside(gap.point_a);
-  out.point_b = frame.outside(gap.point_b);
-  return out;
-}
-
-}  // namespace
-
 struct PieceContacts::Search {
   const ContactQuery& query;
   const BodyOutline& outline;
@@ -89,13 +77,8 @@ bool PieceContacts::may_touch(const BodyOutline& a, const GroundOutline& b) cons
   return carom::may_touch(a.filter, shapes_.filter(b.shape));
 }
 
-/// A vertex stands against the outline of the other side, whichever of its features is nearest. Of two
-/// vertices it is the one of the outline with fewer.
-ConstraintKey PieceContacts::key_of(const BodyOutline& a, const GroundOutline& b, const GapPoint& gap) const {
-  const bool of_a = b.is_hollow() || gap.kind == GapKind::edge_of_b ||
-                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
-  return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
-              : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+ConstraintKey PieceContacts::key_of(const BodyOutline& a, const GroundOutline& b, const GapPoint& gap) {
+  return b.is_hollow() ? ConstraintKey{a.vertex(gap.feature_a), b.surface()} : carom::key_of(a, b, gap);
 }
 
 void PieceContacts::find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
@@ -142,14 +125,7 @@ void PieceContacts::find_in(const Family& family, const BodyOutline& outline, co
   search.placed = {vertices.all(), outline.radius};
   ShortList<Index, 64> near_by;
   if (is_near) {
-    Box<2> box{vertices.all()[0], vertices.all()[0]};
-    for (const Vec<2>& vertex : vertices.all()) {
-      box.min = box.min.cwiseMin(vertex);
-      box.max = box.max.cwiseMax(vertex);
-    }
-    const double wider = outline.radius + search.margin;
-    box.min.array() -= wider;
-    box.max.array() += wider;
+    const Box<2> box = box_around(vertices.all(), outline.radius + search.margin);
     family.grid.for_overlapping(box, [&](const OwnedBox<2>& piece) { near_by.push_back(piece.number); });
     std::sort(near_by.all().begin(), near_by.all().end());
   }
@@ -274,21 +250,24 @@ std::optional<ContactPair> PieceContacts::pair_of(const ConstraintKey& key) cons
   return pair;
 }
 
+/// The outline of the body of a pair, and that on ground.
+PieceContacts::Sides PieceContacts::sides_of(const ContactPair& pair) const {
+  if (pair.ground_outline == none)
+    return {outlines_.list()[pair.outline], pieces_.outline_of(pair.ground_vertex)};
+  return {outlines_.list()[outlines_.outline_of(pair.feature)], pair.ground_outline};
+}
+
 const Surface& PieceContacts::law(const ContactPair& pair) const {
-  const bool of_body = pair.ground_outline != none;
-  const BodyOutline& outline = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
-  return laws_[outline.material * shapes_.size() + pair.ground_shape];
+  return laws_[sides_of(pair).body.material * shapes_.size() + pair.ground_shape];
 }
 
 void PieceContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             const GroundMotion* motion, Constraint& out) const {
-  const bool of_body = pair.ground_outline != none;
-  const Index on_ground = of_body ? pair.ground_outline : pieces_.outline_of(pair.ground_vertex);
+  const auto [a, on_ground] = sides_of(pair);
   const GroundOutline& b = pieces_.outlines()[on_ground];
-  const BodyOutline& a = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
   const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), none);
-  const ConstraintKey key = of_body ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
-                                    : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
+  const ConstraintKey key = pair.ground_outline != none ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
+                                                        : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
   out = {};  // it may have held a contact of another body
   fill(key, a, on_ground, gap, state, motion, nullptr, out);
 }
@@ -296,9 +275,7 @@ void PieceContacts::contact(const ContactPair& pair, const StateView& state, con
 void PieceContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
                            const Evaluation& evaluation, const GroundMotion* motion,
                            Constraint& contact) const {
-  const bool of_body = pair.ground_outline != none;
-  const Index on_ground = of_body ? pair.ground_outline : pieces_.outline_of(pair.ground_vertex);
-  const BodyOutline& a = outlines_.list()[of_body ? outlines_.outline_of(pair.feature) : pair.outline];
+  const auto [a, on_ground] = sides_of(pair);
   const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), feature);
   const BodySlot& body = assembly_->layout()->bodies()[pair.body];
   pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, nullptr,

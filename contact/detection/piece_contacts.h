@@ -72,12 +72,19 @@ private:
   };
   /// One body's outline before one family.
   struct Search;
+  /// Outline of a body, and number of one on ground.
+  struct Sides {
+    const BodyOutline& body;
+    Index on_ground;
+  };
 
   void find_laws();
   void fill_families();
   [[nodiscard]] bool may_touch(const BodyOutline& a, const GroundOutline& b) const;
-  [[nodiscard]] ConstraintKey key_of(const BodyOutline& a, const GroundOutline& b, const GapPoint& gap) const;
+  [[nodiscard]] static ConstraintKey key_of(const BodyOutline& a, const GroundOutline& b,
+                                            const GapPoint& gap);
   [[nodiscard]] Range outlines_of(Index body) const { return {begin_[body], begin_[body + 1]}; }
+  [[nodiscard]] Sides sides_of(const ContactPair& pair) const;
   void find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
                std::vector<Constraint>& out) const;
   void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;

@@ -11,7 +11,6 @@
 #include <carom/contact/solvers/pack_kernel.h>
 
 #include <algorithm>
-#include <cmath>
 
 #if defined(__GNUC__)
 // Lanes stay within this source, inlined: no call depends on how they would be passed.

@@ -12,15 +12,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 
 namespace carom {
 

@@ -5,9 +5,7 @@
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/csv.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace carom {
 

@@ -9,7 +9,6 @@
 #include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <stdexcept>
 #include <utility>
 #include <vector>

@@ -23,9 +23,7 @@ EnergyFlow line_of_rolling(EventKind kind) {
 
 /// True of a contact that was closed in an impact without taking part in it.
 bool took_no_impulse(const EventRecord& event) {
-  const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
-                         event.kind == EventKind::impact_without_collision;
-  return impulsive && event.impulse == std::array<double, 3>{};
+  return is_impulsive(event.kind) && event.impulse == std::array<double, 3>{};
 }
 
 }  // namespace
@@ -165,10 +163,9 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
 /// Friction in a joint, or rolling resistance, which is in the record of the contact before it.
 void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c, ImpulseWork& sum) {
   const Constraint& at = impact.problem.constraints()[c];
-  const auto place = static_cast<std::size_t>(impact.problem.first_row(c));
-  const double impulse = impact.problem.impulses()[place];
-  const double work =
-      sum.add(impulse, impact.problem.before()[place], at.tangential_velocity(impact.velocity));
+  const ImpulseMap map = impact.problem.map();
+  const double impulse = map.impulse(c, 0);
+  const double work = sum.add(impulse, map.before(c, 0), at.tangential_velocity(impact.velocity));
   if (at.type != ConstraintType::rolling) {
     flows[EnergyFlow::joint_friction] -= work;
     return;
@@ -194,7 +191,7 @@ void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& mod
     const Constraint& contact = problem.constraints()[c];
     if (!contact.has_dry_friction() || contact.type == ConstraintType::rolling) continue;
     JointReaction reaction;
-    reaction.moment = problem.impulses()[static_cast<std::size_t>(problem.first_row(c))];
+    reaction.moment = problem.map().impulse(c, 0);
     const JointId friction{contact.key.a.serial, model.assembly->system().token()};
     joint_impulses.push_back({friction, reaction, impact.time});
   }

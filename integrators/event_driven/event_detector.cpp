@@ -49,7 +49,7 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
   scales_ = scales;
   list_active();
   take_features(time, y);
-  if (!sample_step_end(*motion_, time, y, memory_->is_active, scales_.force, *memory_, start_)) {
+  if (!sample_step_end(*motion_, time, y, memory_->is_active, scales_, *memory_, start_)) {
     failure_->fail_loads(memory_->within);
   }
   guards_.update(start_.sample.guards, scales_.guard_noise);
@@ -105,8 +105,8 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
         failure_->fail_flow(error, *motion_, y.data(), memory_->within);
       return unbounded_at(time, y, error.what());
     }
-    if (!sample_step_end(*motion_, flow.end(), flow.state().data(), memory_->is_active, scales_.force,
-                         *memory_, memory_->ends.end())) {
+    if (!sample_step_end(*motion_, flow.end(), flow.state().data(), memory_->is_active, scales_, *memory_,
+                         memory_->ends.end())) {
       failure_->fail_loads(memory_->within);
     }
     if (comes_to_pole(time, y))

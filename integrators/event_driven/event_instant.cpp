@@ -79,4 +79,29 @@ void EventInstant::take_velocities() {
   }
 }
 
+double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at) {
+  double largest = 0.0;
+  for (const Constraint& constraint : constraints) {
+    for (int row = 0; row < constraint.rows; ++row)
+      largest = std::max(largest, std::abs(constraint.acceleration(row, at.now.acceleration.data())));
+  }
+  return largest;
+}
+
+bool solve_ahead(double time, std::span<Constraint> constraints, EventInstant& at, std::vector<double>& ahead,
+                 IslandProblem& problem, SolverChain& chain) {
+  for (Constraint& constraint : constraints) {
+    for (std::size_t row = 0; row < Constraint::max_rows; ++row)
+      constraint.surface_velocity_after[row] =
+          constraint.surface_velocity[row] - time * constraint.drift[row];
+  }
+  ahead.assign(at.now.state.v.begin(), at.now.state.v.end());
+  at.motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
+    for (Index i = v.begin; i < v.end; ++i) ahead[i] += time * at.now.acceleration[i];
+  });
+  at.motion.joints().build(problem, constraints, at.velocities());
+  problem.set_free_velocity(ahead.data());
+  return problem.solve(chain).usable();
+}
+
 }  // namespace carom

@@ -4,6 +4,8 @@
 /// The instant of an event: the state of a clock group there, which the stages of the event read and change.
 
 #include <carom/contact/active_set.h>
+#include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_balance.h>
@@ -81,5 +83,13 @@ struct CAROM_API EventInstant {
   /// Takes the velocities of the sample over into the state.
   void take_velocities();
 };
+
+/// Largest acceleration, along their rows, of constraints at an instant [m/s^2].
+[[nodiscard]] double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at);
+/// Solves for the velocities after some time under the accelerations of an instant, b = gamma + time a.
+/// \param time [s] \param constraints without restitution; their rows turn during that time \param ahead
+/// memory \param problem that is stated and solved; true if its answer is usable
+[[nodiscard]] bool solve_ahead(double time, std::span<Constraint> constraints, EventInstant& at,
+                               std::vector<double>& ahead, IslandProblem& problem, SolverChain& chain);
 
 }  // namespace carom

@@ -40,24 +40,37 @@ double EventScales::noise_of(const SmoothMotion& motion, const Constraint& conta
 
 namespace {
 
-/// Size of the numbers that gaps of the bodies of a component are made of [m].
-double size_of(const Component& component, const SmoothMotion& motion, const State& state) {
+// Forces this small against those around them are zero. Answers of contact problems are certified to 1e-12,
+// and far from the origin places are rounded, and with them the levers of contacts, which forces follow from.
+double force_rounding_of(double place, double lever) {
+  constexpr double by_answers = 1e-11, by_places = 16.0 * std::numeric_limits<double>::epsilon();
+  return std::max(by_answers, by_places * place / lever);
+}
+
+/// Sizes of the bodies of a group [m].
+struct BodySizes {
+  double gap = 0.0;                                        // other numbers that gaps are made of
+  double place = 0.0;                                      // coordinates of places
+  double lever = std::numeric_limits<double>::infinity();  // least radius of gyration
+};
+
+/// Takes in the bodies of a component.
+void add_sizes(const Component& component, const SmoothMotion& motion, const State& state, BodySizes& sizes) {
   // Up to one turn an angle counts with an arm of the unit of length, which has margin for most bodies; more
   // turns count with the radius of gyration.
   constexpr double turn = 2.0 * std::numbers::pi;
   const double unit = unit_length(*motion.model().options);
-  double size = 0.0;
   for (Index body = component.bodies.begin; body < component.bodies.end; ++body) {
     const BodySlot slot = motion.model().assembly->layout()->bodies()[body];
     const Index places = slot.rotation == none ? slot.v_size : 2;
-    for (Index k = 0; k < places; ++k) size = std::max(size, std::abs(state.q[slot.q + k]));
+    for (Index k = 0; k < places; ++k) sizes.place = std::max(sizes.place, std::abs(state.q[slot.q + k]));
     if (slot.rotation == none) continue;
     const double angle = std::abs(state.q[slot.q + 2]), length = motion.memory().lengths[slot.v + 2];
     const double turned =
         std::min(angle, turn) * std::max(unit, length) + std::max(angle - turn, 0.0) * length;
-    size = std::max({size, turned, size_of_body(length)});
+    sizes.gap = std::max({sizes.gap, turned, size_of_body(length)});
+    sizes.lever = std::min(sizes.lever, length);
   }
-  return size;
 }
 
 }  // namespace
@@ -67,16 +80,18 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
   const std::vector<double>& lengths = motion.memory().lengths;
   const EventDriven& options = *motion.model().options;
   EventScales scales;
-  double size = 0.0, velocity = 0.0;
+  BodySizes sizes;
+  double velocity = 0.0;
   for (const auto& part : motion.model().parts()) {
     const Range v = part.ranges.v;
-    size = std::max(size, size_of(part.ranges, motion, at.state));
+    add_sizes(part.ranges, motion, at.state, sizes);
     for (Index i = v.begin; i < v.end; ++i) {
       velocity = std::max(velocity, std::abs(at.state.v[i]) * lengths[i]);
       scales.force = std::max(scales.force, std::abs(at.loads()[i]) / lengths[i]);
     }
   }
-  scales.gap_noise = gap_noise_of(size, options);
+  scales.force_rounding = force_rounding_of(sizes.place, sizes.lever);
+  scales.gap_noise = gap_noise_of(std::max(sizes.gap, sizes.place), options);
   for (const Constraint& contact : contacts) {
     if (contact.type == ConstraintType::rolling) continue;  // a spin, as fast as its contact
     velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));

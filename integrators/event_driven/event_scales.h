@@ -14,11 +14,12 @@ namespace carom {
 
 /// Scales of one clock group.
 struct EventScales {
-  double force = 0.0;        ///< largest load [N]
-  double speed = 0.0;        ///< largest velocity [m/s]
-  double gap_noise = 0.0;    ///< rounding of gaps [m]
-  double speed_noise = 0.0;  ///< velocities that count as zero [m/s]
-  double guard_noise = 0.0;  ///< guards nearer to zero than this have not passed it
+  double force = 0.0;           ///< largest load [N]
+  double force_rounding = 0.0;  ///< forces that count as zero, against those around them
+  double speed = 0.0;           ///< largest velocity [m/s]
+  double gap_noise = 0.0;       ///< rounding of gaps [m]
+  double speed_noise = 0.0;     ///< velocities that count as zero [m/s]
+  double guard_noise = 0.0;     ///< guards nearer to zero than this have not passed it
 
   /// Tangential velocities of a contact that count as zero [m/s]; of rolling resistance spins [rad/s].
   [[nodiscard]] double noise_of(const SmoothMotion& motion, const Constraint& contact) const;

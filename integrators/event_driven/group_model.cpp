@@ -5,7 +5,6 @@
 #include <carom/integrators/event_driven/group_model.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace carom {
 
@@ -83,25 +82,22 @@ void add_load_traits(const Assembly& assembly, Index component, LoadTraits& trai
 /// Discontinuities of the joints and force elements of a component.
 void add_discontinuities(const Assembly& assembly, Index component, std::vector<Discontinuity>& all) {
   std::vector<double> times;
-  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
-    const Range joints = assembly.joints(component, kind);
-    for (Index joint = joints.begin; joint < joints.end; ++joint) {
+  const auto add = [&](const auto& kind, Range parts, auto&& discontinuity_of) {
+    for (Index part = parts.begin; part < parts.end; ++part) {
       times.clear();
-      assembly.joint_kinds()[kind]->discontinuity_times(joint, times);
-      for (const double time : times) {
-        all.push_back({.time = time, .joint = assembly.joint_id(kind, joint)});
-      }
+      kind.discontinuity_times(part, times);
+      for (const double time : times) all.push_back(discontinuity_of(time, part));
     }
+  };
+  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+    add(*assembly.joint_kinds()[k], assembly.joints(component, k), [&](double time, Index joint) {
+      return Discontinuity{.time = time, .joint = assembly.joint_id(k, joint)};
+    });
   }
-  for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-    const Range elements = assembly.elements(component, kind);
-    for (Index element = elements.begin; element < elements.end; ++element) {
-      times.clear();
-      assembly.force_kinds()[kind]->discontinuity_times(element, times);
-      for (const double time : times) {
-        all.push_back({.time = time, .element = assembly.element_id(kind, element)});
-      }
-    }
+  for (Index k = 0; k < assembly.force_kinds().size(); ++k) {
+    add(*assembly.force_kinds()[k], assembly.elements(component, k), [&](double time, Index element) {
+      return Discontinuity{.time = time, .element = assembly.element_id(k, element)};
+    });
   }
 }
 

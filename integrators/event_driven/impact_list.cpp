@@ -40,9 +40,7 @@ void list_impacts(const RecordedEvents& events, std::size_t latest, int dimensio
   const std::size_t size = events.size();
   for (std::size_t i = size - std::min(latest, size); i < size; ++i) {
     const EventRecord event = events.record(i);
-    const bool impulsive = event.kind == EventKind::impact || event.kind == EventKind::accumulation ||
-                           event.kind == EventKind::impact_without_collision;
-    if (impulsive) report.contacts.push_back(contact_of(event, dimension));
+    if (is_impulsive(event.kind)) report.contacts.push_back(contact_of(event, dimension));
   }
 }
 

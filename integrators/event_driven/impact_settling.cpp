@@ -9,7 +9,12 @@ namespace carom {
 
 bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain) {
   capture_ = capture_speed(pairs, at);
-  return list_touching(pairs, at) && solve_ahead(at, chain) && list_held(at) &&
+  if (!list_touching(pairs, at)) return false;
+  const double pull = largest_acceleration(touching_, at);
+  if (!(pull > 0.0)) return false;
+  // What parts at the capture speed has come back by then.
+  const double time = 2.0 * capture_ / pull;
+  return solve_ahead(time, touching_, at, ahead_, problem_, chain) && list_held(at) &&
          closing_.close(held_, pairs, at);
 }
 
@@ -27,8 +32,7 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     pile = pile || contact.bodies > 1;
     Constraint& listed = touching_.emplace_back(contact);
     places_.push_back(i);
-    listed.law.normal_restitution = listed.law.tangential_restitution = 0.0;
-    listed.law.rolling_restitution = 0.0;
+    listed.remove_restitution();
     listed.friction_bound = 0.0;
     const double sliding = contact.sliding_speed(at.velocities());
     listed.friction =
@@ -37,29 +41,6 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     any = any || (contact.rows > 1 && sliding > noise && sliding <= capture_);
   }
   return any && pile;
-}
-
-/// Solves for the velocities after the time in which what parts at the capture speed comes back:
-/// b = gamma + time a, without restitution.
-bool ImpactSettling::solve_ahead(EventInstant& at, SolverChain& chain) {
-  double pull = 0.0;
-  for (const Constraint& contact : touching_) {
-    for (int row = 0; row < contact.rows; ++row)
-      pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
-  }
-  if (!(pull > 0.0)) return false;
-  const double time = 2.0 * capture_ / pull;
-  for (Constraint& contact : touching_) {
-    for (std::size_t row = 0; row < Constraint::max_rows; ++row)
-      contact.surface_velocity_after[row] = contact.surface_velocity[row] - time * contact.drift[row];
-  }
-  ahead_.assign(at.now.state.v.begin(), at.now.state.v.end());
-  at.motion.model().unknowns.for_velocities([&](Range v, std::size_t) {
-    for (Index i = v.begin; i < v.end; ++i) ahead_[i] += time * at.now.acceleration[i];
-  });
-  at.motion.joints().build(problem_, touching_, at.velocities());
-  problem_.set_free_velocity(ahead_.data());
-  return problem_.solve(chain).usable();
 }
 
 /// True if sliding stops until then, or turns back: it passes through zero, from where the accelerations
@@ -82,7 +63,7 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     // A contact that was open before bounces as ever.
     const bool bounces = at.before_at[place] == none && -at.approach(place) > noise;
     if (contact.has_dry_friction() || bounces) continue;
-    if (!(problem_.impulses()[static_cast<std::size_t>(problem_.first_row(c))] > 0.0)) continue;
+    if (!(problem_.map().impulse(c, 0) > 0.0)) continue;
     const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
     // A contact at rest is not to start by what stops others: accelerations decide about that.
     const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));

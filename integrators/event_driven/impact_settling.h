@@ -34,7 +34,6 @@ public:
 
 private:
   [[nodiscard]] bool list_touching(std::span<const Index> pairs, const EventInstant& at);
-  [[nodiscard]] bool solve_ahead(EventInstant& at, SolverChain& chain);
   [[nodiscard]] bool comes_to_rest(std::size_t c, const EventInstant& at) const;
   [[nodiscard]] bool list_held(const EventInstant& at);
 

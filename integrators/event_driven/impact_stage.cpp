@@ -24,7 +24,6 @@ constexpr int most_closings_at_once = 16;
 /// stands against the outline of the other.
 /// \param gap_noise rounding of places, and so of levers [m]
 bool is_repeated(const Constraint& contact, const Constraint& other, double gap_noise) {
-  // Directions and levers follow from the same two corners.
   constexpr double of_directions = 1e-12, roundings = 16.0;
   const auto same_owner = [](const FeatureKey& one, const FeatureKey& two) {
     return one.owner == two.owner && one.serial == two.serial;
@@ -34,18 +33,11 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
       !same_owner(contact.key.b, other.key.b)) {
     return false;
   }
-  constexpr int moved = 2;  // columns of places; behind them that of a spin
-  for (int row = 0; row < contact.rows; ++row) {
-    int column = row * contact.columns();
-    for (int body = 0; body < contact.bodies; ++body) {
-      for (int k = 0; k < contact.blocks[static_cast<std::size_t>(body)].columns; ++k, ++column) {
-        const auto at = static_cast<std::size_t>(column);
-        const double allowed = k < moved ? of_directions : roundings * gap_noise;
-        if (!(std::abs(contact.jacobian[at] - other.jacobian[at]) <= allowed)) return false;
-      }
-    }
-  }
-  return true;
+  // Directions and levers both follow from the places of the same two corners.
+  const double allowed = std::max(of_directions, roundings * gap_noise);
+  const double* const row = contact.jacobian.data();
+  return std::equal(row, row + contact.rows * contact.columns(), other.jacobian.data(),
+                    [=](double one, double two) { return std::abs(one - two) <= allowed; });
 }
 
 }  // namespace
@@ -111,14 +103,17 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
   if (!captured) leave_out_repeated(at.scales.gap_noise);
   memory_->note = {};
-  memory_->note.cut_sequence =
-      sequential && !captured && counts.sequence >= options_->impact_rules.sequence_limit;
-  if (sequential && !captured && !memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
-  if (sequential && !captured) ++counts.sequence;
+  if (sequential && !captured) {
+    memory_->note.cut_sequence = counts.sequence++ >= options_->impact_rules.sequence_limit;
+    if (!memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
+  }
   share_impact_restitution(touching, at.velocities(), 0.0);
   if (captured) add_captured(pairs, at);
-  if (captured || memory_->note.cut_sequence) remove_restitution();
-  IslandProblem& problem = captured || memory_->note.cut_sequence ? memory_->problem : problem_by_law();
+  const bool closes = captured || memory_->note.cut_sequence;
+  if (closes) {
+    for (Constraint& contact : touching) contact.remove_restitution();
+  }
+  IslandProblem& problem = closes ? memory_->problem : problem_by_law();
   const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
   if (!solve(problem, at)) {
     if (!closes_slow) fail_unsolved(problem, at);
@@ -130,7 +125,6 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
     if (!problem.report().usable()) fail_unsolved(problem, at);
   }
   memory_->note.restitution_factor *= problem.restitution_factor();
-  const bool closes = captured || memory_->note.cut_sequence;
   apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
   if (closes_slow) close_captured(pairs, at);
 }
@@ -156,13 +150,6 @@ IslandProblem& ImpactStage::problem_by_law() {
   return memory_->of_other_law;
 }
 
-void ImpactStage::remove_restitution() {
-  for (Constraint& contact : memory_->touching) {
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    contact.law.rolling_restitution = 0.0;
-  }
-}
-
 /// Lists the contacts of an impact, with the friction of their present sliding.
 void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Constraint>& touching = memory_->touching;
@@ -183,9 +170,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     const double sliding = contact.sliding_speed(at.velocities());
     if (!rolling) contact.friction = contact.law.friction_at(sliding > at.scales.speed_noise ? sliding : 0.0);
     // Before the jump of a driver it did not approach: there is nothing to give back.
-    if (at.rate_jumps && at.before_at[i] != none) {
-      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    }
+    if (at.rate_jumps && at.before_at[i] != none) contact.remove_restitution();
   }
 }
 
@@ -249,8 +234,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     if (contact.has_dry_friction()) continue;
-    if (problem.impulses()[static_cast<std::size_t>(problem.first_row(c))] > 0.0)
-      accumulation_.remember(at.time, contact.key);
+    if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
   if (gain == 0.0 || options_->impact_rules.energy_gain != EnergyGain::refuse) return;
   failure_->fail("an impact adds " + to_text(gain) + " J, which impact_rules.energy_gain forbids",

@@ -83,7 +83,6 @@ private:
   void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
   [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
   [[nodiscard]] IslandProblem& problem_by_law();
-  void remove_restitution();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void leave_out_repeated(double gap_noise);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);

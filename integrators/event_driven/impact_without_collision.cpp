@@ -96,15 +96,14 @@ bool ImpactWithoutCollision::solve(SolverChain& chain, EventInstant& at) {
 bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, SolverChain& chain,
                                         EventInstant& at) {
   constexpr double longest = 1e-3, shorter = 1e-2;
-  double fastest = 0.0, pull = 0.0;
+  double fastest = 0.0;
   for (std::size_t c = 0; c < touching_.size(); ++c) {
     Constraint& contact = touching_[c];
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    for (int row = 0; row < contact.rows; ++row)
-      pull = std::max(pull, std::abs(contact.acceleration(row, at.now.acceleration.data())));
+    contact.remove_restitution();
     if (contact.type == ConstraintType::rolling) continue;
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
+  const double pull = largest_acceleration(touching_, at);
   if (!(pull > 0.0) || fastest == 0.0) return false;
   // Contacts that slide hardly faster than rounding are asked once, too.
   double change = longest * fastest;
@@ -133,25 +132,12 @@ void ImpactWithoutCollision::take_forces(std::span<const Candidate> candidates, 
   }
 }
 
-/// Impulses of a step [s] without restitution: b = gamma + step a.
-bool ImpactWithoutCollision::solve_step(double step, SolverChain& chain, EventInstant& at) {
-  change_.assign(at.now.state.v.begin(), at.now.state.v.end());
-  for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += step * at.now.acceleration[i];
-  for (Constraint& contact : touching_) {
-    for (std::size_t row = 0; row < Constraint::max_rows; ++row)
-      contact.surface_velocity_after[row] = contact.surface_velocity[row] - step * contact.drift[row];
-  }
-  at.motion.joints().build(problem_, touching_, at.velocities());
-  problem_.set_free_velocity(change_.data());
-  return problem_.solve(chain).usable();
-}
-
 /// The limit of the impulses: they are linear in the step as long as no mode changes.
 bool ImpactWithoutCollision::take_limit(SolverChain& chain, double step, EventInstant& at) {
   constexpr int most_improvements = 3;
-  if (!solve_step(step, chain, at)) return false;
+  if (!solve_ahead(step, touching_, at, ahead_, problem_, chain)) return false;
   limit_.assign(problem_.impulses().begin(), problem_.impulses().end());
-  if (!solve_step(0.5 * step, chain, at)) return false;
+  if (!solve_ahead(0.5 * step, touching_, at, ahead_, problem_, chain)) return false;
   step_impulses_.assign(problem_.impulses().begin(), problem_.impulses().end());
   step_modes_.assign(problem_.modes().begin(), problem_.modes().end());
   for (std::size_t row = 0; row < limit_.size(); ++row) limit_[row] = 2.0 * step_impulses_[row] - limit_[row];

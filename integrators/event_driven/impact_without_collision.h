@@ -45,7 +45,6 @@ private:
   [[nodiscard]] bool find_listed(SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool solve(SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool find_limit(std::span<const Candidate> candidates, SolverChain& chain, EventInstant& at);
-  [[nodiscard]] bool solve_step(double step, SolverChain& chain, EventInstant& at);
   [[nodiscard]] bool take_limit(SolverChain& chain, double step, EventInstant& at);
   [[nodiscard]] bool changes(double speed_noise);
   void take_forces(std::span<const Candidate> candidates, double step);
@@ -60,7 +59,7 @@ private:
   std::vector<double> limit_, xi_;        // impulses and velocities of the limit
   std::vector<double> step_impulses_;     // of the last step,
   std::vector<ContactMode> step_modes_;   // and modes
-  std::vector<double> change_;            // of velocities, in a step
+  std::vector<double> ahead_;             // velocities after a step
   std::vector<ForceOnCandidate> forces_;
 };
 

@@ -9,6 +9,20 @@
 
 namespace carom {
 
+namespace {
+
+/// Adds the closed contacts of another group that this one has pairs of.
+void take_closed_contacts(const GroupParts& from, GroupParts& to) {
+  const std::vector<ContactPair>& pairs = to.motion.model().pairs;
+  for (const ActiveContact& contact : from.motion.active().list()) {
+    const auto place = std::find(pairs.begin(), pairs.end(), contact.pair);
+    if (place == pairs.end()) continue;
+    to.motion.active().list().emplace_back(contact).place = static_cast<Index>(place - pairs.begin());
+  }
+}
+
+}  // namespace
+
 void JoinableGroup::go_ahead(double target) try {
   if (group_->phase.kind != Phase::flowing) return;
   group_->memory->motion.limit.restart();
@@ -88,19 +102,14 @@ void JoinableGroup::end(double time, State& state, EventBalance& balance) {
 void JoinableGroup::join(std::span<ClockGroup* const> groups, double time, double output, State& state,
                          EventBalance& balance) try {
   group_->memory->motion.limit.restart();
-  std::vector<ActiveContact>& active = group_->motion.active().list();
-  active.clear();
+  group_->motion.active().list().clear();
   group_->impacts.start();
   group_->modes.start();
   double step = std::numeric_limits<double>::infinity();
-  const std::vector<ContactPair>& pairs = group_->motion.model().pairs;
   for (ClockGroup* const clock_group : groups) {
     JoinableGroup(*clock_group).end(time, state, balance);
     const GroupParts& group = clock_group->parts();
-    for (const ActiveContact& contact : group.motion.active().list()) {
-      const auto place = std::find(pairs.begin(), pairs.end(), contact.pair);
-      active.emplace_back(contact).place = static_cast<Index>(place - pairs.begin());
-    }
+    take_closed_contacts(group, *group_);
     group_->impacts.take(group.impacts);
     group_->modes.take(group.modes, time);
     if (group.flow.kept_step() > 0.0) step = std::min(step, group.flow.kept_step());
@@ -135,14 +144,8 @@ void JoinableGroup::part(const ClockGroup& last, State& state, EventBalance& bal
   group_->modes.start();
   group_->detector.start();
   group_->flow.keep_step(from.flow.kept_step());
-  std::vector<ActiveContact>& active = group_->motion.active().list();
-  active.clear();
-  const std::vector<ContactPair>& pairs = group_->motion.model().pairs;
-  for (const ActiveContact& contact : from.motion.active().list()) {
-    const auto place = std::find(pairs.begin(), pairs.end(), contact.pair);
-    if (place == pairs.end()) continue;
-    active.emplace_back(contact).place = static_cast<Index>(place - pairs.begin());
-  }
+  group_->motion.active().list().clear();
+  take_closed_contacts(from, *group_);
   EventInstant at(group_->motion, group_->memory->instant, group_->clock.now, group_->y, balance);
   at.update();
   at.scales = event_scales(group_->motion, at.now, at.contacts);

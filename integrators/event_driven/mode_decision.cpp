@@ -68,7 +68,7 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
     for (std::size_t row = 0; row < Constraint::max_rows; ++row) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
-    contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
+    contact.remove_restitution();
     if (!rolling) contact.friction = contact.law.sticking_friction();
     if (rolling || slips_[i].sign == 0.0) continue;
     contact.friction = contact.law.sliding_friction(std::abs(candidates[i].slip));

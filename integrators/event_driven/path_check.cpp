@@ -2,7 +2,6 @@
 
 #include <carom/integrators/event_driven/path_check.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace carom {

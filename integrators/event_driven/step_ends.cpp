@@ -3,7 +3,6 @@
 #include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/detection_memory.h>
-#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>
@@ -13,22 +12,6 @@
 namespace carom {
 
 namespace {
-
-/// Forces this small against those around them are zero. Answers of contact problems are certified to 1e-12,
-/// and far from the origin places are rounded, and the levers of contacts with them, which forces follow
-/// from.
-double force_rounding(const SmoothMotion& motion, const MotionSample& at) {
-  constexpr double by_answers = 1e-11, by_places = 16.0 * std::numeric_limits<double>::epsilon();
-  double size = 0.0, lever = std::numeric_limits<double>::infinity();
-  for (const MotionUnknowns::Part& part : motion.model().parts()) {
-    for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
-      const BodySlot slot = motion.model().assembly->layout()->bodies()[body];
-      for (Index k = 0; k < 2; ++k) size = std::max(size, std::abs(at.state.q[slot.q + k]));
-      if (slot.rotation != none) lever = std::min(lever, motion.memory().lengths[slot.v + 2]);
-    }
-  }
-  return std::max(by_answers, by_places * size / lever);
-}
 
 // Where closed contacts follow from each other, forces just decided may lie this many times their rounding
 // below zero.
@@ -149,7 +132,7 @@ void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector
 }
 
 bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::span<const char> is_active,
-                     double force_scale, DetectionMemory& memory, StepEnd& out) {
+                     const EventScales& scales, DetectionMemory& memory, StepEnd& out) {
   MotionSample& at = memory.within;
   motion.sample(time, y, Forces::all, at);
   out.independent = motion.active().pivots().size();
@@ -169,14 +152,13 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
   out.noises.clear();
   // Where there are no loads all forces are rounding: of the mass times the tolerance of accelerations.
   const double no_force = 0.1 * motion.absolute_tolerances().back();
-  const double rounding = memory.margins.empty() ? 0.0 : force_rounding(motion, at);
   for (const ForceMargin& margin : memory.margins) {
     double size = 0.0;
     for (std::size_t i = margin.first; i < margin.last; ++i) {
       const ActiveContact& closed = motion.active().list()[i];
       size += std::abs(closed.normal) + std::abs(closed.tangential);
     }
-    out.noises.push_back(rounding * std::max(size, force_scale) + no_force);
+    out.noises.push_back(scales.force_rounding * std::max(size, scales.force) + no_force);
   }
   if (finite) find_drifts(motion, is_active, at, out);
   return finite;

@@ -6,6 +6,7 @@
 #include <carom/contact/active_set.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/step_polynomial.h>
+#include <carom/integrators/event_driven/event_scales.h>
 #include <carom/integrators/event_driven/guard_samples.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
@@ -81,9 +82,9 @@ CAROM_API void read_guard_sample(SmoothMotion& motion, const MotionSample& at,
                                  std::vector<ForceMargin>& margins, GuardSample& out);
 
 /// Samples the motion at an end of a step. False if something is not finite. \param is_active by pair
-/// \param force_scale of the phase [N]
+/// \param scales of the phase
 [[nodiscard]] CAROM_API bool sample_step_end(SmoothMotion& motion, double time, const double* y,
-                                             std::span<const char> is_active, double force_scale,
+                                             std::span<const char> is_active, const EventScales& scales,
                                              DetectionMemory& memory, StepEnd& out);
 
 }  // namespace carom

@@ -43,6 +43,11 @@ inline constexpr std::size_t event_kind_count = 13;
 
 /// Name of a kind: "impact", "lift-off", ...
 [[nodiscard]] CAROM_API std::string_view to_string(EventKind kind);
+/// True of kinds of impacts: velocities jump.
+[[nodiscard]] constexpr bool is_impulsive(EventKind kind) {
+  return kind == EventKind::impact || kind == EventKind::accumulation ||
+         kind == EventKind::impact_without_collision;
+}
 
 /// Parts that an event is of.
 struct EventParts {

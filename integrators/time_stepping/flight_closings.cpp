@@ -57,9 +57,9 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
   FlightClosing closing = list_[which];
   const double margin = std::abs(closing.gap) + caution * at.in.step * closing.speed;
   double open = flight.begin, closed = closing.share, share = closed;
-  double gap = closing.gap, rate = closing.rate;  // of the last look,
-  bool found = true;                              // where it may not be found
-  bool jumps = false;                             // nor where it was open last
+  double gap = closing.gap, rate = closing.rate;  // where it was found last
+  bool found = true;                              // at the last look
+  bool jumps = false;                             // not found at `open`: its gap has no zero
   for (int tries = 0; tries < most_tries && !(found && gap == 0.0); ++tries) {
     double next = found ? share - gap / (rate * at.in.step) : open;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);

@@ -58,8 +58,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
-      const bool moved =
-          joined ? converge_joined(island, in) : joints != nullptr && converge_joints(island, in);
+      const bool moved = (joined || joints != nullptr) && converge_joints(island, in);
       return moved ? LoadsKnown::total : made.known;
     }
     for (const Index component : island.components) {
@@ -278,33 +277,26 @@ void IslandIteration::follow(const StepInput& in, Index component) {
 /// bring the joints there however badly couplings contract. True if there were any.
 bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
   constexpr double improved = 0.8;
-  const Index component = island.components.front();
-  JointStage& joints = *parts_->joints.of(component);
+  JointStage* const joints = joints_of(island);  // null: of several components
+  const auto violation = [&] {
+    return joints != nullptr ? joints->violation(in, parts_->trial)
+                             : parts_->joined.violation(in, island, parts_->trial);
+  };
+  const auto is_near_singular = [&] { return joints != nullptr && joints->rows().is_near_singular(); };
+  double left = violation();
+  if (!is_near_singular() && !(left > 1.0)) return false;
   JointContacts contacts = contacts_of(island);
-  double left = joints.violation(in, parts_->trial);
-  if (!joints.rows().is_near_singular() && !(left > 1.0)) return false;
   for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
-    sweep_joints(in, component, joints, contacts);
-    const double now = joints.violation(in, parts_->trial);
+    if (joints != nullptr) {
+      sweep_joints(in, island.components.front(), *joints, contacts);
+    } else {
+      sweep_joined(island, in);
+    }
+    const double now = violation();
     if (!(now < improved * left)) break;
     left = now;
   }
-  if (joints.rows().is_near_singular()) joints.settle_velocities(in, parts_->trial);
-  follow(in, component);
-  return true;
-}
-
-/// Likewise of several components.
-bool IslandIteration::converge_joined(const StepIsland& island, const StepInput& in) {
-  constexpr double improved = 0.8;
-  double left = parts_->joined.violation(in, island, parts_->trial);
-  if (!(left > 1.0)) return false;
-  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
-    sweep_joined(island, in);
-    const double now = parts_->joined.violation(in, island, parts_->trial);
-    if (!(now < improved * left)) break;
-    left = now;
-  }
+  if (is_near_singular()) joints->settle_velocities(parts_->trial);
   for (const Index component : island.components) follow(in, component);
   return true;
 }

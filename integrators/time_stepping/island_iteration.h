@@ -56,7 +56,6 @@ private:
   void follow(const StepInput& in, Index component);
   void sweep_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
-  [[nodiscard]] bool converge_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] JointStage* joints_of(const StepIsland& island) const;
   [[nodiscard]] bool is_streamed(const StepIsland& island) const;
   void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);

@@ -1,7 +1,6 @@
 // Problem: joints answer contact by the same convention by which contact acts.
 
 #include <carom/integrators/time_stepping/joint_answer.h>
-#include <carom/integrators/time_stepping/step_errors.h>
 
 #include <cmath>
 
@@ -17,7 +16,7 @@ JointAnswer::JointAnswer(Index component, const JointConstraints& like)
 void JointAnswer::place(const StepInput& in, StepTrial& trial) {
   if (halfway_) return;
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
-  update_rows(rows_, {in.start.view(), trial.at_start.rotation.data()}, in);
+  rows_.update({in.start.view(), trial.at_start.rotation.data()});
 }
 
 bool JointAnswer::follow_path(const StepInput& in, const State& middle, StepJointRows& joints,
@@ -30,7 +29,7 @@ bool JointAnswer::follow_path(const StepInput& in, const State& middle, StepJoin
   for (std::size_t row = 0; row < end.size(); ++row) rate_at_start_[row] = rows_.rate(row);
   halfway_ = true;
   evaluate_positions(in.assembly, component_, middle.view(), trial.at_midpoint);
-  update_rows(rows_, {middle.view(), trial.at_midpoint.rotation.data()}, in);
+  rows_.update({middle.view(), trial.at_midpoint.rotation.data()});
   joints.place_end(in, trial);
   end.residuals_and_sizes(v, constant_.data(), sizes_.data());
   bool turns = false;

@@ -222,8 +222,8 @@ SweepChange JointStage::change(const StepInput& in, const StepTrial& trial) {
   return change;
 }
 
-void JointStage::settle_velocities(const StepInput& in, StepTrial& trial) {
-  if (!joints_.rows.correct_velocities(in, trial, joints_.left)) return;
+void JointStage::settle_velocities(StepTrial& trial) {
+  if (!joints_.rows.correct_velocities(trial, joints_.left)) return;
   for (std::size_t row = 0; row < joints_.left.size(); ++row) joints_.impulse[row] += joints_.left[row];
   joints_.rows.at_midpoint().add_response(joints_.left.data(), joints_.arrays->dv_joints.data());
 }

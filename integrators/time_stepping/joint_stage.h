@@ -91,7 +91,7 @@ public:
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
-  void settle_velocities(const StepInput& in, StepTrial& trial);
+  void settle_velocities(StepTrial& trial);
   /// Brings the midpoint to the answer, rotations included.
   void finish(const StepInput& in, StepTrial& trial) const;
   /// Velocities that the joints allow where bodies have been moved to. Returns the kinetic energy lost [J].

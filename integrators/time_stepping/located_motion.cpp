@@ -243,9 +243,7 @@ bool LocatedMotion::strike(const LocatedBody& at, double share, bool fast) {
   look_.find(at, share, closed_, false);
   look_.take(closed_, hit.constraints);
   if (!fast) {
-    for (Constraint& contact : hit.constraints) {
-      contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-    }
+    for (Constraint& contact : hit.constraints) contact.remove_restitution();
   }
   if (!solve(at, hit)) return false;
   const Range v{at.slot.v, at.slot.v + at.slot.v_size};

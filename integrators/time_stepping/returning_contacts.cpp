@@ -71,7 +71,7 @@ bool any_returns(const StepInput& in, std::span<const IslandProblem> problems, c
   return std::any_of(problems.begin(), problems.end(), [&](const IslandProblem& problem) {
     const std::span<const Constraint> constraints = problem.constraints();
     for (std::size_t c = 0; c < constraints.size(); ++c) {
-      if (!(problem.impulses()[static_cast<std::size_t>(problem.first_row(c))] > 0.0)) continue;
+      if (!(problem.map().impulse(c, 0) > 0.0)) continue;
       if (returns(constraints[c], in, rule, lasting_speed, trial)) return true;
     }
     return false;

@@ -40,7 +40,7 @@ bool is_plain(const Detector& detector) {
 
 /// True if some surface takes more to slip than to slide.
 bool sticks(const Detector& detector) {
-  return detector.ground().has_static_friction() || detector.bodies().has_static_friction();
+  return detector.ground().law_facts().static_friction || detector.bodies().law_facts().static_friction;
 }
 
 /// Friction in joints takes the restitution of what approaches fastest in its island.

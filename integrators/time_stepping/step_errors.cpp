@@ -106,13 +106,6 @@ void check_options(const TimeStepping& options) {
   check_failure_directory(options.failure_directory, "time stepping");
 }
 
-void fail_motion(const SolverError& error, const StepInput& in) {
-  SolverFailure failure = error.failure();
-  failure.time = in.start.time;
-  failure.step = in.step;
-  throw SolverError(place(in) + error.what(), std::move(failure));
-}
-
 SolverError with_place(const SolverError& error, const StepInput& in) {
   if (error.failure().step > 0.0) return error;
   SolverFailure failure = error.failure();
@@ -134,6 +127,10 @@ SolverFailure StepErrors::failure() const {
   return failure;
 }
 
+void StepErrors::fail(const std::string& what, SolverFailure& failure) const {
+  throw SolverError(place(in_) + what, std::move(failure));
+}
+
 SolverFailure StepErrors::failure_of(const IslandProblem& problem) const {
   SolverFailure failure = this->failure();
   failure.residual = problem.report().residual;
@@ -149,8 +146,7 @@ void StepErrors::demand_finite_loads(const StateView& at) const {
   if (!cause.valid()) return;
   SolverFailure failure = this->failure();
   failure.parts.push_back(system().name(cause));
-  const std::string message = place(in_) + "the loads of " + failure.parts.front() + " are not finite";
-  throw SolverError(message, std::move(failure));
+  fail("the loads of " + failure.parts.front() + " are not finite", failure);
 }
 
 /// Throws if an element has loads that are not finite: at the start, or at the last iterate, whose bodies are
@@ -186,9 +182,9 @@ void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iterat
   evaluate_positions(in_.assembly, component_, in_.start.view(), trial_.at_end);
   const CouplingRating rating =
       rate_couplings(in_.assembly, component_, in_.start.view(), trial_.at_end, in_.step);
-  std::string message = place(in_) + "the " + std::string(to_string(iteration)) +
-                        " iteration does not contract after " + std::to_string(judge.sweeps()) +
-                        " sweeps (last change " + to_text(judge.change()) + " m)";
+  std::string message = "the " + std::string(to_string(iteration)) + " iteration does not contract after " +
+                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) +
+                        " m)";
   if (automatic) message += ", nor do the Anderson and the linearly implicit iteration";
   if (rating.worst.valid()) {
     failure.parts.push_back(system().name(rating.worst));
@@ -217,7 +213,7 @@ void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iterat
     if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
     failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
   }
-  throw SolverError(message, std::move(failure));
+  fail(message, failure);
 }
 
 void StepErrors::fail_contact(const IslandProblem& problem) const {
@@ -229,7 +225,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     demand_finite_loads(in_.start.view());
     if (trial_.account.swept) demand_finite_loads(trial_.end.view());
   }
-  std::string message = place(in_) + "contact problem of " + listed(failure.parts) + ": ";
+  std::string message = "contact problem of " + listed(failure.parts) + ": ";
   if (problem.report().usable()) {
     message += unsettled_friction;
   } else {
@@ -244,7 +240,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
           "body jams)";
     }
   }
-  throw SolverError(message, std::move(failure));
+  fail(message, failure);
 }
 
 void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
@@ -252,11 +248,10 @@ void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
   for (const Constraint& constraint : constraints) {
     if (constraint.bodies > 1) failure.parts.push_back(detector_.name(constraint.key));
   }
-  const std::string message =
-      place(in_) + listed(failure.parts) +
-      " joins a mechanism, with friction in its joints that is bound by their force, to other "
-      "bodies; allowed: friction in joints with a constant bound there";
-  throw SolverError(message, std::move(failure));
+  fail(listed(failure.parts) +
+           " joins a mechanism, with friction in its joints that is bound by their force, to other "
+           "bodies; allowed: friction in joints with a constant bound there",
+       failure);
 }
 
 void StepErrors::fail_account(Range components) const {
@@ -275,22 +270,15 @@ void StepErrors::fail_account() const {
   const ElementId cause =
       find_non_finite_potential(in_.assembly, component_, trial_.end.view(), trial_.at_end);
   SolverFailure failure = this->failure();
-  std::string message = place(in_);
-  if (cause.valid()) {
-    failure.parts.push_back(system().name(cause));
-    message += "the potential of " + failure.parts.front() + " is not finite";
-  } else {
-    message += "an energy is too large to be counted";
-  }
-  throw SolverError(message, std::move(failure));
+  if (!cause.valid()) fail("an energy is too large to be counted", failure);
+  failure.parts.push_back(system().name(cause));
+  fail("the potential of " + failure.parts.front() + " is not finite", failure);
 }
 
 void StepErrors::fail_internal(ElementId element) const {
   SolverFailure failure = this->failure();
   failure.parts.push_back(system().name(element));
-  const std::string message =
-      place(in_) + "the internal variables of " + failure.parts.front() + " cannot be advanced";
-  throw SolverError(message, std::move(failure));
+  fail("the internal variables of " + failure.parts.front() + " cannot be advanced", failure);
 }
 
 void StepErrors::fail_linearisation() const {
@@ -300,34 +288,33 @@ void StepErrors::fail_linearisation() const {
   demand_finite_loads(in_.start.view());
   SolverFailure failure = this->failure();
   failure.suggested_step = 0.5 * in_.step;
-  std::string message = place(in_) + "the matrix of the linearly implicit iteration is singular";
+  std::string message = "the matrix of the linearly implicit iteration is singular";
   if (rating.worst.valid()) {
     failure.parts.push_back(system().name(rating.worst));
     message += "; stiffest is " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
   }
-  throw SolverError(message, std::move(failure));
+  fail(message, failure);
 }
 
 void StepErrors::fail_projection(const Constraint& left) const {
   SolverFailure failure = this->failure();
   failure.residual = -left.gap;
   failure.parts.push_back(detector_.name(left.key));
-  const std::string message = place(in_) + "project_gaps: no displacement brings " + failure.parts.front() +
-                              " out, gap " + to_text(left.gap) + " m";
-  throw SolverError(message, std::move(failure));
+  fail("project_gaps: no displacement brings " + failure.parts.front() + " out, gap " + to_text(left.gap) +
+           " m",
+       failure);
 }
 
 void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) const {
   SolverFailure failure = failure_of(problem);
-  const std::string message = place(in_) + what + "; of " + listed(failure.parts);
-  throw SolverError(message, std::move(failure));
+  fail(what + ("; of " + listed(failure.parts)), failure);
 }
 
 void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {
   SolverFailure failure = failure_of(problem);
-  std::string message = place(in_) + "contact of " + listed(failure.parts) + " adds " + to_text(gain) +
-                        " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)";
-  throw SolverError(message, std::move(failure));
+  fail("contact of " + listed(failure.parts) + " adds " + to_text(gain) +
+           " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)",
+       failure);
 }
 
 }  // namespace carom

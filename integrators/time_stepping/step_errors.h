@@ -21,10 +21,7 @@ namespace carom {
 /// Demands options that can be. Throws ModelError naming the option.
 CAROM_API void check_options(const TimeStepping& options);
 
-/// Throws an error of a prescribed motion again, with the time of the step.
-[[noreturn]] CAROM_API void fail_motion(const SolverError& error, const StepInput& in);
-
-/// An error that knows of no step, with the place of this one.
+/// An error that knows of no step, as of a prescribed motion, with the time and the length of this one.
 [[nodiscard]] CAROM_API SolverError with_place(const SolverError& error, const StepInput& in);
 
 /// The error with the name of a file of its contact problem, if it has one and a directory is given.
@@ -66,6 +63,8 @@ private:
   void find_cause(bool implicit) const;
   [[noreturn]] void fail_account() const;
   [[nodiscard]] SolverFailure failure() const;
+  // Throws. \param failure is moved from
+  [[noreturn]] void fail(const std::string& what, SolverFailure& failure) const;
   [[nodiscard]] const System& system() const { return in_.assembly.system(); }
 
   const StepInput& in_;

@@ -111,9 +111,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     note.cut_sequence = sequential && round >= options.impact_rules.sequence_limit;
     if (sequential && !note.cut_sequence) keep_fastest(touching_, start_.v.data());
     if (note.cut_sequence) {
-      for (Constraint& contact : touching_) {
-        contact.law.normal_restitution = contact.law.tangential_restitution = 0.0;
-      }
+      for (Constraint& contact : touching_) contact.remove_restitution();
     }
     solve_by_law(in, note);
     apply(in, note);
@@ -197,10 +195,7 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
 
 void StepImpacts::remove_restitution(std::span<const StepIsland> islands) {
   for (const StepIsland& island : islands) {
-    for (Constraint& constraint : island.constraints) {
-      constraint.law.normal_restitution = constraint.law.tangential_restitution = 0.0;
-      constraint.law.rolling_restitution = 0.0;
-    }
+    for (Constraint& constraint : island.constraints) constraint.remove_restitution();
   }
 }
 

@@ -1,7 +1,6 @@
 // Problem: rows of joints for every place of a step, past singular positions too.
 
 #include <carom/core/numerics/small_turn.h>
-#include <carom/integrators/time_stepping/step_errors.h>
 #include <carom/integrators/time_stepping/step_joint_rows.h>
 
 #include <algorithm>
@@ -49,14 +48,6 @@ double angle(const JointConstraints& joints, std::size_t row) {
 
 }  // namespace
 
-void update_rows(JointConstraints& rows, const JointView& at, const StepInput& in) {
-  try {
-    rows.update(at);
-  } catch (const SolverError& error) {
-    fail_motion(error, in);
-  }
-}
-
 StepJointRows::StepJointRows(const Assembly& assembly, Index component)
     : component_(component), end_(assembly, component), midpoint_(end_) {}
 
@@ -83,7 +74,7 @@ void StepJointRows::place_midpoint(const StepInput& in, StepTrial& trial) const 
 
 void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   turn(in, component_, trial.end, trial.at_start, trial.at_end);
-  update_rows(end_, view_of(trial.end, trial.at_end), in);
+  end_.update(view_of(trial.end, trial.at_end));
 }
 
 void StepJointRows::place_gaps(const StepInput& in, StepTrial& trial) {
@@ -95,8 +86,7 @@ void StepJointRows::place(const StepInput& in, StepTrial& trial) {
   place_end(in, trial);
   place_midpoint(in, trial);
   const bool halfway = reactions_ != Reactions::at_end;
-  update_rows(midpoint_,
-              halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end), in);
+  midpoint_.update(halfway ? view_of(trial.midpoint, trial.at_midpoint) : view_of(trial.end, trial.at_end));
 }
 
 bool StepJointRows::begin_regular(const StepInput& in, bool mean, StepTrial& trial) {
@@ -138,7 +128,7 @@ void StepJointRows::choose(const StepInput& in, StepTrial& trial, std::vector<do
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) work[row] = angle(midpoint_, row);
   evaluate_positions(in.assembly, component_, in.start.view(), trial.at_start);
-  update_rows(midpoint_, view_of(in.start, trial.at_start), in);
+  midpoint_.update(view_of(in.start, trial.at_start));
   midpoint_.factor();
   for (std::size_t row = 0; row < end_.size(); ++row) look_ahead(row, work[row], angle(midpoint_, row));
   place(in, trial);
@@ -183,9 +173,8 @@ void StepJointRows::solve(std::vector<double>& r) {
   }
 }
 
-bool StepJointRows::correct_velocities(const StepInput& in, StepTrial& trial,
-                                       std::vector<double>& residuals) {
-  update_rows(end_, view_of(trial.end, trial.at_end), in);
+bool StepJointRows::correct_velocities(StepTrial& trial, std::vector<double>& residuals) {
+  end_.update(view_of(trial.end, trial.at_end));
   end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());
   if (!mixed_.factor(end_, midpoint_)) return false;
   mixed_.solve(residuals.data());

@@ -20,9 +20,6 @@
 
 namespace carom {
 
-/// Brings rows to a configuration; a motion that is not finite there fails the step.
-CAROM_API void update_rows(JointConstraints& rows, const JointView& at, const StepInput& in);
-
 /// Rows along which the joints of a component push.
 enum class Reactions : std::uint8_t {
   halfway,  ///< those halfway
@@ -59,8 +56,7 @@ public:
   void solve(std::vector<double>& r);
   /// Brings velocities onto the joints where bodies are now, by the mixed rows: where rounding of positions
   /// turns rows too much. False if that matrix is singular. \param residuals work, then multipliers
-  [[nodiscard]] bool correct_velocities(const StepInput& in, StepTrial& trial,
-                                        std::vector<double>& residuals);
+  [[nodiscard]] bool correct_velocities(StepTrial& trial, std::vector<double>& residuals);
 
   /// Rows of the reactions that answer a displacement at the end.
   [[nodiscard]] JointConstraints& pushing() { return reactions_ == Reactions::mixed ? midpoint_ : end_; }

@@ -7,7 +7,6 @@
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace carom {
@@ -151,12 +150,8 @@ void TimeStepper::prepare(const StepInput& in) {
   balance_.begin(in);
   capped_.begin();
   memory_.iterations.clear();
-  try {
-    prescribed_.demand_continuous(in.start.time, in.end_time);
-    parts_.constraints.place_surfaces(in);
-  } catch (const SolverError& error) {
-    fail_motion(error, in);
-  }
+  prescribed_.demand_continuous(in.start.time, in.end_time);
+  parts_.constraints.place_surfaces(in);
   if (parts_.trial.needs.start_rotations) {
     evaluate_positions(in.assembly, in.start.view(), parts_.trial.at_start);
   }

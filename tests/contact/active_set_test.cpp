@@ -33,10 +33,11 @@ struct Closed {
         detector(assembly),
         state(assembly.initial_state()),
         evaluation(make_evaluation(assembly)) {
+    detector.place(state.time, places);
     for (const ContactPair& pair : detector.pairs(0)) {
       evaluate_positions(assembly, 0, state.view(), evaluation);
       Constraint at;
-      detector.contact(pair, state.view(), evaluation, at);
+      detector.contact(pair, state.view(), evaluation, places, at);
       if (at.gap > 1e-2) continue;
       ActiveContact& closed = contacts.list().emplace_back();
       closed.pair = pair;

@@ -287,24 +287,24 @@ TEST(Delassus, ContactOfTwoBodies) {
   EXPECT_FALSE(work.is_gain());
 }
 
-/// A motor whose force has a largest size holds a body as far as that goes.
-TEST(Delassus, MotorBound) {
+/// Dry friction in a joint holds a body as far as its bound goes.
+TEST(Delassus, FrictionBound) {
   System system;
   system.add(Particle{.mass = 2.0});
   const Assembly assembly(system);
-  Constraint motor;
-  motor.type = ConstraintType::motor_bound;
-  motor.rows = 1;
-  motor.add_body(0, 0, 2);
-  motor.row(0)[0] = 1.0;
-  motor.friction = 1.0;
-  motor.friction_bound = 3.0;
+  Constraint friction;
+  friction.type = ConstraintType::joint_friction;
+  friction.rows = 1;
+  friction.add_body(0, 0, 2);
+  friction.row(0)[0] = 1.0;
+  friction.friction = 1.0;
+  friction.friction_bound = 3.0;
   MassResponse masses(assembly);
   SolverChain chain;
   IslandProblem problem;
   for (const double speed : {1.0, -1.4, 5.0, -4.0}) {
     const std::vector<double> v{speed, 0.0};
-    problem.build({&motor, 1}, v.data());
+    problem.build({&friction, 1}, v.data());
     problem.respond(masses);
     problem.set_free_velocity(v.data());
     ASSERT_TRUE(problem.solve(chain).usable());

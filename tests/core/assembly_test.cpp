@@ -151,7 +151,6 @@ TEST(Assembly, ComponentsAreRangesThatTileEveryArray) {
     EXPECT_EQ(layout.q_size(), q);
     EXPECT_EQ(layout.v_size(), v);
     EXPECT_EQ(layout.rotation_size(), rotation);
-    EXPECT_EQ(assembly.masses().size(), body);
     EXPECT_EQ(assembly.length_scales().size(), v);
   }
 }

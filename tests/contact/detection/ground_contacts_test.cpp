@@ -163,7 +163,7 @@ TEST(GroundContacts, WithoutGroundNothingTouches) {
   const GroundContacts contacts(model.assembly);
   EXPECT_TRUE(contacts.shapes().empty());
   EXPECT_FALSE(contacts.needs_rotations());
-  EXPECT_FALSE(contacts.has_static_friction());
+  EXPECT_FALSE(contacts.law_facts().static_friction);
   std::vector<ContactPair> pairs;
   contacts.append_pairs(0, pairs);
   EXPECT_TRUE(pairs.empty());
@@ -177,7 +177,7 @@ TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
   system.add(Particle{.mass = 1.0, .velocity = {0.3, 0.0}});
   const carom_test::PlacedModel model(system);
   const GroundContacts contacts(model.assembly);
-  EXPECT_TRUE(contacts.has_static_friction());
+  EXPECT_TRUE(contacts.law_facts().static_friction);
   const GroundPlaces places;
   std::vector<Constraint> found;
   contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, 0.0, nullptr}, found);

@@ -43,7 +43,7 @@ TEST(GroundLaws, AreLookedUpByPair) {
   const BodyFeatures features(model.assembly);
   const GroundShapes shapes(model.assembly.system());
   const GroundLaws laws(model.assembly, features, shapes);
-  EXPECT_FALSE(laws.has_static_friction());
+  EXPECT_FALSE(laws.facts().static_friction);
   const MaterialId steel = system.material("steel");
   for (Index material = 0; material < 2; ++material) {
     const bool is_steel = features.materials()[material].material == steel;
@@ -53,7 +53,19 @@ TEST(GroundLaws, AreLookedUpByPair) {
   system.set_default_law({.friction = 0.3, .normal_restitution = 0.0, .static_friction = 0.4});
   const carom_test::PlacedModel other(system);
   EXPECT_TRUE(GroundLaws(other.assembly, BodyFeatures(other.assembly), GroundShapes(other.assembly.system()))
-                  .has_static_friction());
+                  .facts()
+                  .static_friction);
+}
+
+TEST(LawFacts, OneLawIsEnoughForAFact) {
+  LawFacts facts;
+  facts.add({.friction = 0.3, .normal_restitution = 0.5});
+  EXPECT_FALSE(facts.static_friction || facts.other_impact_law || facts.rolling_resistance);
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .static_friction = 0.4});
+  EXPECT_TRUE(facts.static_friction && !facts.other_impact_law && !facts.rolling_resistance);
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .impact_law = ImpactLaw::poisson});
+  facts.add({.friction = 0.3, .normal_restitution = 0.5, .rolling_resistance = 0.01});
+  EXPECT_TRUE(facts.static_friction && facts.other_impact_law && facts.rolling_resistance);
 }
 
 }  // namespace

@@ -71,8 +71,10 @@ public:
   /// The contact of a pair at a time, body and particle moving along their course.
   Constraint contact(std::size_t pair, double t) {
     go_to(t);
+    GroundPlaces places;
+    detector_.place(t, places);
     Constraint contact;
-    detector_.contact(pairs_[pair].pair, state_.view(), evaluation_, contact);
+    detector_.contact(pairs_[pair].pair, state_.view(), evaluation_, places, contact);
     return contact;
   }
   /// The same from a step of length h that begins there.
