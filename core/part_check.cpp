@@ -117,6 +117,9 @@ void PartCheck::surface(const Surface& surface) const {
   if (surface.rolling_restitution > 0.0 && surface.rolling_resistance == 0.0) {
     refuse("rolling_restitution", to_text(surface.rolling_restitution), "0 where rolling_resistance is 0");
   }
+  if (surface.impact_law == ImpactLaw::energetic && surface.rolling_restitution != 0.0) {
+    refuse("rolling_restitution", to_text(surface.rolling_restitution), "0 where impact_law is energetic");
+  }
   non_negative(surface.stribeck_speed, "stribeck_speed", "m/s");
   if (std::isnan(surface.static_friction)) {
     if (surface.stribeck_speed == 0.0) return;
