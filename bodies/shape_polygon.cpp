@@ -1,11 +1,11 @@
 #include <carom/bodies/shape_features.h>
 #include <carom/bodies/shape_polygon.h>
+#include <carom/core/described_sets.h>
 #include <carom/core/vector_length.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -110,21 +110,8 @@ Outline Polygon::outline(const PartCheck& check) const {
   double magnitude = 0.0;
   for (const Vec<2>& vertex : vertices) magnitude = std::max(magnitude, vertex.cwiseAbs().maxCoeff());
   Outline outline{corners_of(counter_clockwise(vertices), rounding * magnitude), radius};
-  const std::size_t n = outline.vertices.size();
-  if (n < 3) check.refuse("vertices", "without an area", allowed);
-  double turning = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec<2>& vertex = outline.vertices[i];
-    const Vec<2> in = vertex - outline.vertices[(i + n - 1) % n],
-                 out = outline.vertices[(i + 1) % n] - vertex;
-    if (!(cross(in, out) > 0.0)) {
-      check.refuse("vertices", "not convex at (" + to_text(vertex[0]) + ", " + to_text(vertex[1]) + ")",
-                   allowed);
-    }
-    turning += std::atan2(cross(in, out), in.dot(out));
-  }
-  // All turn to the left, but perhaps around more than once, as a pentagram does.
-  if (turning > 3.0 * std::numbers::pi) check.refuse("vertices", "crossing themselves", allowed);
+  if (outline.vertices.size() < 3) check.refuse("vertices", "without an area", allowed);
+  check_convex(check, outline.vertices, "vertices", allowed);
   return outline;
 }
 

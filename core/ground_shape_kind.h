@@ -38,7 +38,7 @@ struct GroundMotion {
 struct GroundPiece {
   /// Forms of pieces.
   enum class Form : std::uint8_t {
-    solid,  ///< a convex set: the vertices of its outline, counter-clockwise
+    solid,  ///< a convex set: the vertices of its outline, counter-clockwise, each of them a corner
     face,  ///< one face of a polyline, free space on its right: the vertex before it, its tail, its head, and
            ///< the vertex behind it
     hollow  ///< everything but the inside of a circle: the circle's centre
@@ -79,17 +79,19 @@ public:
   /// True if the boundary that gap() describes is flat. Of others the curvature is found by differences of
   /// gap(), which is called twice more for each contact. That of pieces is exact.
   [[nodiscard]] virtual bool is_flat(Index /*slot*/) const { return false; }
-  /// Distance of a point from a shape at rest. \param point 2 or 3 numbers [m]
+  /// Distance of a point from a shape at rest. A distance that is no number, or a normal whose length is not
+  /// 1 (to 1e-6), ends the run with a SolverError where the point touches. \param point 2 or 3 numbers [m]
   [[nodiscard]] virtual Gap gap(Index slot, const double* point) const = 0;
   /// Distance of a point from a moving shape, with the motion from place().
   [[nodiscard]] virtual Gap moved_gap(Index slot, const GroundMotion& /*motion*/, const double* point) const {
     return gap(slot, point);
   }
-  /// True if gap() finds any of `count` points, `stride` numbers apart, at a distance <= `margin` [m].
+  /// True if gap() finds any of `count` points, `stride` numbers apart, at a distance <= `margin` [m], or at
+  /// one that is no number.
   [[nodiscard]] virtual bool any_within(Index slot, const double* points, Index stride, Index count,
                                         double margin) const {
     for (Index i = 0; i < count; ++i) {
-      if (gap(slot, points + i * stride).distance <= margin) return true;
+      if (!(gap(slot, points + i * stride).distance > margin)) return true;
     }
     return false;
   }
@@ -97,7 +99,7 @@ public:
   [[nodiscard]] virtual bool any_within_moved(Index slot, const GroundMotion& motion, const double* points,
                                               Index stride, Index count, double margin) const {
     for (Index i = 0; i < count; ++i) {
-      if (moved_gap(slot, motion, points + i * stride).distance <= margin) return true;
+      if (!(moved_gap(slot, motion, points + i * stride).distance > margin)) return true;
     }
     return false;
   }

@@ -8,6 +8,13 @@
 #include <charconv>
 #include <cmath>
 
+// NaN says that a number is not given, infinity that there is no bound, and sums are exact to twice the
+// digits: none of this is left where a compiler takes numbers for real ones.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) || \
+    defined(__ASSOCIATIVE_MATH__)
+#error carom needs the arithmetic of IEEE 754: compile it without -ffast-math, -Ofast and the options that they imply
+#endif
+
 namespace carom {
 
 std::string to_text(double value) {
@@ -116,6 +123,9 @@ void PartCheck::surface(const Surface& surface) const {
   between(surface.rolling_restitution, 0.0, 1.0, "rolling_restitution");
   if (surface.rolling_restitution > 0.0 && surface.rolling_resistance == 0.0) {
     refuse("rolling_restitution", to_text(surface.rolling_restitution), "0 where rolling_resistance is 0");
+  }
+  if (surface.impact_law == ImpactLaw::energetic && surface.rolling_restitution != 0.0) {
+    refuse("rolling_restitution", to_text(surface.rolling_restitution), "0 where impact_law is energetic");
   }
   non_negative(surface.stribeck_speed, "stribeck_speed", "m/s");
   if (std::isnan(surface.static_friction)) {

@@ -34,7 +34,7 @@ struct Surface {
   double static_friction = std::numeric_limits<double>::quiet_NaN();
   /// Speed over which mu - mu_k falls by a factor of e, >= 0 [m/s]; 0: at once. Needs static_friction.
   double stribeck_speed = 0.0;
-  /// Law of impact. The energetic one has no tangential restitution.
+  /// Law of impact. The energetic one has no tangential restitution, and none of rolling.
   ImpactLaw impact_law = ImpactLaw::newton;
   /// Rolling resistance rho >= 0: a moment of at most rho P_n acts against the relative spin [m].
   double rolling_resistance = 0.0;

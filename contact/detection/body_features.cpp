@@ -1,4 +1,5 @@
 #include <carom/contact/detection/body_features.h>
+#include <carom/core/described_sets.h>
 
 #include <algorithm>
 
@@ -87,7 +88,8 @@ void BodyFeatures::collect_centres(const Assembly& assembly) {
 
 void BodyFeatures::collect_points(const Assembly& assembly) {
   const Layout& layout = *assembly.layout();
-  const auto& registry = assembly.system().shape_kinds();
+  const System& system = assembly.system();
+  const auto& registry = system.shape_kinds();
   std::vector<RoundedPoint> points;
   for (const Index serial : registry.serials()) {
     const auto place = registry.place(serial);
@@ -95,6 +97,7 @@ void BodyFeatures::collect_points(const Assembly& assembly) {
     const Index body = layout.index(kind.body(place.slot));
     points.clear();
     kind.rounded_points(place.slot, points);
+    check_rounded_points({system.name(ShapeId{serial, system.token()}), system}, points);
     const FeatureMaterial material{kind.material(place.slot), kind.filter(place.slot)};
     for (Index i = 0; i < points.size(); ++i) {
       points_.push_back({body,

@@ -1,4 +1,5 @@
 #include <carom/contact/detection/body_outlines.h>
+#include <carom/core/described_sets.h>
 
 #include <algorithm>
 
@@ -28,6 +29,7 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
     kind.outlines(place.slot, check, outlines);
     Index feature = 0;
     for (const Outline& outline : outlines) {
+      check_outline(check, outline);
       BodyOutline of_body;
       of_body.body = layout.index(kind.body(place.slot));
       of_body.key = {FeatureKey::Owner::shape, serial, feature};

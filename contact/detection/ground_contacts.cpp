@@ -271,7 +271,7 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
     const GroundMotion* const motion = shapes_.motion(shape, query.places);
     const Gap gap = shapes_.gap(shape, motion, at.centre.data());
     const double distance = gap.distance - feature.radius;
-    const bool touches = distance <= query.margin;
+    const bool touches = !(distance > query.margin);  // no number: that is told where it is used
     if (!touches) {
       if (query.lasting == nullptr) continue;
       double turning = turning_bound(at, query.state, motion, gap.distance);
@@ -292,6 +292,7 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
 template <int D>
 void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
                           const GroundMotion* motion, const GroundMotion* after, Constraint& out) const {
+  if (at.centre.allFinite()) shapes_.demand_numbers(shape, gap, at.centre.data(), state.time);
   out.key = {at.feature.key, shapes_.key(shape)};
   out.law = laws_.law(at.feature.material, shape);
   out.friction = out.law.friction;

@@ -1,10 +1,13 @@
 #include <carom/contact/detection/ground_piece_shapes.h>
+#include <carom/core/described_sets.h>
 
 #include <cstdint>
 
 namespace carom::generic {
 
-std::vector<GroundPiece> moved_by(std::vector<GroundPiece> pieces, const Vec<2>& pivot) {
+std::vector<GroundPiece> moved_by(std::vector<GroundPiece> pieces, const Vec<2>& pivot,
+                                  const PartCheck& check) {
+  check_pieces(check, pieces);
   for (GroundPiece& piece : pieces) {
     for (Vec<2>& point : piece.points) point -= pivot;
   }

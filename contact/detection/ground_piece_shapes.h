@@ -17,9 +17,9 @@
 
 namespace carom::generic {
 
-/// Pieces as described, from the pivot on.
+/// Pieces as described, from the pivot on. Throws ModelError for what is no piece: GroundPiece says what is.
 [[nodiscard]] CAROM_API std::vector<GroundPiece> moved_by(std::vector<GroundPiece> pieces,
-                                                          const Vec<2>& pivot);
+                                                          const Vec<2>& pivot, const PartCheck& check);
 /// Demands finite numbers and a motion that can be.
 CAROM_API void check_motion(const PartCheck& check, const Vec<2>& pivot, double surface_speed,
                             const planar::PrescribedMotion& motion);
@@ -43,7 +43,7 @@ public:
     check.material(part.material);
     check.filter(part.filter);
     check_motion(check, part.pivot, part.surface_speed, part.motion);
-    parts_.push_back({part, moved_by(part.pieces(check), part.pivot)});
+    parts_.push_back({part, moved_by(part.pieces(check), part.pivot, check)});
   }
 
   [[nodiscard]] std::unique_ptr<ShapeKind> clone() const override {

@@ -1,5 +1,6 @@
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/prescribed_motion.h>
+#include <carom/core/described_sets.h>
 #include <carom/core/law_jump.h>
 #include <carom/core/system.h>
 
@@ -18,6 +19,7 @@ GroundShapes::GroundShapes(const System& system) : system_(&system) {
     const Index moving = kind.moves(place.slot) ? moving_++ : none;
     pieces.clear();
     kind.pieces(place.slot, pieces);
+    check_pieces({system.name(ObstacleId{serial, system.token()}), system}, pieces);
     shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty(),
                        kind.is_flat(place.slot)});
   }
@@ -41,6 +43,23 @@ GroundMotion GroundShapes::motion(Index shape, double time) const {
   const std::string message = failure.parts.front() + ": " + bad.quantity +
                               " of its motion at t = " + to_text(time) + " s is " + to_text(bad.value) + " " +
                               bad.unit + "; allowed: a finite number";
+  throw SolverError(message, std::move(failure));
+}
+
+void GroundShapes::refuse(Index shape, const Gap& gap, const double* point, double time) const {
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(system_->name(id(shape)));
+  const auto list = [this](const double* numbers) {
+    std::string text = "(" + to_text(numbers[0]);
+    for (int i = 1; i < system_->dimension(); ++i) text += ", " + to_text(numbers[i]);
+    return text + ")";
+  };
+  const bool of_normal = gap.distance >= std::numeric_limits<double>::lowest();
+  const std::string message =
+      failure.parts.front() + ": " + (of_normal ? "normal" : "distance") + " at " + list(point) + " m is " +
+      (of_normal ? list(gap.normal.data()) + "; allowed: a vector of length 1"
+                 : to_text(gap.distance) + " m; allowed: a finite number, or infinity");
   throw SolverError(message, std::move(failure));
 }
 

@@ -9,6 +9,7 @@
 #include <carom/core/export.h>
 #include <carom/core/ground_shape_kind.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -83,6 +84,15 @@ public:
     const Shape& at = shapes_[shape];
     return motion == nullptr ? at.kind->gap(at.slot, point) : at.kind->moved_gap(at.slot, *motion, point);
   }
+  /// Demands a distance that is a number, and a normal of length 1: shapes of users may tell anything. Throws
+  /// SolverError naming the shape. \param point finite, where it was asked for \param time [s]
+  void demand_numbers(Index shape, const Gap& gap, const double* point, double time) const {
+    constexpr double exact = 1e-6;  // of the square of the length
+    const double square =
+        gap.normal[0] * gap.normal[0] + gap.normal[1] * gap.normal[1] + gap.normal[2] * gap.normal[2];
+    const bool is_number = gap.distance >= std::numeric_limits<double>::lowest();
+    if (!is_number || !(std::abs(square - 1.0) <= exact)) refuse(shape, gap, point, time);
+  }
   /// True if any of some points is at a distance <= `margin` [m] from a shape.
   [[nodiscard]] bool any_within(Index shape, const GroundMotion* motion, const PointRow& row,
                                 double margin) const {
@@ -92,6 +102,8 @@ public:
   }
 
 private:
+  [[noreturn]] void refuse(Index shape, const Gap& gap, const double* point, double time) const;
+
   struct Shape {
     const GroundShapeKind* kind;
     Index slot;

@@ -50,7 +50,9 @@ ContactSolver* ExactSolvers::solver(SolverId id) {
 void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state) {
   const bool alone = problem.groups().size() == 1;
   const SolverId first = alone ? SolverId::single_contact : SolverId::principal_pivoting;
-  const bool done = (!alone && leave_open(problem, state)) || attempt(problem, first, state) ||
+  // All solutions of one contact are known, but not where it has rolling resistance.
+  const bool knows_all = alone && (problem.rows() <= 2 || problem.sets()[1].kind == SetKind::bounded_disc);
+  const bool done = (!knows_all && leave_open(problem, state)) || attempt(problem, first, state) ||
                     attempt(problem, SolverId::lemke, state) || attempt(problem, SolverId::projection, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);

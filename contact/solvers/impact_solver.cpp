@@ -7,6 +7,7 @@
 #include <carom/contact/solvers/planar_certificate.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -26,47 +27,64 @@ double largest(std::span<const double> numbers) {
   return size;
 }
 
-/// True if the problem is one planar contact.
+/// True if the problem is one planar contact, with rolling resistance or without.
 bool is_one_contact(const ContactProblem& problem) {
   if (problem.groups().size() != 1 || problem.sets()[0].kind != SetKind::half_line) return false;
-  return problem.rows() == 1 || (problem.rows() == 2 && problem.sets()[1].kind == SetKind::bounded_interval);
+  const std::span<const RowSet> dry = problem.sets().subspan(1);
+  return dry.size() <= 2 && std::all_of(dry.begin(), dry.end(), [](const RowSet& set) {
+           return set.kind == SetKind::bounded_interval;
+         });
 }
 
-/// The exact answer of one contact. False if there is none.
-bool follow(const ContactProblem& problem, std::span<const double> before, double restitution,
-            ContactSolution& answer) {
-  const bool tangent = problem.rows() == 2;
+/// One contact, as its path is followed. \param before velocities of its rows
+ImpactPathInput path_of(const ContactProblem& problem, std::span<const double> before, double restitution) {
   ImpactPathInput in{.wnn = problem.w(0, 0), .restitution = restitution, .normal = before[0]};
-  if (tangent) {
+  if (problem.rows() > 1) {
     in.wnt = problem.w(0, 1);
     in.wtt = problem.w(1, 1);
     in.friction = problem.sets()[1].coefficient;
     in.tangential = before[1];
   }
+  if (problem.rows() > 2) {
+    in.wnr = problem.w(0, 2);
+    in.wtr = problem.w(1, 2);
+    in.wrr = problem.w(2, 2);
+    in.rolling_resistance = problem.sets()[2].coefficient;
+    in.spin = before[2];
+  }
+  return in;
+}
+
+/// The exact answer of one contact. False if there is none.
+bool follow(const ContactProblem& problem, std::span<const double> before, double restitution,
+            ContactSolution& answer) {
+  const auto n = static_cast<std::size_t>(problem.rows());
   ContactReport& report = answer.report;
   report = {};
   report.solver = "impact path";
   report.worst_group = 0;
-  const auto end = follow_impact(in);
   answer.modes.assign(1, ContactMode::open);
+  const auto end = follow_impact(path_of(problem, before, restitution));
   if (!end) {
     report.outcome = Outcome::no_solution;
     report.reason = "no impulse ends the compression";
     return false;
   }
-  answer.impulse[0] = end->normal_impulse;
-  double error =
-      std::abs(before[0] + in.wnn * end->normal_impulse + in.wnt * end->tangential_impulse - end->normal);
-  if (tangent) {
-    answer.impulse[1] = end->tangential_impulse;
-    error = std::max(error, std::abs(before[1] + in.wnt * end->normal_impulse +
-                                     in.wtt * end->tangential_impulse - end->tangential));
+  const std::array<double, 3> impulse{end->normal_impulse, end->tangential_impulse, end->rolling_moment},
+      after{end->normal, end->tangential, end->spin};
+  std::copy_n(impulse.begin(), n, answer.impulse.begin());
+  double error = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double velocity = before[i];
+    for (std::size_t j = 0; j < n; ++j)
+      velocity += problem.w(static_cast<int>(i), static_cast<int>(j)) * impulse[j];
+    error = std::max(error, std::abs(velocity - after[i]));
   }
   const double size = largest(before);
   report.residual = size > 0.0 ? error / size : 0.0;
   report.outcome = report.residual <= 1e-10 ? Outcome::solved : Outcome::not_solved;
   if (end->normal_impulse > 0.0) {
-    answer.modes[0] = end->sticks || !tangent ? ContactMode::stick
+    answer.modes[0] = end->sticks || n == 1   ? ContactMode::stick
                       : end->tangential > 0.0 ? ContactMode::slip_positive
                                               : ContactMode::slip_negative;
   }

@@ -57,7 +57,7 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
   } else {
     demand_apart(at, group.failure);
   }
-  at.touch_gap = starts ? group.motion.model().options->gap_tolerance : 4.0 * at.scales.gap_noise;
+  at.find_touch_gap(starts);
   if (starts && !group.motion.active().list().empty()) group.projection.apply_to_known_contacts(at);
   at.take_contacts_before();
   at.find_islands();

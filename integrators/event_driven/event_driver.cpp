@@ -134,6 +134,8 @@ void EventDriver::advance_groups(double to) {
   } catch (const SolverError& error) {
     started_ = false;
     memory_.chain.reset_statistics();
+    // Steps go ahead of `to`, where laws may jump that were not looked at yet: that is the cause then.
+    laws_.demand(to, to + options_.longest_step, options_.interval);
     if (std::string_view(error.what()).starts_with("event-driven")) throw;  // it says where
     SolverFailure failure = error.failure();
     failure.time = trial_.time;

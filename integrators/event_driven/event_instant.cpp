@@ -28,21 +28,30 @@ void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
   const GroupModel& model = motion.model();
-  // Whatever touches or is captured is nearer.
-  const double near = 16.0 * model.options->gap_tolerance;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (model.pairs[i].rolling) {
       contacts[i] =
           rolling_resistance(contacts[i - 1], motion_of(*model.detector, model.pairs[i], now.places));
       continue;
     }
-    motion.contact_if_near(i, now, near, contacts[i]);
+    motion.contact_if_near(i, now, near(), contacts[i]);
     const Index bound = model.bound_of(i);
-    if (bound == none || contacts[i].gap > near || model.bounds[bound].rounding > 0.0) continue;
+    if (bound == none || contacts[i].gap > near() || model.bounds[bound].rounding > 0.0) continue;
     if (!motion.regions(model.pairs[i], now).may_touch()) {
       contacts[i].gap = std::numeric_limits<double>::infinity();
     }
   }
+}
+
+double EventInstant::near() const {
+  return std::max(16.0 * motion.model().options->gap_tolerance, longest_shift());
+}
+
+void EventInstant::find_touch_gap(bool starts) {
+  const double known = near();
+  touch_gap = starts ? motion.model().options->gap_tolerance : 4.0 * scales.gap_noise;
+  // Far from the origin gaps are rounded to more than their tolerance.
+  if (near() > known) update();
 }
 
 void EventInstant::take_accelerations_before() {

@@ -51,7 +51,7 @@ struct CAROM_API EventInstant {
   EventIslands& islands;               ///< bodies that touch each other, found by find_islands()
   EventBalance& balance;               ///< books
   EventScales scales{};                ///< of the phase to come
-  double touch_gap = 0.0;              ///< gaps up to here touch [m]
+  double touch_gap = 0.0;              ///< gaps up to here touch, by find_touch_gap() [m]
   /// The rate of a driver, or of a shape on ground, jumps: contacts that were closed approach without having
   /// approached before.
   bool rate_jumps = false;
@@ -60,15 +60,19 @@ struct CAROM_API EventInstant {
   /// have no bodies then, and a gap that may be less than it is: infinite of two sharp corners, which meet at
   /// an edge of either, or not at all.
   void update();
+  /// Finds the gap up to which contacts touch: gap_tolerance at a start, else their rounding.
+  void find_touch_gap(bool starts);
   /// Takes the accelerations of the sample for those before the event.
   void take_accelerations_before();
   /// Takes the contacts of the active set for those before the event.
   void take_contacts_before();
   /// Finds the islands, by the contacts as they are; they stay during the event.
   void find_islands();
-  /// True if a pair touches.
+  /// True if a pair touches. One that has no bodies is known to be apart.
   [[nodiscard]] bool touches(std::size_t pair) const {
-    return contacts[pair].gap <= touch_gap || (before_at[pair] != none && std::isfinite(contacts[pair].gap));
+    const Constraint& contact = contacts[pair];
+    return contact.rows > 0 &&
+           (contact.gap <= touch_gap || (before_at[pair] != none && std::isfinite(contact.gap)));
   }
   /// Distance that bodies are not moved by during the event, projections included [m]: a longer way may lead
   /// into what is not in their island.
@@ -82,6 +86,10 @@ struct CAROM_API EventInstant {
   [[nodiscard]] const double* velocities() const { return now.state.v.data(); }
   /// Takes the velocities of the sample over into the state.
   void take_velocities();
+
+private:
+  /// Whatever touches, or is moved in the event, is nearer [m].
+  [[nodiscard]] double near() const;
 };
 
 /// Largest acceleration, along their rows, of constraints at an instant [m/s^2].

@@ -47,7 +47,8 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
   const auto add_all = [&](const BodyOutlines& outlines) {
     for (const BodyOutline& outline : outlines.list()) {
       add(outline.key, circle_in(outlines.described(outline)));
-      reach_[outline.body] = std::max(reach_[outline.body], outline.reach);
+      // What turns is the set of the vertices: its widening is the same all around.
+      reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
     }
   };
   if (detector.bodies_touch()) add_all(detector.bodies().outlines());

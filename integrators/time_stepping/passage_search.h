@@ -7,9 +7,10 @@
 /// The way of a step is the chord between its ends: positions and angles change evenly, ground moves as it is
 /// prescribed. Two convex things that are apart by g along a normal n stay apart for at least g/c, c the
 /// largest rate at which they come nearer along n: that of their translation, and for each turning one the
-/// size of its spin times its reach. So looks from one such time to the next miss nothing (conservative
-/// advancement: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, Berkeley 1996, chapter
-/// 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the step's end.
+/// size of its spin times the reach of its vertices. So looks from one such time to the next miss nothing
+/// (conservative advancement: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, Berkeley
+/// 1996, chapter 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the
+/// step's end.
 
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/contact_look.h>
@@ -56,7 +57,7 @@ private:
 
   ContactLook look_;
   std::map<FeatureKey, double> thickness_;  // of outlines, by their first feature: a circle in them [m]
-  std::vector<double> reach_;               // by body, from its centre of mass [m]
+  std::vector<double> reach_;               // by body, of vertices from its centre of mass [m]
   double thinnest_ = 0.0;                   // depth that any pair may have [m]
   State at_;
   GroundPlaces places_at_end_;

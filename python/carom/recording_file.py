@@ -253,23 +253,36 @@ def _count(file: Any, ends: str, frames: int) -> int:
     return int(file[f"states/{ends}"][frames - 1]) if frames else 0
 
 
+def _demand_shape(name: str, array: Any, allowed: tuple[int, ...]) -> None:
+    if array.shape != allowed:
+        raise ValueError(f"{name} has the shape {array.shape}; allowed: {allowed}")
+
+
+def _read(file: Any) -> Recording:
+    frames = _complete(file)
+    arrays: dict[str, Any] = {name: file[f"states/{name}"][:frames] for name in _STATES}
+    turned = file["states"].get("orientations")
+    if turned is not None and len(turned) >= frames > 0:
+        arrays["orientations"] = turned[:frames]
+    arrays["ledger"] = file["ledger/rows"][:frames]
+    for table, ends in (("contacts", "contact_ends"), ("events", "event_ends")):
+        arrays[table] = file[f"{table}/rows"][: _count(file, ends, frames)]
+    arrays["names"] = [name.decode() for name in file["names"][()]]
+    model = json.loads(file["model"][()])
+    moved = [int(serial) for serial in file.attrs["moved"]]
+    bodies = len(model["bodies"])
+    columns = {"positions": (bodies, 3), "velocities": (bodies, 3), "ground": (len(moved), 3)}
+    for name in _STATES:
+        _demand_shape(f"states/{name}", arrays[name], (frames, *columns.get(name, ())))
+    return Recording(model["dimension"], model, moved, arrays)
+
+
 def load(path: Path) -> Recording:
     """The recording in a file. Raises FileError."""
     with _open(path) as file:
         try:
-            frames = _complete(file)
-            arrays: dict[str, Any] = {name: file[f"states/{name}"][:frames] for name in _STATES}
-            turned = file["states"].get("orientations")
-            if turned is not None and len(turned) >= frames > 0:
-                arrays["orientations"] = turned[:frames]
-            arrays["ledger"] = file["ledger/rows"][:frames]
-            for table, ends in (("contacts", "contact_ends"), ("events", "event_ends")):
-                arrays[table] = file[f"{table}/rows"][: _count(file, ends, frames)]
-            arrays["names"] = [name.decode() for name in file["names"][()]]
-            model = json.loads(file["model"][()])
-            moved = [int(serial) for serial in file.attrs["moved"]]
-        except (OSError, KeyError, ValueError) as error:
+            return _read(file)
+        except (OSError, KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
             raise _core.FileError(
                 f"recording '{path}' cannot be read: it is cut off or damaged ({error})"
             ) from error
-    return Recording(model["dimension"], model, moved, arrays)

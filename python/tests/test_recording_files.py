@@ -137,6 +137,38 @@ def test_a_truncated_file_of_a_killed_program_is_refused_by_its_path(tmp_path):
         load_recording(path)
 
 
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("complete", [1.0, 2.0]),
+        ("ledger/rows", "text"),
+        ("model", [1, 2]),
+        ("model", "{}"),
+        ("names", "text"),
+        ("states/times", 1.0),
+        ("states/positions", numpy.zeros((100, 7, 3))),
+        ("states/velocities", numpy.zeros((100, 3))),
+        ("states/ground", numpy.zeros((100, 2, 3))),
+        ("moved", 99),
+    ],
+)
+def test_a_damaged_member_is_refused_by_the_path_of_the_file(tmp_path, name, data):
+    import h5py
+
+    path = tmp_path / "damaged.h5"
+    simulation = Simulation(falling_ball(), TimeStepping(step=1e-3))
+    with Recorder(simulation, path):
+        simulation.run_until(0.5)
+    with h5py.File(path, "r+") as file:
+        if name in file:
+            del file[name]
+            file.create_dataset(name, data=data)
+        else:
+            file.attrs[name] = data
+    with pytest.raises(FileError, match=r"damaged\.h5' cannot be read"):
+        load_recording(path)
+
+
 def test_what_is_no_recording_is_refused_by_its_path(tmp_path):
     import h5py
 

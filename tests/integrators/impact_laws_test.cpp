@@ -238,6 +238,13 @@ TEST(ImpactLaws, BadInputIsNamed) {
                 "rolling_resistance", "-0.1");
   EXPECT_THROWS(ModelError, add({.friction = 0.1, .normal_restitution = 0.5, .rolling_resistance = nan}),
                 "rolling_resistance", "nan");
+  EXPECT_THROWS(ModelError,
+                add({.friction = 0.1,
+                     .normal_restitution = 0.5,
+                     .impact_law = ImpactLaw::energetic,
+                     .rolling_resistance = 0.1,
+                     .rolling_restitution = 0.5}),
+                "rolling_restitution is 0.5", "0 where impact_law is energetic");
   const Cradle cradle(3, 0.5, 0.1);
   EXPECT_THROWS(ModelError, Simulation(cradle.system, EventDriven{.impact_rules = {.sequence_limit = 0}}),
                 "sequence_limit", "0");

@@ -72,6 +72,26 @@ TEST(LawJumps, OfObstacles) {
   }
 }
 
+// A step goes ahead of the interval whose laws were looked at, and searches what hits a body behind a jump.
+TEST(LawJumps, RightBehindAnIntervalIsNamed) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  const auto jumping = [](double t) {
+    return Vec<2>(0.0, 0.1 * std::sin(20.0 * t) + (t > 0.15 ? 0.5 : 0.0));
+  };
+  const auto rate = [](double t) { return Vec<2>(0.0, 2.0 * std::cos(20.0 * t)); };
+  system.add(
+      HalfPlane{
+          .point = {0.0, 1.0}, .normal = {0.0, 1.0}, .motion = {.displacement = jumping, .velocity = rate}},
+      Surface{.friction = 0.3, .normal_restitution = 0.5}, "table");
+  const BodyId ball = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 1.3}});
+  system.add(Disc{.body = ball, .radius = 0.1});
+  Simulation simulation(system, EventDriven{.evaluation_limit = 100'000});
+  EXPECT_THROWS(SolverError, simulation.run_until(0.5),
+                "half-plane 'table': displacement jumps at t = 0.15 s");
+  EXPECT_LE(simulation.time(), 0.15);
+}
+
 /// A crank turned by a law of time.
 System driven_crank(const std::function<double(double)>& law, const std::vector<double>& breaks = {}) {
   System system;

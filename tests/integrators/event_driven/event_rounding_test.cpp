@@ -45,6 +45,36 @@ TEST(EventRounding, BarComesToLieFarFromTheOrigin) {
   }
 }
 
+// Rounding of gaps is larger there than gap_tolerance: all that touches by it has to be looked at.
+TEST(EventRounding, RowsOfDiscsComeToLieFarFromTheOrigin) {
+  constexpr double radius = 0.1, pitch = 0.25;
+  constexpr int columns = 3, rows = 3;
+  for (const double far : {0.0, 1e5, 1e6, 1e7, 1e8}) {
+    System system;
+    system.add(Gravity{{0.0, -g}});
+    system.set_default_law(Surface{.friction = 0.3, .normal_restitution = 0.2});
+    system.add(HalfPlane{.point = {far, far}, .normal = {0.0, 1.0}});
+    std::vector<BodyId> discs;
+    for (int i = 0; i < columns * rows; ++i) {
+      const Vec<2> place(pitch * (i % columns), 0.15 + pitch * (i / columns));
+      discs.push_back(
+          system.add(RigidBody{.mass = disc(1.0, radius), .position = {far + place[0], far + place[1]}}));
+      system.add(Disc{.body = discs.back(), .radius = radius});
+    }
+    Simulation simulation(system, EventDriven{});
+    simulation.run_until(0.4);
+    const double rounding = 1e-8 + 256.0 * epsilon * far;
+    for (int i = 0; i < columns; ++i) {
+      EXPECT_NEAR(simulation.state().position(discs[static_cast<std::size_t>(i)])[1] - far, radius, rounding)
+          << far;
+    }
+    // Each falls 0.05 m, and the gap of each row below; columns stand upright, and do not fall yet.
+    EXPECT_NEAR(simulation.state().position(discs.back())[1] - far, radius + 2.0 * radius * (rows - 1),
+                rounding)
+        << far;
+  }
+}
+
 TEST(EventRounding, BoxComesToLieAfterManyTurns) {
   constexpr double end = 3.0;
   for (const double turns : {0.0, 1e3, 159155.0}) {

@@ -230,6 +230,23 @@ TEST(NeverTunnel, ChangesNothingWhereNothingIsFast) {
   EXPECT_EQ(with.statistics().steps, 1000);
 }
 
+TEST(NeverTunnel, TurningDoesNotBringADiscNearer) {
+  // A step looks again after each way that could end it: by the speed of its rim, 1e10 m in a step, this disc
+  // would be looked at 1e10 times.
+  System system;
+  system.set_default_law(Surface{.friction = 0.0, .normal_restitution = 1.0});
+  const BodyId top = system.add(RigidBody{.mass = disc(1.0, 0.1), .spin = 1e14}, "top");
+  system.add(Disc{.body = top, .radius = 0.1});
+  const BodyId other =
+      system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.3, 0.0}, .velocity = {-1e3, 0.0}});
+  system.add(Disc{.body = other, .radius = 0.1});
+  Simulation simulation(system, TimeStepping{.step = 1e-3, .overlaps = {.never_tunnel = true}});
+  simulation.step();
+  // Central, without friction, of equal masses: velocities are exchanged.
+  EXPECT_NEAR(simulation.state().velocity(top)[0], -1e3, 1e-9);
+  EXPECT_NEAR(simulation.state().velocity(other)[0], 0.0, 1e-9);
+}
+
 TEST(NeverTunnel, AStepWithoutEndIsRefusedByName) {
   // 1 mm between two walls at 1e8 m/s: 1e8 bounces a step.
   System system = bullet_before_wall(1e8, 1.0);
