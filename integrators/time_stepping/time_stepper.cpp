@@ -142,6 +142,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
 }
 
 void TimeStepper::advance_all(const StepInput& in) {
+  projection_.begin();
   if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
 }

@@ -56,6 +56,8 @@ public:
   [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
   /// How often the last step was made: again where contacts turn in it (contact_turning.h).
   [[nodiscard]] int passes() const { return passes_; }
+  /// Brings the end of the last step to where bodies came by themselves, before TimeStepping::project_gaps.
+  void take_back_projection(State& end) const { projection_.take_back(end); }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
