@@ -28,8 +28,7 @@ void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
   const GroupModel& model = motion.model();
-  // Whatever touches or is captured is nearer.
-  const double near = 16.0 * model.options->gap_tolerance;
+  const double near = near_gap(*model.options);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (model.pairs[i].rolling) {
       contacts[i] =

@@ -223,8 +223,10 @@ void change_piles(std::uint64_t first, std::uint64_t last) {
     System system;
     system.add(Gravity{{0.0, -9.81}});
     const double e = random.uniform(0.0, 0.7);
-    system.set_default_law(
-        Surface{.friction = random.uniform(0.0, 0.8), .normal_restitution = e, .tangential_restitution = e});
+    system.set_default_law(Surface{.friction = random.uniform(0.0, 0.8),
+                                   .normal_restitution = e,
+                                   .tangential_restitution = e,
+                                   .rolling_resistance = random.below(4) == 0 ? 0.002 : 0.0});
     system.add(BoxInside{.lower = {-0.5, 0.0}, .upper = {0.5, 3.0}});
     std::vector<BodyId> bodies;
     const unsigned count = 3 + random.below(6);
@@ -235,11 +237,15 @@ void change_piles(std::uint64_t first, std::uint64_t last) {
                                             .angle = random.uniform(-3.0, 3.0),
                                             .velocity = random.vec<2>(2.0),
                                             .spin = random.uniform(-4.0, 4.0)}));
-      if (random.below(2) == 0) {
+      const unsigned shape = random.below(3);
+      if (shape == 0) {
         system.add(Disc{.body = bodies.back(), .radius = 0.1});
+      } else if (shape == 1) {
+        system.add(Segment{.body = bodies.back(), .from = {-0.08, 0.0}, .to = {0.08, 0.0}, .radius = 0.03});
       } else {
         system.add(Polygon{.body = bodies.back(),
-                           .vertices = {{-0.08, -0.06}, {0.08, -0.06}, {0.08, 0.06}, {-0.08, 0.06}}});
+                           .vertices = {{-0.08, -0.06}, {0.08, -0.06}, {0.08, 0.06}, {-0.08, 0.06}},
+                           .radius = random.below(2) == 0 ? 0.0 : 0.01});
       }
     }
     if (random.below(2) == 0) system.add(Rod{.from = bodies[0], .to = bodies[1]});
@@ -259,6 +265,13 @@ void change_piles(std::uint64_t first, std::uint64_t last) {
 }
 
 TEST(ModeSwitch, PilesChangeOver) { change_piles(0, 12); }
+
+// Time stepping keeps contacts closed that turning has opened, by some 1e-6 m: too far for events.
+// (Velocities were projected onto one, and another, of which no rows are known that far off, ended the
+// program.)
+TEST(ModeSwitch, WhatTurningHasOpenedIsOpen) {
+  for (const std::uint64_t seed : {21U, 527U}) change_piles(seed, seed + 1);
+}
 
 TEST(ModeSwitchLong, PilesChangeOver) { change_piles(0, carom_test::seeds(200, 2000)); }
 
