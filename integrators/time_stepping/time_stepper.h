@@ -77,7 +77,6 @@ private:
   void solve_part(const StepIsland& part, const StepInput& in);
   void book_part(const StepInput& in);
   [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
-  [[noreturn]] void fail_account(const StepInput& in, Range components);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,
