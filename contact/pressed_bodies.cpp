@@ -13,9 +13,9 @@ namespace carom {
 namespace {
 
 /// Names of the shapes on ground that move along a row of contacts, each once: "a, b"; empty where none does.
-std::string moving_along(std::size_t row, const System& system, const IslandProblem& problem) {
+std::string moving_along(std::size_t row, const System& system, std::span<const Constraint> contacts) {
   std::vector<std::string> names;
-  for (const Constraint& contact : problem.constraints()) {
+  for (const Constraint& contact : contacts) {
     const FeatureKey& ground = contact.key.b;
     if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
     if (contact.surface_velocity_after[row] == 0.0) continue;
@@ -29,16 +29,16 @@ std::string moving_along(std::size_t row, const System& system, const IslandProb
 
 }  // namespace
 
-std::string pressed_by(const System& system, const IslandProblem& problem) {
-  const std::string names = moving_along(0, system, problem);
+std::string pressed_by(const System& system, std::span<const Constraint> contacts) {
+  const std::string names = moving_along(0, system, contacts);
   if (names.empty()) return {};
   return "; bodies are pressed by the motion of " + names +
          " (allowed: motion that leaves them room, or friction on which they slide out)";
 }
 
-std::string carried_by(const System& system, const IslandProblem& problem) {
-  if (problem.constraints().size() < 2) return {};
-  const std::string names = moving_along(1, system, problem);
+std::string carried_by(const System& system, std::span<const Constraint> contacts) {
+  if (contacts.size() < 2) return {};
+  const std::string names = moving_along(1, system, contacts);
   if (names.empty()) return {};
   return "; bodies are carried by the surfaces of " + names +
          " (allowed: surfaces that do not carry a body against what stops it, or less friction)";

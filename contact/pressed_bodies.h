@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <string>
 
 namespace carom {
@@ -27,12 +28,12 @@ struct MassRange {
   }
 };
 
-/// Text that an error adds of a contact problem without an answer: the obstacles in it that move along the
-/// normal of a contact, and the remedies; empty where none moves so.
-[[nodiscard]] CAROM_API std::string pressed_by(const System& system, const IslandProblem& problem);
-/// Likewise of a problem that is not solved, or has no answer: shapes on ground whose surfaces run along
-/// bodies, where there are two and more contacts; empty where none runs.
-[[nodiscard]] CAROM_API std::string carried_by(const System& system, const IslandProblem& problem);
+/// Text that an error adds of contacts whose problem has no answer: the obstacles that move along the normal
+/// of one of them, by Constraint::surface_velocity_after, and the remedies; empty where none moves so.
+[[nodiscard]] CAROM_API std::string pressed_by(const System& system, std::span<const Constraint> contacts);
+/// Likewise of contacts whose problem is not solved, or has no answer: shapes on ground whose surfaces run
+/// along bodies, where there are two and more contacts; empty where none runs.
+[[nodiscard]] CAROM_API std::string carried_by(const System& system, std::span<const Constraint> contacts);
 /// Likewise: by how much the masses differ, where that leaves a light body between heavy ones few digits (its
 /// acceleration is the difference of forces that are as much larger); else empty.
 [[nodiscard]] CAROM_API std::string uneven_masses(const IslandProblem& problem);

@@ -1,8 +1,10 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
+#include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
+#include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/integrators/event_driven/event_motions.h>
@@ -10,7 +12,6 @@
 #include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -18,8 +19,9 @@ namespace carom {
 
 namespace {
 
-/// Names all shapes on ground that leave no room between them, the deepest contact first.
+/// Names all contacts that leave no room between them, the deepest first.
 [[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
+  constexpr std::size_t most = 12;  // of a pile all the same says nothing
   std::vector<Constraint> contacts(result.together.begin(), result.together.end());
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
@@ -29,8 +31,9 @@ namespace {
   std::string names;
   for (const Constraint& contact : contacts) {
     failure.parts.push_back(detector.name(contact.key));
-    names += (names.empty() ? "" : ", ") + failure.parts.back();
+    if (failure.parts.size() <= most) names += (names.empty() ? "" : ", ") + failure.parts.back();
   }
+  if (contacts.size() > most) names += " and " + std::to_string(contacts.size() - most) + " more";
   const std::string message = "change to the event-driven mode at t = " + to_text(time) +
                               " s: no displacement opens the gaps of " + names + " together; left is " +
                               to_text(result.left->gap) + " m; allowed: bodies that have room";
@@ -106,23 +109,39 @@ void find_closed(const Detector& detector, const GroundPlaces& places, Index com
   contacts.swap(with_rolling);
 }
 
-/// Appends contacts of a component that a displacement has opened: they are closed no more, though they were
-/// in the step before. \param evaluation brought to `after`
-void find_opened(const Assembly& assembly, Index component, const Detector& detector,
-                 const GroundPlaces& places, const State& before, const State& after,
-                 const GapProjection::Result& result, Evaluation& evaluation,
-                 std::vector<ConstraintKey>& opened) {
-  if (!result.moved) return;
-  constexpr double everything = std::numeric_limits<double>::infinity();
-  std::vector<Constraint> closed, now;
-  evaluate_positions(assembly, component, before.view(), evaluation);
-  detector.find(component, before.view(), evaluation, places, nullptr, everything, closed);
-  evaluate_positions(assembly, component, after.view(), evaluation);
-  detector.find(component, after.view(), evaluation, places, nullptr, everything, now);
-  // Both lists have all pairs, in one order.
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (now[i].gap > std::max(closed[i].gap, 0.0) + 4.0 * result.depth) opened.push_back(now[i].key);
-  }
+/// Gaps of contacts, ascending by key.
+using Gaps = std::vector<std::pair<ConstraintKey, double>>;
+
+Gaps gaps_within(double reach, ContactLook& look, const State& state) {
+  std::vector<Constraint> contacts;
+  look.find(state.view(), reach, contacts);
+  Gaps gaps;
+  gaps.reserve(contacts.size());
+  for (const Constraint& contact : contacts) gaps.emplace_back(contact.key, contact.gap);
+  std::sort(gaps.begin(), gaps.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return gaps;
+}
+
+/// Drops the modes of contacts that a displacement has opened: they are closed no more, though they were in
+/// the step before.
+void forget_opened(const Assembly& assembly, const Detector& detector, const State& before,
+                   const State& after, const GapProjection::Result& result, Companion& companion) {
+  // Both bodies of a contact are moved, and turned.
+  const double reach = 4.0 * result.shift;
+  ContactLook look(assembly, detector);
+  const Gaps closed = gaps_within(reach, look, before), now = gaps_within(reach, look, after);
+  const auto find = [](const Gaps& gaps, const ConstraintKey& key) {
+    const auto at =
+        std::lower_bound(gaps.begin(), gaps.end(), key,
+                         [](const auto& entry, const ConstraintKey& of) { return entry.first < of; });
+    return at != gaps.end() && at->first == key ? &at->second : nullptr;
+  };
+  std::erase_if(companion.modes, [&](const auto& entry) {
+    const double* const gap_before = find(closed, entry.first);
+    const double* const gap = find(now, entry.first);
+    if (gap_before == nullptr) return false;  // not by the displacement
+    return gap == nullptr || *gap > std::max(*gap_before, 0.0) + 4.0 * result.depth;
+  });
 }
 
 /// Books the energy of the change, and what solvers counted.
@@ -136,6 +155,26 @@ void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size
       static_cast<std::int64_t>(contacts);
 }
 
+/// Moves bodies out of all shapes on ground, for out of one they may come into another, and apart.
+GapProjection::Result move_apart(const Assembly& assembly, const Detector& detector,
+                                 const GroundPlaces& places, SolverChain& chain, State& trial,
+                                 Evaluation& evaluation) {
+  const auto components = static_cast<Index>(assembly.components().size());
+  if (components == 0) return {};
+  std::vector<JointConstraints> joints;
+  for (Index component = 0; component < components; ++component) {
+    append_constraints(assembly, component, joints);
+  }
+  const std::vector<JointConstraints*> bound = addresses_of(joints);
+  GapProjection projection;
+  GapProjection::Result result =
+      projection.project({assembly, detector, places, {0, components}, bound},
+                         {.all = true, .of_bodies = detector.bodies_touch()}, chain, trial, evaluation);
+  if (result.left != nullptr) fail_wedged(detector, result, trial.time);
+  result.together = {};  // of the projection, which ends here
+  return result;
+}
+
 }  // namespace
 
 void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& state, Companion& companion,
@@ -146,14 +185,11 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
   SolverChain chain;
   IslandProblem problem;
   IslandPartition partition;
-  GapProjection projection;
   const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
   GroundPlaces places;
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
   std::vector<EventRecord> recorded;
-  std::vector<ConstraintKey> opened;
-  double shift = 0.0;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
     find_closed(detector, places, component, trial, evaluation, contacts);
@@ -175,22 +211,14 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
       if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
       apply_and_record(assembly, problem, trial, recorded);
     }
-    // All of them: out of one shape a body may come into another.
-    JointConstraints* const bound[] = {&joints};
-    const GapProjection::Result result = projection.project(
-        {assembly, detector, places, {component, component + 1}, std::span(bound, joints.empty() ? 0 : 1)},
-        {.all = true}, chain, trial, evaluation);
-    if (result.left != nullptr) fail_wedged(detector, result, state.time);
-    shift = std::max(shift, result.shift);
-    find_opened(assembly, component, detector, places, state, trial, result, evaluation, opened);
   }
+  const GapProjection::Result moved = move_apart(assembly, detector, places, chain, trial, evaluation);
   // Where bodies were moved their joints stand elsewhere.
-  shift = std::max(shift, close_joints(assembly, trial).shift);
-  driver.demand_start(trial);  // bodies are not moved out of each other
-  book(stored_energies(assembly, trial.view(), evaluation), chain.statistics(), recorded.size(), companion);
-  std::erase_if(companion.modes, [&](const auto& entry) {
-    return std::find(opened.begin(), opened.end(), entry.first) != opened.end();
-  });
+  const double shift = std::max(moved.shift, close_joints(assembly, trial).shift);
+  driver.demand_start(trial);
+  const StoredEnergies stored = stored_energies(assembly, trial.view(), evaluation);
+  if (moved.moved) forget_opened(assembly, detector, state, trial, moved, companion);
+  book(stored, chain.statistics(), recorded.size(), companion);
   state = std::move(trial);
   report = {};
   report.time = state.time;

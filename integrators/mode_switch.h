@@ -1,9 +1,9 @@
 #pragma once
 
 /// \file
-/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside shapes on ground.
-/// Contacts that approach there are resolved by an impact, then bodies are moved out (docs/method.md, section
-/// 7).
+/// From time stepping to the event-driven mode: time stepping leaves bodies a little inside shapes on ground,
+/// and in each other. Contacts with ground that approach are resolved by an impact, then bodies are moved out
+/// and apart (docs/method.md, section 7).
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -17,9 +17,9 @@
 namespace carom {
 
 /// Changes the state so that an event-driven run can start from it, books the energy as `mode_switch`, and
-/// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError, and
-/// ModelError where bodies are too deep in each other for a start; nothing has changed then. \param driver
-/// that is to run
+/// tells the largest displacement (StepReport::projected) and the contacts. Throws SolverError naming
+/// contacts of bodies that have no room, and ModelError of a state that is no start; nothing has changed
+/// then. \param driver that is to run
 CAROM_API void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& state,
                                   Companion& companion, StepReport& report, RecordedEvents& events);
 

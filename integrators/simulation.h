@@ -88,10 +88,11 @@ public:
   /// computed from the state, in time stepping a contact sticks if its speed is exactly zero.
   void set_state(const State& state);
   /// Continues in another mode, or with other options, from the same state. At a change from time stepping to
-  /// the event-driven mode, bodies may have penetrated shapes on ground: an impact is solved for contacts
-  /// that approach there, then bodies are moved out by the smallest displacement in the mass norm; energies
-  /// are booked as `mode_switch`, and report().projected has the largest displacement. Throws as the
-  /// constructor, and SolverError if bodies cannot be moved out; the mode then does not change.
+  /// the event-driven mode, bodies may have penetrated shapes on ground and each other: an impact is solved
+  /// for contacts with ground that approach, then bodies are moved out and apart by the smallest displacement
+  /// in the mass norm; energies are booked as `mode_switch`, and report().projected has the largest
+  /// displacement. Throws as the constructor, and SolverError naming contacts of bodies that have no room;
+  /// the mode then does not change.
   void switch_to(Mode mode);
 
   /// Counts the degrees of freedom that joints leave at the present state, and names redundant joints.

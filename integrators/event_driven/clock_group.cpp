@@ -102,7 +102,8 @@ void ClockGroup::start(const State& state, const ContactModes& present) {
   close_known_contacts(present);
 }
 
-/// Takes contacts known to be closed into the active set, in their modes.
+/// Takes contacts known to be closed into the active set, in their modes. Time stepping keeps some closed
+/// that turning has opened: those that are far from touching are open here.
 void ClockGroup::close_known_contacts(const ContactModes& present) {
   std::vector<ActiveContact>& active = parts_.motion.active().list();
   active.clear();
@@ -116,7 +117,7 @@ void ClockGroup::close_known_contacts(const ContactModes& present) {
                          [](const auto& entry, const ConstraintKey& key) { return entry.first < key; });
     const bool open =
         known == present.end() || known->first != contact.key || known->second == ContactMode::open;
-    if (open) continue;
+    if (open || contact.gap > near_gap(*parts_.motion.model().options)) continue;
     ActiveContact& closed = active.emplace_back();
     closed.pair = parts_.motion.model().pairs[i];
     closed.place = static_cast<Index>(i);

@@ -43,9 +43,7 @@ void EventInstant::update() {
   }
 }
 
-double EventInstant::near() const {
-  return std::max(16.0 * motion.model().options->gap_tolerance, longest_shift());
-}
+double EventInstant::near() const { return std::max(near_gap(*motion.model().options), longest_shift()); }
 
 void EventInstant::find_touch_gap(bool starts) {
   const double known = near();
@@ -91,6 +89,7 @@ void EventInstant::take_velocities() {
 double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at) {
   double largest = 0.0;
   for (const Constraint& constraint : constraints) {
+    if (constraint.type == ConstraintType::joint_friction) continue;
     for (int row = 0; row < constraint.rows; ++row)
       largest = std::max(largest, std::abs(constraint.acceleration(row, at.now.acceleration.data())));
   }

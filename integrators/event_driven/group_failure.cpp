@@ -26,16 +26,22 @@ std::string uneven_masses_of(const GroupModel& model) {
 
 }  // namespace
 
-void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
-                        const IslandProblem* problem) const {
+void GroupFailure::fail(const std::string& what, std::vector<std::string> parts, const IslandProblem* problem,
+                        std::span<const Constraint> unkept) const {
   std::string message = "event-driven at t = " + to_text(clock_->now) + " s: " + what;
   const Assembly& assembly = *model_->assembly;
-  if (problem != nullptr && problem->report().outcome == Outcome::no_solution)
-    message += pressed_by(assembly.system(), *problem);
+  if (!unkept.empty()) {
+    message += pressed_by(assembly.system(), unkept) + carried_by(assembly.system(), unkept);
+  } else if (problem != nullptr) {
+    const ContactReport& report = problem->report();
+    if (report.outcome == Outcome::no_solution)
+      message += pressed_by(assembly.system(), problem->constraints());
+    if (!report.usable()) message += carried_by(assembly.system(), problem->constraints());
+  }
   if (problem == nullptr) {
     message += uneven_masses_of(*model_);
   } else if (!problem->report().usable()) {
-    message += carried_by(assembly.system(), *problem) + uneven_masses(*problem);
+    message += uneven_masses(*problem);
   }
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));

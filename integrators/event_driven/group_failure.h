@@ -9,6 +9,7 @@
 #include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,11 @@ public:
   GroupFailure(const GroupModel& model, const GroupClock& clock) : model_(&model), clock_(&clock) {}
 
   /// Throws a SolverError. \param parts named, the worst first; empty: a body of the group \param problem
-  /// whose problem is attached, may be null
+  /// whose problem is attached, may be null \param unkept contacts that no forces keep closed: ground that
+  /// presses or carries bodies there is named; empty: that of a problem of an impact, where it has no answer
   [[noreturn]] void fail(const std::string& what, std::vector<std::string> parts,
-                         const IslandProblem* problem = nullptr) const;
+                         const IslandProblem* problem = nullptr,
+                         std::span<const Constraint> unkept = {}) const;
   /// Fails, naming the element and its bodies, if the loads of one are not finite in a sample.
   void demand_finite_loads(const MotionSample& at) const;
   /// Fails, naming the element if there is one.

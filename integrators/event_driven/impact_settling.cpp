@@ -7,6 +7,15 @@
 
 namespace carom {
 
+namespace {
+
+/// True of a contact in the plane or in space, and of friction in a joint.
+bool has_friction(const Constraint& constraint) {
+  return constraint.rows > 1 || constraint.has_dry_friction();
+}
+
+}  // namespace
+
 bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain) {
   capture_ = capture_speed(pairs, at);
   if (!list_touching(pairs, at)) return false;
@@ -14,6 +23,7 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   if (!(pull > 0.0)) return false;
   // What parts at the capture speed has come back by then.
   const double time = 2.0 * capture_ / pull;
+  for (Constraint& contact : touching_) contact.friction_bound *= time;  // of friction in a joint
   return solve_ahead(time, touching_, at, ahead_, problem_, chain) && list_held(at) &&
          closing_.close(held_, pairs, at);
 }
@@ -28,17 +38,16 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
   for (const Index i : pairs) {
     if (!at.touches(i) || -at.approach(i) > capture_) continue;
     const Constraint& contact = at.contacts[i];
-    if (contact.has_dry_friction() && !at.motion.joints().depends_on_joint_force(contact)) continue;
+    if (contact.type == ConstraintType::rolling) continue;
     pile = pile || contact.bodies > 1;
     Constraint& listed = touching_.emplace_back(contact);
     places_.push_back(i);
     listed.remove_restitution();
-    listed.friction_bound = 0.0;
     const double sliding = contact.sliding_speed(at.velocities());
     listed.friction =
         sliding <= capture_ ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
     any = any || (at.before_at[i] != none && -at.approach(i) > noise);
-    any = any || (contact.rows > 1 && sliding > noise && sliding <= capture_);
+    any = any || (has_friction(contact) && sliding > noise && sliding <= capture_);
   }
   return any && pile;
 }
@@ -49,7 +58,8 @@ bool ImpactSettling::comes_to_rest(std::size_t c, const EventInstant& at) const 
   const double slip = touching_[c].tangential_velocity(at.velocities());
   const ContactMode turned = slip > 0.0 ? ContactMode::slip_negative : ContactMode::slip_positive;
   const ContactMode mode = problem_.modes()[c];
-  return mode == ContactMode::stick || mode == turned;
+  const bool rests = mode == ContactMode::stick || mode == turned;
+  return rests || (touching_[c].has_dry_friction() && mode == ContactMode::open);
 }
 
 /// Lists the contacts that are pressed then. False if they need not be stopped.
@@ -62,11 +72,14 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     const Index place = places_[c];
     // A contact that was open before bounces as ever.
     const bool bounces = at.before_at[place] == none && -at.approach(place) > noise;
-    if (contact.has_dry_friction() || bounces) continue;
-    if (!(problem_.map().impulse(c, 0) > 0.0)) continue;
-    const double sliding = contact.rows > 1 ? contact.sliding_speed(at.velocities()) : 0.0;
+    const bool in_joint = contact.has_dry_friction();
+    if (!in_joint && bounces) continue;
+    if (!in_joint && !(problem_.map().impulse(c, 0) > 0.0)) continue;
+    const double sliding = has_friction(contact) ? contact.sliding_speed(at.velocities()) : 0.0;
     // A contact at rest is not to start by what stops others: accelerations decide about that.
-    const bool sticks = contact.rows > 1 && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
+    const bool sticks =
+        has_friction(contact) && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
+    if (in_joint && !sticks) continue;
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();
     held.mode = sticks ? ContactMode::stick : ContactMode::slip_positive;

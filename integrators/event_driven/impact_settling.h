@@ -7,7 +7,8 @@
 /// that bounces (docs/method.md, section 7, *Accumulation of impacts*): in a pile every impact shakes all
 /// that touches, and each contact that bounces lower than the neglected height would end its bounce, and each
 /// short slide, by an event of its own. Sliding of 1e-12 m/s, the rest of a larger motion, would give
-/// friction a direction that jams.
+/// friction a direction that jams. Friction in a joint has no impulse in an impact, and each slow one lets
+/// the joint slip by a little: stopping again, it would lift what has just closed.
 
 #include <carom/contact/active_contact.h>
 #include <carom/contact/island_problem.h>
@@ -26,10 +27,10 @@ namespace carom {
 class CAROM_API ImpactSettling {
 public:
   /// Closes contacts of an island that were closed before the event and part slower than the capture speed,
-  /// and stops those that slide slower, where forces of contact do so, or turn them back, within the time in
-  /// which what parts at that speed comes back. Books the energy as that of accumulations. True if velocities
-  /// changed; the instant is up to date then, and contacts may approach each other. \param at brought to the
-  /// state after the impacts
+  /// and stops those that slide slower, friction in joints included (rates of angles as those of lengths),
+  /// where forces of contact do so, or turn them back, within the time in which what parts at that speed
+  /// comes back. Books the energy as that of accumulations. True if velocities changed; the instant is up to
+  /// date then, and contacts may approach each other. \param at brought to the state after the impacts
   [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain);
 
 private:

@@ -1,14 +1,52 @@
 // Problem: modes of all that touches, where events have just ended some, and forces may not exist.
 
+#include <carom/contact/contact_point.h>
+#include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/pressed_bodies.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 #include <carom/integrators/run/time_resolution.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace carom {
+
+namespace {
+
+/// Acceleration of the ground at a contact along its rows: 0 where it does not move [m/s^2].
+std::array<double, 2> acceleration_of_ground(const Constraint& contact, const EventInstant& at) {
+  const GroupModel& model = at.motion.model();
+  const GroundMotion* const motion = ground_motion_of(*model.detector, contact, at.now.places);
+  if (motion == nullptr || contact.type != ConstraintType::contact) return {};
+  const BodySlot slot = model.assembly->layout()->bodies()[contact.body()];
+  const PointOfContact place = point_of_contact(contact, at.now.state.q.data() + slot.q);
+  const double x = place.point[0] - motion->point[0], y = place.point[1] - motion->point[1];
+  const double square = motion->spin * motion->spin, turn = motion->angular_acceleration;
+  const double along_x = motion->acceleration[0] - turn * y - square * x;
+  const double along_y = motion->acceleration[1] + turn * x - square * y;
+  const double *const n = contact.row(0), *const t = contact.row(1);
+  return {n[0] * along_x + n[1] * along_y, t[0] * along_x + t[1] * along_y};
+}
+
+/// The contacts of candidates that nothing keeps. Ground that turns round stands still and presses all the
+/// same: its acceleration stands for its velocity then.
+std::vector<Constraint> unkept_contacts(std::span<const Candidate> candidates, const EventInstant& at) {
+  std::vector<Constraint> contacts;
+  contacts.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) {
+    Constraint& contact = contacts.emplace_back(candidate.at);
+    const std::array<double, 2> acceleration = acceleration_of_ground(contact, at);
+    for (std::size_t row = 0; row < acceleration.size(); ++row) {
+      double& velocity = contact.surface_velocity_after[row];
+      if (velocity == 0.0) velocity = acceleration[row];
+    }
+  }
+  return contacts;
+}
+
+}  // namespace
 
 void ModeSelection::start() {
   forget_ends();
@@ -111,13 +149,14 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
     const Decision by_forces = memory_->decision.decide_by(forces, at.motion, at.now, memory_->candidates);
     if (by_forces != Decision::failed) return by_forces;
   }
-  if (decision == Decision::impossible) fail_unkept();
+  if (decision == Decision::impossible) fail_unkept(at);
   const bool by_joints = std::any_of(
       memory_->candidates.begin(), memory_->candidates.end(),
       [&](const Candidate& candidate) { return at.motion.joints().depends_on_joint_force(candidate.at); });
   const std::string why = by_joints ? std::string("; ") + unsettled_friction : std::string{};
-  failure_->fail("the contact problem of the accelerations is not solved" + why, names_of_candidates(),
-                 &memory_->decision.problem());
+  const std::vector<Constraint> unkept = unkept_contacts(memory_->candidates, at);
+  failure_->fail("the contact problem of the accelerations is not solved" + why, failure_->names(unkept),
+                 &memory_->decision.problem(), unkept);
 }
 
 /// True if a contact slides.
@@ -201,12 +240,13 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
 }
 
 /// Fails where neither forces nor an impact without collision keep the candidates.
-void ModeSelection::fail_unkept() const {
-  const char* const unkept = "no forces keep the contact, and no impact without collision does";
+void ModeSelection::fail_unkept(const EventInstant& at) const {
+  const char* const what = "no forces keep the contact, and no impact without collision does";
+  const std::vector<Constraint> unkept = unkept_contacts(memory_->candidates, at);
   failure_->fail(has_unbounded_force()
-                     ? unbounded_->reason() + "; forces of contact grow without bound (Painleve); " + unkept
-                     : unkept,
-                 names_of_candidates(), &memory_->impact.problem());
+                     ? unbounded_->reason() + "; forces of contact grow without bound (Painleve); " + what
+                     : what,
+                 failure_->names(unkept), &memory_->impact.problem(), unkept);
 }
 
 /// `impossible` if friction that is larger by little leaves no forces; `failed` otherwise.
@@ -223,11 +263,6 @@ Decision ModeSelection::decide_by_excess(std::span<const Index> pairs, EventInst
     if (decide(at) == Decision::impossible) return Decision::impossible;
   }
   return Decision::failed;
-}
-
-std::vector<std::string> ModeSelection::names_of_candidates() const {
-  return failure_->names(memory_->candidates,
-                         [](const Candidate& candidate) -> const Constraint& { return candidate.at; });
 }
 
 void ModeSelection::close_candidates(ActiveSet& active) const {

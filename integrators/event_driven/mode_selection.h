@@ -67,8 +67,7 @@ private:
   [[nodiscard]] Decision decide_candidates(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] bool any_slides() const;
   [[nodiscard]] bool has_unbounded_force() const;
-  [[noreturn]] void fail_unkept() const;
-  [[nodiscard]] std::vector<std::string> names_of_candidates() const;
+  [[noreturn]] void fail_unkept(const EventInstant& at) const;
   void close_candidates(ActiveSet& active) const;
   static void note_motions(const Constraint& contact, const EventInstant& at, EventRecord& event);
   void record_choice(EventInstant& at) const;

@@ -10,8 +10,15 @@
 namespace carom {
 
 double size_without_contact(const IslandProblem& problem) {
+  const ContactProblem& stated = problem.problem();
   double size = 0.0;
-  for (const double b : problem.problem().vector()) size = std::max(size, std::abs(b));
+  for (int row = 0; row < stated.rows(); ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    size = std::max(size, std::abs(stated.vector()[at]));
+    const RowSet& set = stated.sets()[at];
+    const bool is_given = set.kind == SetKind::interval && set.lower == set.upper;
+    if (is_given) size = std::max(size, std::abs(stated.diagonal(row) * set.lower));
+  }
   return size;
 }
 

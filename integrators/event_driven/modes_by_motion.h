@@ -38,7 +38,8 @@ struct MotionComparison {
   std::vector<double> force, none, answered, given;  ///< by row
 };
 
-/// Largest acceleration of contacts that no force acts on [m/s^2].
+/// Largest acceleration of contacts that no force acts on but friction in joints that turn, which is given:
+/// all that may move hinged bodies in flight against each other [m/s^2].
 [[nodiscard]] CAROM_API double size_without_contact(const IslandProblem& problem);
 /// Size against which the rounding of the accelerations that an answer leads to is no acceleration: forces
 /// that nearly cancel, of a heavy body that rests on a light one, leave the light one theirs [m/s^2].

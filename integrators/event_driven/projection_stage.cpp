@@ -55,9 +55,12 @@ void ProjectionStage::apply_to_known_contacts(EventInstant& at) {
   bool erased = false;  // the contact that rolling resistance belongs to
   std::erase_if(list, [&](ActiveContact& closed) {
     closed.at = at.contacts[closed.place];
-    if (closed.rolls()) return erased;
+    // Time stepping gives what sticks its tangential restitution.
+    const double noise = left_by_tolerances * at.scales.noise_of(*motion_, closed.at);
+    const bool slips = closed.sticks() && std::abs(closed.at.tangential_velocity(at.velocities())) > noise;
+    if (closed.rolls()) return erased || slips;
     erased =
-        closed.at.gap > motion_->model().options->gap_tolerance ||
+        slips || closed.at.gap > motion_->model().options->gap_tolerance ||
         std::abs(closed.at.normal_velocity(at.velocities())) > left_by_tolerances * at.scales.speed_noise;
     return erased;
   });

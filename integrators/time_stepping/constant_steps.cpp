@@ -23,7 +23,8 @@ StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
     }
     trial.account.swept = true;
     const LooseAccount account = uncoupled_->account(in, batch);
-    if (!balance_.book_loads(account.works, account.potentials)) fail_account(in, batch.all.components);
+    if (!balance_.book_loads(account.works, account.potentials))
+      parts_.errors(in, batch.all.components.begin).fail_account(batch.all.components);
   }
   balance_.report().sweeps = 1;
   balance_.report().iteration = uncoupled_->iteration();
@@ -74,7 +75,8 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
         ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial, flown_ == Flight::moved});
     parts_.trial.account.swept = true;
     if (parts_.located.on()) locate_under_constant_loads(components, island, in, parts_);
-    if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
+    if (!balance_.book_couplings(in, components.begin, parts_.trial))
+      parts_.errors(in, components.begin).fail_account(components);
   }
   book_contacts(island, in);
   if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
@@ -104,7 +106,8 @@ void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput
     book_part(in);
   };
   parts_.schedule.run(stages, react, book, touch);
-  if (!balance_.book_couplings(in, components.begin, parts_.trial)) fail_account(in, components);
+  if (!balance_.book_couplings(in, components.begin, parts_.trial))
+    parts_.errors(in, components.begin).fail_account(components);
 }
 
 }  // namespace carom

@@ -71,11 +71,11 @@ void GapProjection::start(const Bodies& bodies, const Which& which, Range v, con
 
 GapProjection::Result GapProjection::project(const Bodies& bodies, const Which& which, SolverChain& chain,
                                              State& state, Evaluation& evaluation) {
-  // Gaps are linear in the coordinates but for turning bodies, where each pass squares what is left.
-  constexpr int passes = 20;
-  // Bodies that are deep in each other touch with other features from pass to pass, and may do so without
-  // end. Then each pass moves them by the least from where the one before has left them.
-  const int most_passes = which.of_bodies ? 20 * passes : passes;
+  // Gaps are linear in the coordinates but for turning bodies. The least displacement is then found by a part
+  // of what is left from pass to pass, the smaller the less it turns; and bodies that are deep in something
+  // touch with other features from pass to pass, and may do so without end. So at last each pass moves them
+  // by the least from where the one before has left them, which squares what is left.
+  constexpr int passes = 20, most_passes = 20 * passes;
   const Assembly& assembly = bodies.assembly;
   const double depth = rounding_depth(assembly, bodies.components, state);
   const Range v{assembly.components()[bodies.components.begin].v.begin,

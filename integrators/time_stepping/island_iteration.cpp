@@ -69,7 +69,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
 
 /// Bodies that are hit within the step, as far as the iterate says. True if there are more than were known.
 bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in) {
-  if (!parts_->located.on() || method_.is_newton()) return false;
+  if (!parts_->located.on() || method_.is_newton() || parts_->joined.takes(island)) return false;
   bool any = false;
   for (const Index component : island.components) {
     if (parts_->joints.of(component) != nullptr) continue;
@@ -122,7 +122,8 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   }
   JointContacts contacts = contacts_of(island);
   method_.start(front);
-  if (parts_->located.on() && joints == nullptr && !method_.is_newton()) {
+  // Mechanisms, and what they touch, keep to the step: it ends where they are hit.
+  if (parts_->located.on() && joints == nullptr && !joined && !method_.is_newton()) {
     for (const Index component : island.components) {
       parts_->located.expect(in, component, island.constraints, parts_->constraints.places_at_start(),
                              parts_->trial);

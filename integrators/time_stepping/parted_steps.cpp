@@ -60,11 +60,17 @@ bool PartedSteps::may_search() const {
   return done_.companion.steps_owed + made_ < most;
 }
 
-/// A part up to the end of the step, or to where something is deep enough.
+/// A part up to the end of the step, or to where something is deep enough. Bodies that are moved out of
+/// something at its end are not looked at on that way: it does not grow shorter with the part.
 void PartedSteps::part_before_passage(const Whole& whole, double length) {
   for (double end = whole.end;;) {
     make_part(length, end);
-    const PassageSearch::Passage passage = passages_->first(done_.state, trial_.state);
+    const bool moves = stepper_->options().project_gaps;
+    if (moves) {
+      came_ = trial_.state;
+      stepper_->take_back_projection(came_);
+    }
+    const PassageSearch::Passage passage = passages_->first(done_.state, moves ? came_ : trial_.state);
     if (!(passage.share < 1.0)) return;
     const double earlier = done_.state.time + passage.share * (end - done_.state.time);
     if (earlier == end) return;

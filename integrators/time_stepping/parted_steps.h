@@ -60,6 +60,7 @@ private:
   std::unique_ptr<PassageSearch> passages_;  // one of these is null
   std::unique_ptr<ClosingSearch> closings_;
   Run done_, trial_;
+  State came_;     // the end of a part before bodies are moved out of others
   int parts_ = 0;  // that ended early
   int made_ = 0;   // steps of the whole model for the step at hand, with those repeated
   StepReport part_, sum_;

@@ -232,7 +232,8 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
     message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, component_) +
-               pressed_by(system(), problem) + carried_by(system(), problem) + uneven_masses(problem);
+               pressed_by(system(), problem.constraints()) + carried_by(system(), problem.constraints()) +
+               uneven_masses(problem);
     if (options_.impact_rules.refuse_jams && problem.constraints().size() > 1) {
       message +=
           "; allowed: contacts with an answer (impact_rules.refuse_jams is set; use one e for surfaces "

@@ -72,6 +72,13 @@ void StepProjection::apply(const StepIsland& island, const StepInput& in, StepBa
   }
 }
 
+void StepProjection::take_back(State& end) const {
+  for (const Index component : moved_) {
+    const Range q = parts_->assembly->components()[component].q;
+    std::copy(came_.begin() + q.begin, came_.begin() + q.end, end.q.begin() + q.begin);
+  }
+}
+
 StoredEnergies StepProjection::potentials(std::span<const Index> components) {
   StoredEnergies sum;
   for (const Index component : components) {
@@ -84,7 +91,10 @@ void StepProjection::project(const Part& part, const StepInput& in, StepBalance&
   const Assembly& assembly = *parts_->assembly;
   StepTrial& trial = parts_->trial;
   joints_.clear();
+  came_.resize(trial.end.q.size());
   for (const Index component : part.components) {
+    const Range q = assembly.components()[component].q;
+    std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, came_.begin() + q.begin);
     evaluate_positions(assembly, component, trial.end.view(), trial.at_end);
     if (JointStage* const stage = parts_->joints.of(component)) joints_.push_back(&stage->rows().at_end());
   }
@@ -97,6 +107,7 @@ void StepProjection::project(const Part& part, const StepInput& in, StepBalance&
       trial.at_end);
   if (result.left != nullptr) parts_->errors(in, part.components.front()).fail_projection(*result.left);
   if (!result.moved) return;
+  moved_.insert(moved_.end(), part.components.begin(), part.components.end());
   for (const Index component : part.components) {
     JointStage* const stage = parts_->joints.of(component);
     if (stage != nullptr) balance.book_velocity_projection(stage->project_velocities(trial));

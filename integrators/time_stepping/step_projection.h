@@ -34,9 +34,14 @@ public:
   /// Lets late contacts of islands come back as if they had been noticed when they closed, by what they may
   /// approach beyond their law (Constraint::allowed_approach); in all sweeps of the step alike.
   void lower_rebounds(const StepInput& in, std::span<const StepIsland> islands);
+  /// Begins with a step, or with one that is made again: nothing is moved yet.
+  void begin() { moved_.clear(); }
   /// Moves those of an island whose end is in the trial. Throws SolverError naming a contact that cannot be
   /// opened.
   void apply(const StepIsland& island, const StepInput& in, StepBalance& balance);
+  /// Brings the bodies that were moved in the step back to where they came without that. \param end positions
+  /// of the end of the step
+  void take_back(State& end) const;
 
 private:
   // Components whose bodies move together.
@@ -51,6 +56,8 @@ private:
 
   StepParts* parts_;
   GapProjection projection_;
+  std::vector<Index> moved_;  // components, in the step at hand,
+  std::vector<double> came_;  // and where they came without that, by coordinate
   std::vector<JointConstraints*> joints_;
   std::vector<double> by_loads_;  // changes of velocities within the step, of bodies of late contacts
 };

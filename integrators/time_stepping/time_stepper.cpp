@@ -141,6 +141,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
 }
 
 void TimeStepper::advance_all(const StepInput& in) {
+  projection_.begin();
   if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
 }
@@ -218,10 +219,6 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   throw SolverError(*failed);
 }
 
-void TimeStepper::fail_account(const StepInput& in, Range components) {
-  parts_.errors(in, components.begin).fail_account(components);
-}
-
 void TimeStepper::fail_contact(const IslandProblem& problem, const StepInput& in) {
   parts_.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
 }
@@ -234,7 +231,8 @@ void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown
     if (!parts_.located.empty()) {
       parts_.located.correct_works(in, parts_.rule, at.bodies(), parts_.trial);
     }
-    if (!balance_.book_couplings(in, component, parts_.trial)) fail_account(in, {component, component + 1});
+    if (!balance_.book_couplings(in, component, parts_.trial))
+      parts_.errors(in, component).fail_account({component, component + 1});
     if (JointStage* const joints = parts_.joints.of(component)) {
       balance_.book_joints(in, component, *joints, parts_.problem(), parts_.trial);
     }

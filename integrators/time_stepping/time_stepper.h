@@ -56,6 +56,8 @@ public:
   [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
   /// How often the last step was made: again where contacts turn in it (contact_turning.h).
   [[nodiscard]] int passes() const { return passes_; }
+  /// Brings the end of the last step to where bodies came by themselves, before TimeStepping::project_gaps.
+  void take_back_projection(State& end) const { projection_.take_back(end); }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
@@ -75,7 +77,6 @@ private:
   void solve_part(const StepIsland& part, const StepInput& in);
   void book_part(const StepInput& in);
   [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
-  [[noreturn]] void fail_account(const StepInput& in, Range components);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,

@@ -175,4 +175,54 @@ TEST(JointFrictionWithContacts, ModesAgree) { modes_agree(0, 1, 1); }
 
 TEST(JointFrictionWithContactsLong, ModesAgree) { modes_agree(0, 5, 3); }
 
+/// Chains of two to four capsules with friction in their joints fall on the ground and come to lie. A slow
+/// impact, which friction in a joint has no impulse in, lets the joint slip by little; where it stopped again
+/// the friction lifted the end that had just closed, and so on until `event_limit`.
+void chains_come_to_rest(std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    SCOPED_TRACE(seed);
+    carom_test::Random random(seed);
+    System system;
+    system.add(Gravity{{0.0, -9.81}});
+    const double e = random.uniform(0.0, 0.7);
+    system.set_default_law(
+        {.friction = random.uniform(0.0, 0.8), .normal_restitution = e, .tangential_restitution = e});
+    system.add(HalfPlane{.normal = incline(random.uniform(-0.15, 0.15))});
+    const unsigned count = 2 + random.below(3);
+    Vec<2> place(random.uniform(-0.8, 0.0), 1.4);
+    const Vec<2> velocity = random.vec<2>(1.0);
+    double angle = random.uniform(-0.3, 0.3), before = 0.0;
+    BodyId previous;
+    for (unsigned i = 0; i < count; ++i) {
+      const double length = random.uniform(0.2, 0.5), radius = 0.02;
+      angle += random.uniform(-0.3, 0.3);
+      const Vec<2> along(std::cos(angle), std::sin(angle));
+      const BodyId capsule = system.add(RigidBody{.mass = rod(random.uniform(0.3, 2.0), length),
+                                                  .position = place + 0.5 * length * along,
+                                                  .angle = angle,
+                                                  .velocity = velocity});
+      const double end = 0.5 * length - radius;
+      system.add(Segment{.body = capsule, .from = {-end, 0.0}, .to = {end, 0.0}, .radius = radius});
+      if (i > 0) {
+        const JointId joint = system.add(
+            Revolute{.from = {previous, {0.5 * before, 0.0}}, .to = {capsule, {-0.5 * length, 0.0}}});
+        system.add(JointFriction{.joint = joint, .bound = std::pow(10.0, random.uniform(-2.5, 0.5))});
+      }
+      previous = capsule;
+      before = length;
+      place += length * along;
+    }
+    Simulation simulation(std::move(system), EventDriven{.event_limit = 1e5});
+    simulation.run_until(1.5);
+    // The tolerances of some thousand steps.
+    EXPECT_LE(std::abs(simulation.energy().residual()), 1e-8 * simulation.energy().scale());
+  }
+}
+
+TEST(JointFrictionWithContacts, ChainsComeToRest) { chains_come_to_rest(0, 40); }
+
+TEST(JointFrictionWithContactsLong, ChainsComeToRest) {
+  chains_come_to_rest(0, carom_test::seeds(200, 2000));
+}
+
 }  // namespace

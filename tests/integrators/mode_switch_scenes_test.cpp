@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -211,5 +212,67 @@ void change_over(std::uint64_t first, std::uint64_t last) {
 TEST(ModeSwitch, RandomScenesChangeOver) { change_over(0, 60); }
 
 TEST(ModeSwitchLong, RandomScenesChangeOver) { change_over(0, carom_test::seeds(400, 4000)); }
+
+/// Piles in a box, some of their bodies joined, changed to events and back again: bodies that stand in each
+/// other come apart along their joints, and the run goes on.
+void change_piles(std::uint64_t first, std::uint64_t last) {
+  int moved = 0;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    System system;
+    system.add(Gravity{{0.0, -9.81}});
+    const double e = random.uniform(0.0, 0.7);
+    system.set_default_law(Surface{.friction = random.uniform(0.0, 0.8),
+                                   .normal_restitution = e,
+                                   .tangential_restitution = e,
+                                   .rolling_resistance = random.below(4) == 0 ? 0.002 : 0.0});
+    system.add(BoxInside{.lower = {-0.5, 0.0}, .upper = {0.5, 3.0}});
+    std::vector<BodyId> bodies;
+    const unsigned count = 3 + random.below(6);
+    for (unsigned i = 0; i < count; ++i) {
+      const Vec<2> place(-0.35 + 0.24 * (i % 4) + random.uniform(-0.01, 0.01), 0.3 + 0.27 * (i / 4));
+      bodies.push_back(system.add(RigidBody{.mass = disc(random.uniform(0.3, 2.0), 0.1),
+                                            .position = place,
+                                            .angle = random.uniform(-3.0, 3.0),
+                                            .velocity = random.vec<2>(2.0),
+                                            .spin = random.uniform(-4.0, 4.0)}));
+      const unsigned shape = random.below(3);
+      if (shape == 0) {
+        system.add(Disc{.body = bodies.back(), .radius = 0.1});
+      } else if (shape == 1) {
+        system.add(Segment{.body = bodies.back(), .from = {-0.08, 0.0}, .to = {0.08, 0.0}, .radius = 0.03});
+      } else {
+        system.add(Polygon{.body = bodies.back(),
+                           .vertices = {{-0.08, -0.06}, {0.08, -0.06}, {0.08, 0.06}, {-0.08, 0.06}},
+                           .radius = random.below(2) == 0 ? 0.0 : 0.01});
+      }
+    }
+    if (random.below(2) == 0) system.add(Rod{.from = bodies[0], .to = bodies[1]});
+    const double step = random.uniform(0.5e-3, 4e-3);
+    Simulation simulation(std::move(system), TimeStepping{.step = step});
+    for (int change = 0; change < 3; ++change) {
+      simulation.run_until(simulation.time() + random.uniform(0.1, 0.4));
+      simulation.switch_to(EventDriven{});
+      if (simulation.report().projected > 1e-9) ++moved;
+      simulation.run_until(simulation.time() + 0.02);
+      // The tolerances of a few hundred events.
+      EXPECT_LE(std::abs(simulation.energy().residual()), 1e-9 * simulation.energy().scale());
+      simulation.switch_to(TimeStepping{.step = step});
+    }
+  }
+  EXPECT_GT(moved, static_cast<int>(last - first));
+}
+
+TEST(ModeSwitch, PilesChangeOver) { change_piles(0, 12); }
+
+// Time stepping keeps contacts closed that turning has opened, by some 1e-6 m: too far for events.
+// (Velocities were projected onto one, and another, of which no rows are known that far off, ended the
+// program.)
+TEST(ModeSwitch, WhatTurningHasOpenedIsOpen) {
+  for (const std::uint64_t seed : {21U, 527U}) change_piles(seed, seed + 1);
+}
+
+TEST(ModeSwitchLong, PilesChangeOver) { change_piles(0, carom_test::seeds(200, 2000)); }
 
 }  // namespace

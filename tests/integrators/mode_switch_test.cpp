@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/integrators/throws.h"
 #include "tests/model_error.h"
 
 namespace {
@@ -154,6 +155,93 @@ TEST(ModeSwitch, StickingStaysSticking) {
   }
   simulation.run_until(1.0);
   for (const double v : simulation.state().v) EXPECT_NEAR(v, 0.0, 1e-12);
+}
+
+/// The block of a run that comes to rest, switched after every step: what sticks has its tangential
+/// restitution in time stepping, which no contact that holds can take along. (The projection onto such
+/// contacts took more than `largest_projection`, and the run ended.)
+TEST(ModeSwitch, WhatSticksWithARestitutionIsNotHeld) {
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  const double friction = 0.3;
+  system.add(HalfPlane{.normal = {0.0, 1.0}},
+             Surface{.friction = friction, .normal_restitution = 0.5, .tangential_restitution = 0.5});
+  const BodyId block = system.add(
+      RigidBody{.mass = box(1.0, 0.4, 0.2), .position = {0.0, 0.1}, .velocity = {0.1, 0.0}}, "block");
+  system.add(Polygon{.body = block, .vertices = {{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}}});
+  Simulation steps(system, TimeStepping{.step = 1e-3});
+  int held = 0;
+  for (int i = 0; i < 60; ++i) {  // it rests after 34
+    steps.step();
+    Simulation simulation(system, TimeStepping{.step = 1e-3});
+    simulation.run_until(steps.time());
+    simulation.switch_to(EventDriven{});
+    const Vec<2> start = simulation.state().position(block), velocity = simulation.state().velocity(block);
+    if (velocity[0] < 0.0) ++held;  // came back, by half of what it had
+    simulation.run_until(simulation.time() + 0.1);
+    const double way = velocity[0] * std::abs(velocity[0]) / (2.0 * friction * gravity);
+    EXPECT_NEAR(simulation.state().position(block)[0], start[0] + way, 1e-9) << i;
+    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-10) << i;
+  }
+  EXPECT_GT(held, 2);
+}
+
+/// Discs on each other on the floor, which time stepping leaves in each other and in the floor.
+System tower(int count) {
+  System system;
+  system.add(Gravity{{0.0, -gravity}});
+  system.set_default_law(Surface{.friction = 0.4, .normal_restitution = 0.3, .tangential_restitution = 0.3});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
+  for (int i = 0; i < count; ++i) {
+    const BodyId disc_id = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 0.105 + 0.21 * i}});
+    system.add(Disc{.body = disc_id, .radius = 0.1});
+  }
+  return system;
+}
+
+TEST(ModeSwitch, BodiesThatStandInEachOtherComeApart) {
+  Simulation simulation(tower(3), TimeStepping{.step = 2e-3});
+  simulation.run_until(0.5);
+  const State before = simulation.state();
+  const auto gap = [&](const State& state, std::size_t i) {
+    return state.q[3 * i + 1] - (i == 0 ? 0.1 : state.q[3 * i - 2] + 0.2);
+  };
+  double lift = 0.0, lifts = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_LT(gap(before, i), -1e-4);  // deeper than the event-driven mode starts with
+    lifts += lift -= gap(before, i);
+  }
+  simulation.switch_to(EventDriven{});
+  // All upwards: the floor is under them.
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(gap(simulation.state(), i), 0.0, 1e-14);
+  EXPECT_NEAR(simulation.report().projected, lift, 1e-14);
+  EXPECT_NEAR(simulation.energy().flow(EnergyFlow::mode_switch), -gravity * lifts, 1e-12);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-12);
+  const double height = simulation.state().q[7];
+  simulation.run_until(1.0);
+  EXPECT_NEAR(simulation.state().q[7], height, 1e-9);
+  EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-10);
+}
+
+TEST(ModeSwitch, BodiesWithoutRoomKeepTheMode) {
+  // Three discs of 0.2 m side by side, 0.59 m between the walls.
+  System system;
+  system.set_default_law(Surface{.friction = 0.3, .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = {1.0, 0.0}}, "left wall");
+  system.add(HalfPlane{.point = {0.59, 0.0}, .normal = {-1.0, 0.0}}, "right wall");
+  system.add(HalfPlane{.point = {0.0, -5.0}, .normal = {0.0, 1.0}}, "floor");
+  for (const double x : {0.1, 0.295, 0.49}) {
+    const BodyId disc_id = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {x, 0.0}});
+    system.add(Disc{.body = disc_id, .radius = 0.1});
+  }
+  Simulation simulation(std::move(system), TimeStepping{});
+  const State before = simulation.state();
+  EXPECT_THROWS(SolverError, simulation.switch_to(EventDriven{}), "no displacement opens the gaps of",
+                "half-plane 'left wall'", "half-plane 'right wall'", "disc #1", "bodies that have room");
+  EXPECT_TRUE(std::holds_alternative<TimeStepping>(simulation.mode()));
+  EXPECT_EQ(simulation.state().q, before.q);
+  EXPECT_EQ(simulation.energy().flow(EnergyFlow::mode_switch), 0.0);
+  simulation.step();
 }
 
 TEST(ModeSwitch, ImpossibleOptionsChangeNothing) {

@@ -194,4 +194,47 @@ TEST(EventJams, BeltsThatJamABodyAreNamed) {
                 "less friction");
 }
 
+// A jaw that begins to move stands still at that instant, and is named all the same: so is ground that turns
+// round.
+TEST(EventJams, GroundThatBeginsToMoveIsNamed) {
+  for (const double begin : {0.0, 0.5}) {
+    System system;
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.2});
+    system.add(HalfPlane{.point = {0.1, 0.0}, .normal = {-1.0, 0.0}}, "wall");
+    const auto pushed = [begin](double t) {
+      return Vec<2>(t < begin ? 0.0 : (t - begin) * (t - begin), 0.0);
+    };
+    system.add(HalfPlane{.point = {-0.1, 0.0},
+                         .normal = {1.0, 0.0},
+                         .motion = {.displacement = pushed, .breaks = {begin}}},
+               "jaw");
+    const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.1)});
+    system.add(Disc{.body = body, .radius = 0.1});
+    Simulation simulation(system, EventDriven{});
+    EXPECT_THROWS(SolverError, simulation.run_until(1.0), "no forces keep the contact",
+                  "pressed by the motion of half-plane 'jaw' (allowed: motion that leaves them room");
+  }
+}
+
+// A belt that carries a disc under a wall that leans over it, farther and farther: at the angle at which the
+// wedge locks, forces of contact grow without bound. Both the belt and the wall are named.
+TEST(EventJams, AWedgeThatLocksNamesItsGround) {
+  System system;
+  system.add(Gravity{{0.0, -9.81}});
+  system.set_default_law({.friction = 0.8, .normal_restitution = 0.1, .tangential_restitution = 0.1});
+  system.add(HalfPlane{.normal = {0.0, 1.0}, .surface_speed = -1.0}, "belt");
+  system.add(Wall{.from = {-1.0, 0.02},
+                  .to = {-1.0, 1.0},
+                  .radius = 0.02,
+                  .pivot = {-1.0, 0.02},
+                  .motion = {.angle = [](double t) { return -0.6 * std::sin(2.0 * t); }}},
+             "flap");
+  const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {-0.85, 0.1}});
+  system.add(Disc{.body = body, .radius = 0.1});
+  Simulation simulation(system, EventDriven{});
+  EXPECT_THROWS(SolverError, simulation.run_until(1.0), "grow without bound",
+                "pressed by the motion of wall 'flap' (allowed: motion that leaves them room",
+                "carried by the surfaces of half-plane 'belt'", "less friction");
+}
+
 }  // namespace

@@ -1,5 +1,8 @@
 // Mechanisms that hit other bodies and each other: the same as one component, and the account closes.
 
+#include "tests/energy/ledger_check.h"
+#include "tests/random.h"
+
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
@@ -106,6 +109,40 @@ TEST(JoinedMechanisms, TheAccountClosesAndNoImpactGains) {
     // 1e3 epsilon of the largest term, 20 J.
     EXPECT_NEAR(simulation.energy().residual(), 0.0, 5e-12) << restitution;
     EXPECT_GE(simulation.statistics().impacts, 2) << restitution;
+  }
+}
+
+/// Boxes on a rod fall among others, and lie with them on the floor. Where impacts are located a body that is
+/// alone is flown to them; one of a mechanism that touches others is not, and its loads work over the step as
+/// they do everywhere. (The work of gravity on it was left out: the account of 5 of 24 such runs was off by
+/// up to 0.1 J of 10.)
+TEST(JoinedMechanisms, TheAccountClosesWhereImpactsAreLocated) {
+  carom_test::Random random(3);
+  for (int run = 0; run < 24; ++run) {
+    System system;
+    system.add(Gravity{{0.0, -gravity}});
+    system.set_default_law({.friction = 0.4, .normal_restitution = 0.3, .tangential_restitution = 0.3});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
+    for (const double side : {1.0, -1.0})
+      system.add(HalfPlane{.point = {-0.6 * side, 0.0}, .normal = {side, 0.0}});
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 4; ++i) {
+      boxes.push_back(system.add(RigidBody{.mass = disc(random.uniform(0.3, 2.0), 0.1),
+                                           .position = {-0.35 + 0.26 * i, random.uniform(0.3, 0.4)},
+                                           .angle = random.uniform(-1.0, 1.0),
+                                           .velocity = random.vec<2>(1.0),
+                                           .spin = random.uniform(-3.0, 3.0)}));
+      system.add(Polygon{.body = boxes.back(),
+                         .vertices = {{-0.08, -0.06}, {0.08, -0.06}, {0.08, 0.06}, {-0.08, 0.06}}});
+    }
+    if (run % 2 == 0) {
+      system.add(Rod{.from = boxes[0], .to = boxes[1]});
+    } else {
+      system.add(Revolute{.from = {boxes[0], {0.13, 0.0}}, .to = boxes[1]});
+    }
+    Simulation simulation(std::move(system), TimeStepping{.step = 2e-3, .impacts = ImpactTimes::located});
+    simulation.run_until(0.8);
+    EXPECT_TRUE(carom_test::ledger_closes(simulation.energy())) << run;
   }
 }
 

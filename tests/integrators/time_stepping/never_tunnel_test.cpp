@@ -247,6 +247,26 @@ TEST(NeverTunnel, TurningDoesNotBringADiscNearer) {
   EXPECT_NEAR(simulation.state().velocity(other)[0], 0.0, 1e-9);
 }
 
+/// A disc that stands in a wall is moved out of it at the end of a step, into the next one: that way does not
+/// grow shorter with the step, and is no passage. (The step was parted without end.)
+TEST(NeverTunnel, WhatIsMovedOutPassesThroughNothing) {
+  System system;
+  system.set_default_law({.friction = 0.3, .normal_restitution = 0.3});
+  system.add(HalfPlane{.normal = {-1.0, 0.0}}, "wall");
+  const double radius = 0.1, depth = 0.09, room = 1e-3;
+  const BodyId disc_id = add_disc(system, radius, {depth - radius, 0.0});
+  const BodyId next = add_disc(system, radius, {depth - 3.0 * radius - room, 0.0});
+  TimeStepping options = safe;
+  options.project_gaps = true;
+  Simulation simulation(system, options);
+  simulation.step();
+  simulation.step();  // they touch now, and come apart
+  // Rounding of places, on the closed side.
+  EXPECT_NEAR(simulation.state().position(disc_id)[0], -radius, 1e-14);
+  EXPECT_NEAR(simulation.state().position(next)[0], -3.0 * radius, 1e-14);
+  EXPECT_TRUE(ledger_closes(simulation.energy()));
+}
+
 TEST(NeverTunnel, AStepWithoutEndIsRefusedByName) {
   // 1 mm between two walls at 1e8 m/s: 1e8 bounces a step.
   System system = bullet_before_wall(1e8, 1.0);
