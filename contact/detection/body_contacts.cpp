@@ -256,24 +256,22 @@ void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const Bo
 
 void BodyContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                            Constraint& out) const {
-  const BodySlots& bodies = assembly_->layout()->bodies();
   const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
                     &b = outlines_.list()[pair.outline];
   // In the frame of the second body its vertices are at hand as described.
-  const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
-  const PlaneFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
-  const Vec<2> vertex = frame_b.inside(frame_a.outside(outlines_.vertices()[pair.feature]));
+  const OutlinePair at = outline_pair(pair, state, evaluation);
+  const Vec<2> vertex = at.vertex_at_outline();
+  const ConvexOutline point{{&vertex, 1}, a.radius};
   std::array<GapPoint, 2> found;
-  static_cast<void>(find_gaps({{&vertex, 1}, a.radius}, outlines_.described(b), any_gap, found));
+  static_cast<void>(find_gaps(point, at.outline, any_gap, found));
   GapPoint gap = found[0];
   const bool is_near = std::abs(gap.gap) <= lengths_.corner_follows();
-  if (a.radius + b.radius == 0.0 && (is_near || FeatureRegions::is_flat(outlines_.described(b)))) {
-    const Index nearest = FeatureRegions(outline_pair(pair, state, evaluation)).nearest();
-    gap = tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), nearest);
+  if (at.is_sharp() && (is_near || FeatureRegions::is_flat(at.outline))) {
+    gap = tracked_gap(point, 0, at.outline, FeatureRegions(at).nearest());
   }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;
-  gap = in_space(frame_b, gap);
+  gap = in_space(at.outline_frame, gap);
   out = {};  // it may have held a contact of other bodies
   if (b.key < a.key) {
     fill({b.surface(), vertex_key}, b, a, gap.swapped(), state, out);
@@ -287,13 +285,12 @@ void BodyContacts::follow(const ContactPair& pair, Index feature, const StateVie
   const BodySlots& bodies = assembly_->layout()->bodies();
   const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
                     &b = outlines_.list()[pair.outline];
-  const BodySlot slot_a = bodies[a.body], slot_b = bodies[b.body];
-  const PlaneFrame frame_a(slot_a, state, evaluation), frame_b(slot_b, state, evaluation);
-  const Vec<2> vertex = frame_b.inside(frame_a.outside(outlines_.vertices()[pair.feature]));
+  const OutlinePair at = outline_pair(pair, state, evaluation);
+  const Vec<2> vertex = at.vertex_at_outline();
   const GapPoint gap =
-      in_space(frame_b, tracked_gap({{&vertex, 1}, a.radius}, 0, outlines_.described(b), feature));
-  const PairSide side_a = PairSide::of_body(slot_a, a.body, a.radius, state);
-  const PairSide side_b = PairSide::of_body(slot_b, b.body, b.radius, state);
+      in_space(at.outline_frame, tracked_gap({{&vertex, 1}, a.radius}, 0, at.outline, feature));
+  const PairSide side_a = PairSide::of_body(bodies[a.body], a.body, a.radius, state);
+  const PairSide side_b = PairSide::of_body(bodies[b.body], b.body, b.radius, state);
   if (contact.body() == a.body) {
     fill_pair_rows(side_a, side_b, gap, contact);
   } else {

@@ -79,6 +79,10 @@ struct OutlinePair {
   std::optional<FaceChain> chain;  ///< given if the outline is a chain on ground
   FeatureLengths lengths{};        ///< to which features are told apart
 
+  /// The vertex, in the frame of the outline [m].
+  [[nodiscard]] Vec<2> vertex_at_outline() const {
+    return outline_frame.inside(vertex_frame.outside(vertex));
+  }
   /// True if neither side is rounded.
   [[nodiscard]] bool is_sharp() const { return outline.radius + around.radius == 0.0; }
 };

@@ -206,7 +206,7 @@ OutlinePair PieceContacts::outline_pair(const ContactPair& pair, const StateView
 
 /// The gap of a pair at one feature of its outline, or at the nearest one (`none`); a of it is the body.
 GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const {
-  const Vec<2> vertex = at.outline_frame.inside(at.vertex_frame.outside(at.vertex));
+  const Vec<2> vertex = at.vertex_at_outline();
   const ConvexOutline point{{&vertex, 1}, at.around.radius};
   if (pair.ground_outline != none) {
     const Index on_ground = pair.ground_outline;

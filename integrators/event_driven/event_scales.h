@@ -30,7 +30,7 @@ struct EventScales {
 [[nodiscard]] CAROM_API double unit_length(const EventDriven& options);
 /// Size of the numbers that gaps of a body are made of, for its radius of gyration [m].
 [[nodiscard]] inline double size_of_body(double length) { return 2.0 * length; }
-/// What is farther than this neither touches nor is captured at an event [m].
+/// Gaps above this neither touch nor are captured at an event [m].
 [[nodiscard]] inline double near_gap(const EventDriven& options) { return 16.0 * options.gap_tolerance; }
 /// A gap this far off the polynomial still counts as found [m].
 [[nodiscard]] inline double fine_gap(const EventDriven& options) { return 0.1 * options.gap_tolerance; }

@@ -47,7 +47,7 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
   const auto add_all = [&](const BodyOutlines& outlines) {
     for (const BodyOutline& outline : outlines.list()) {
       add(outline.key, circle_in(outlines.described(outline)));
-      // What turns is the set of the vertices: its widening is the same all around.
+      // Only the vertices turn: the radius around them is the same on all sides.
       reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
     }
   };

@@ -4,18 +4,15 @@
 #include "tests/energy/ledger_check.h"
 #include "tests/integrators/joint_run.h"
 #include "tests/integrators/throws.h"
-#include "tests/random.h"
 
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
@@ -225,51 +222,6 @@ TEST(JointFriction, BreaksAwayAtItsStaticBound) {
     stepping.run_until(later);
     EXPECT_NEAR(stepping.state().spin(wheel.wheel), spin, (factor - 1.0) * bound * 2.0 * step);
     EXPECT_TRUE(ledger_closes(stepping.energy()));
-  }
-}
-
-/// Two rods in line that turn about their pin in the air: without its friction nothing would change their
-/// relative spin, but for rounding. (Friction was taken for a force that grew without bound against that.)
-TEST(JointFriction, RodsInLineTurnInFlight) {
-  carom_test::Random random(5);
-  for (int repeat = 0; repeat < 40; ++repeat) {
-    SCOPED_TRACE(repeat);
-    System system;
-    system.add(Gravity{{0.0, -9.81}});
-    const double angle = random.uniform(-3.0, 3.0);
-    const Vec<2> along(std::cos(angle), std::sin(angle)), across(-along[1], along[0]);
-    const Vec<2> pin = random.vec<2>(2.0), velocity = random.vec<2>(2.0);
-    std::array<double, 2> half{}, mass{};
-    std::array<BodyId, 2> rods;
-    for (std::size_t i = 0; i < 2; ++i) {
-      half[i] = (i == 0 ? -1.0 : 1.0) * random.uniform(0.2, 0.6);
-      mass[i] = random.uniform(0.3, 2.0);
-      const double spin = random.uniform(-4.0, 4.0);
-      rods[i] = system.add(RigidBody{.mass = rod(mass[i], 2.0 * std::abs(half[i])),
-                                     .position = pin + half[i] * along,
-                                     .angle = angle,
-                                     .velocity = velocity + half[i] * spin * across,
-                                     .spin = spin});
-    }
-    const JointId joint =
-        system.add(Revolute{.from = {rods[0], {-half[0], 0.0}}, .to = {rods[1], {-half[1], 0.0}}});
-    system.add(JointFriction{.joint = joint, .bound = random.uniform(0.01, 0.5)});
-    Simulation simulation(std::move(system), EventDriven{});
-    // About the centre of mass of both: friction is a pair of moments.
-    const auto angular_momentum = [&] {
-      const State& now = simulation.state();
-      const Vec<2> apart = now.position(rods[1]) - now.position(rods[0]);
-      const Vec<2> rate = now.velocity(rods[1]) - now.velocity(rods[0]);
-      double sum = mass[0] * mass[1] / (mass[0] + mass[1]) * (apart[0] * rate[1] - apart[1] * rate[0]);
-      for (std::size_t i = 0; i < 2; ++i) sum += mass[i] * half[i] * half[i] / 3.0 * now.spin(rods[i]);
-      return sum;
-    };
-    const double before = angular_momentum();
-    simulation.run_until(0.5);
-    // Tolerances of some hundred steps, 1e-9 of numbers up to 10.
-    EXPECT_NEAR(angular_momentum(), before, 1e-7);
-    EXPECT_NEAR(simulation.energy().residual(), 0.0, 1e-7);
-    EXPECT_GT(simulation.energy().flow(EnergyFlow::joint_friction), 0.0);
   }
 }
 

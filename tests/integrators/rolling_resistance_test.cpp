@@ -145,33 +145,40 @@ bool in_mode(const ContactProblem& problem, const std::array<int, 3>& mode, Eige
   return true;
 }
 
+/// One contact with a row of rolling resistance; its velocities and coefficients are left zero.
+ContactProblem rolling_contact(double inverse_inertia, double r_x, double r_y) {
+  const std::array<Eigen::Vector3d, 3> rows{Eigen::Vector3d(1.0, 0.0, r_x), Eigen::Vector3d(0.0, 1.0, -r_y),
+                                            Eigen::Vector3d(0.0, 0.0, 1.0)};
+  // Of two bodies, so that W has full rank: a little mass of the rows' own.
+  const Eigen::Vector3d masses(1.0, 1.0, inverse_inertia);
+  ContactProblem problem;
+  problem.reset(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t l = 0; l < 3; ++l)
+      problem.w(static_cast<int>(k), static_cast<int>(l)) = rows[k].dot(masses.cwiseProduct(rows[l]));
+  }
+  problem.sets()[0].kind = SetKind::half_line;
+  for (const std::size_t row : {std::size_t{1}, std::size_t{2}}) {
+    problem.sets()[row].kind = SetKind::bounded_interval;
+    problem.sets()[row].bound = 0;
+  }
+  problem.group();
+  return problem;
+}
+
 TEST(RollingResistance, OneContactIsOneOfItsModes) {
   Random random(11);
   int several = 0;
   for (int i = 0; i < 2000; ++i) {
     const double inverse_inertia = random.log_uniform(0.1, 10.0);
     const double r_x = random.uniform(-1.0, 1.0), r_y = random.uniform(-1.0, 1.0);
-    const Eigen::Vector3d normal(1.0, 0.0, r_x), tangent(0.0, 1.0, -r_y), roll(0.0, 0.0, 1.0);
-    // Of two bodies, so that W has full rank: a little mass of the rows' own.
-    const Eigen::Vector3d masses(1.0, 1.0, inverse_inertia);
-    const std::array<Eigen::Vector3d, 3> rows{normal, tangent, roll};
-    ContactProblem problem;
-    problem.reset(3);
-    for (int k = 0; k < 3; ++k) {
-      for (int l = 0; l < 3; ++l) {
-        problem.w(k, l) =
-            rows[static_cast<std::size_t>(k)].dot(masses.cwiseProduct(rows[static_cast<std::size_t>(l)]));
-      }
+    ContactProblem problem = rolling_contact(inverse_inertia, r_x, r_y);
+    for (std::size_t k = 0; k < 3; ++k) {
       const double b = random.uniform(-2.0, 2.0);
-      problem.vector()[static_cast<std::size_t>(k)] = k == 0 ? -std::abs(b) : b;
+      problem.vector()[k] = k == 0 ? -std::abs(b) : b;
     }
-    problem.sets()[0].kind = SetKind::half_line;
-    for (std::size_t row : {std::size_t{1}, std::size_t{2}}) {
-      problem.sets()[row].kind = SetKind::bounded_interval;
-      problem.sets()[row].bound = 0;
-      problem.sets()[row].coefficient = random.uniform(0.0, row == 1 ? 1.0 : 0.3);
-    }
-    problem.group();
+    problem.sets()[1].coefficient = random.uniform(0.0, 1.0);
+    problem.sets()[2].coefficient = random.uniform(0.0, 0.3);
     SolverChain chain;
     std::vector<double> impulse(3);
     const ContactReport report = chain.solve(problem, impulse);
@@ -205,24 +212,11 @@ TEST(RollingResistance, WhatPartsTakesNoImpulse) {
   for (int i = 0; i < 8000; ++i) {
     const double inverse_inertia = random.log_uniform(1.0, 100.0);
     const double r_x = random.uniform(-1.0, 1.0), r_y = random.uniform(-1.0, 1.0);
-    const Eigen::Vector3d normal(1.0, 0.0, r_x), tangent(0.0, 1.0, -r_y), roll(0.0, 0.0, 1.0);
-    const Eigen::Vector3d masses(1.0, 1.0, inverse_inertia);
-    const std::array<Eigen::Vector3d, 3> rows{normal, tangent, roll};
-    ContactProblem problem;
-    problem.reset(3);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t l = 0; l < 3; ++l) {
-        problem.w(static_cast<int>(k), static_cast<int>(l)) = rows[k].dot(masses.cwiseProduct(rows[l]));
-      }
+    ContactProblem problem = rolling_contact(inverse_inertia, r_x, r_y);
+    for (std::size_t k = 0; k < 3; ++k)
       problem.vector()[k] = k == 0 ? random.uniform(0.0, 0.3) : random.uniform(-3.0, 3.0);
-    }
-    problem.sets()[0].kind = SetKind::half_line;
-    for (const std::size_t row : {std::size_t{1}, std::size_t{2}}) {
-      problem.sets()[row].kind = SetKind::bounded_interval;
-      problem.sets()[row].bound = 0;
-      problem.sets()[row].coefficient = random.uniform(0.0, row == 1 ? 2.0 : 0.3);
-    }
-    problem.group();
+    problem.sets()[1].coefficient = random.uniform(0.0, 2.0);
+    problem.sets()[2].coefficient = random.uniform(0.0, 0.3);
     for (int way = -1; way <= 1; ++way) {
       Eigen::Vector3d found;
       others += in_mode(problem, {0, way, 0}, found) && found[0] > 1e-3 ? 1 : 0;

@@ -69,7 +69,7 @@ std::int64_t storage(const Net& net) {
   return carom_test::bytes_in_use() - before;
 }
 
-/// What a run of a system holds at a time, the user's own System apart [bytes].
+/// Memory that a run of a system holds at a time, the user's own System apart [bytes].
 std::int64_t storage(const System& system, const Mode& mode, double time) {
   const std::int64_t before = carom_test::bytes_in_use();
   Simulation simulation(system, mode);

@@ -1,9 +1,8 @@
 // Laws of impact other than Newton's: the path of one contact against closed forms and against an integration
 // of the impulse equations; two phases against what they ask for; where the three laws agree, and where not.
 
-#include "tests/contact/random_problems.h"
+#include "tests/contact/solvers/random_impact_paths.h"
 
-#include <carom/contact/solvers/impact_path.h>
 #include <carom/contact/solvers/impact_solver.h>
 
 #include <gtest/gtest.h>
@@ -17,20 +16,7 @@ namespace carom {
 namespace {
 
 using contact_test::Random;
-
-ImpactPathInput random_contact(Random& random, double restitution) {
-  ImpactPathInput in;
-  const double mass = random.log_uniform(0.1, 10.0), inertia = random.log_uniform(0.1, 10.0);
-  const double r_x = random.uniform(-2.0, 2.0), r_y = random.uniform(-2.0, 2.0);
-  in.wnn = 1.0 / mass + r_x * r_x / inertia;
-  in.wtt = 1.0 / mass + r_y * r_y / inertia;
-  in.wnt = -r_x * r_y / inertia;
-  in.friction = random.uniform(0.0, 1.5);
-  in.restitution = restitution;
-  in.normal = random.uniform(-3.0, -0.1);
-  in.tangential = random.uniform(-3.0, 3.0);
-  return in;
-}
+using contact_test::random_impact_path;
 
 double energy_gained(const ImpactPathInput& in, const ImpactPathEnd& end) {
   return 0.5 * end.normal_impulse * (in.normal + end.normal) +
@@ -64,7 +50,7 @@ TEST(ImpactPath, AgreesWithSmallStepsOfTheImpulse) {
   Random random(3);
   int reversals = 0, sticks = 0;
   for (int i = 0; i < 300; ++i) {
-    const ImpactPathInput in = random_contact(random, random.uniform(0.1, 1.0));
+    const ImpactPathInput in = random_impact_path(random, random.uniform(0.1, 1.0));
     const auto end = follow_impact(in);
     ASSERT_TRUE(end) << i;
     const double step = 1e-4 * end->normal_impulse;
@@ -84,7 +70,7 @@ TEST(ImpactPath, ClosedFormsOfCentralImpact) {
   // W_nt = 0: P_n = (1 + e) |gamma_n|/W_nn; slip or stop of the tangential motion alone.
   Random random(4);
   for (int i = 0; i < 1000; ++i) {
-    ImpactPathInput in = random_contact(random, random.uniform(0.0, 1.0));
+    ImpactPathInput in = random_impact_path(random, random.uniform(0.0, 1.0));
     in.wnt = 0.0;
     const auto end = follow_impact(in);
     ASSERT_TRUE(end) << i;
@@ -103,7 +89,7 @@ TEST(ImpactPath, SlipThatGoesOnThroughoutHasNewtonsImpulse) {
   Random random(5);
   int found = 0;
   for (int i = 0; i < 1000; ++i) {
-    const ImpactPathInput in = random_contact(random, random.uniform(0.0, 1.0));
+    const ImpactPathInput in = random_impact_path(random, random.uniform(0.0, 1.0));
     const double k = -std::copysign(in.friction, in.tangential);
     const double rate = in.wnn + k * in.wnt;
     const double impulse = -(1.0 + in.restitution) * in.normal / rate;
@@ -120,7 +106,7 @@ TEST(ImpactPath, SlipThatGoesOnThroughoutHasNewtonsImpulse) {
 TEST(ImpactPath, NeverGainsAndGivesBackWhatTheLawSays) {
   Random random(6);
   for (int i = 0; i < 20000; ++i) {
-    const ImpactPathInput in = random_contact(random, random.uniform(0.0, 1.0));
+    const ImpactPathInput in = random_impact_path(random, random.uniform(0.0, 1.0));
     const auto end = follow_impact(in);
     ASSERT_TRUE(end) << i;
     const double scale =
@@ -284,7 +270,7 @@ TEST(ImpactSolver, PoissonOfOneContactIsOneOfItsModes) {
   Random random(9);
   int reversible = 0;
   for (int i = 0; i < 2000; ++i) {
-    const ImpactPathInput in = random_contact(random, random.uniform(0.0, 1.0));
+    const ImpactPathInput in = random_impact_path(random, random.uniform(0.0, 1.0));
     const double e_t = random.chance(0.5) ? random.uniform(0.1, 1.0) : 0.0;
     ContactProblem problem;
     contact_test::make_problem(in.wnn, in.wnt, in.wtt, (1.0 + in.restitution) * in.normal,

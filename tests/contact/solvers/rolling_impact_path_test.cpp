@@ -1,9 +1,8 @@
 // The energetic law of a contact with rolling resistance: its path against an integration of the impulse
 // equations, and what it gains.
 
-#include "tests/contact/random_problems.h"
+#include "tests/contact/solvers/random_impact_paths.h"
 
-#include <carom/contact/solvers/impact_path.h>
 #include <carom/contact/solvers/impact_solver.h>
 
 #include <gtest/gtest.h>
@@ -15,27 +14,9 @@
 namespace carom {
 namespace {
 
+using contact_test::PathRows;
 using contact_test::Random;
-
-/// A contact of one body, its row of rolling resistance included.
-ImpactPathInput random_rolling_contact(Random& random, double restitution) {
-  ImpactPathInput in;
-  const double mass = random.log_uniform(0.1, 10.0), inertia = random.log_uniform(0.1, 10.0);
-  const double r_x = random.uniform(-2.0, 2.0), r_y = random.uniform(-2.0, 2.0);
-  in.wnn = 1.0 / mass + r_x * r_x / inertia;
-  in.wtt = 1.0 / mass + r_y * r_y / inertia;
-  in.wnt = -r_x * r_y / inertia;
-  in.wnr = r_x / inertia;
-  in.wtr = -r_y / inertia;
-  in.wrr = 1.0 / inertia;
-  in.friction = random.uniform(0.0, 1.5);
-  in.rolling_resistance = random.uniform(0.0, 1.0);
-  in.restitution = restitution;
-  in.normal = random.uniform(-3.0, -0.1);
-  in.tangential = random.uniform(-3.0, 3.0);
-  in.spin = random.uniform(-3.0, 3.0);
-  return in;
-}
+using contact_test::random_impact_path;
 
 /// Impulses by many small steps of the normal impulse: friction and moment of a step in turns, each that
 /// which stops its row, if there is enough. Of first order in the step.
@@ -67,7 +48,7 @@ TEST(RollingImpactPath, AgreesWithSmallStepsOfTheImpulse) {
   Random random(13);
   int held = 0, turned = 0, sticks = 0;
   for (int i = 0; i < 300; ++i) {
-    const ImpactPathInput in = random_rolling_contact(random, random.uniform(0.1, 1.0));
+    const ImpactPathInput in = random_impact_path(random, random.uniform(0.1, 1.0), PathRows::with_rolling);
     const auto end = follow_impact(in);
     ASSERT_TRUE(end) << i;
     const double step = 1e-4 * end->normal_impulse;
@@ -90,7 +71,8 @@ TEST(RollingImpactPath, AgreesWithSmallStepsOfTheImpulse) {
 TEST(RollingImpactPath, NeverGains) {
   Random random(14);
   for (int i = 0; i < 20000; ++i) {
-    const ImpactPathInput in = random_rolling_contact(random, i % 3 == 0 ? 1.0 : random.uniform(0.0, 1.0));
+    const ImpactPathInput in =
+        random_impact_path(random, i % 3 == 0 ? 1.0 : random.uniform(0.0, 1.0), PathRows::with_rolling);
     const auto end = follow_impact(in);
     ASSERT_TRUE(end) << i;
     const double gain = 0.5 * end->normal_impulse * (in.normal + end->normal) +
