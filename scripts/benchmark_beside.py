@@ -22,8 +22,6 @@ ROOT = Path(__file__).resolve().parent.parent
 ROUNDS = 3
 REPETITIONS = 3  # of each case in a round
 WORSE = 1.05
-# As in benchmark.sh: what takes half an hour is left out.
-FILTER = "-second/1000|(settled|collapse|pouring|1e-[48])/10000"
 LESS_IS_BETTER = re.compile(r"bytes|sweeps|evaluations")
 
 
@@ -31,9 +29,9 @@ def run(*command, **options):
     return subprocess.run(command, check=True, text=True, **options)
 
 
-def names():
-    text = (ROOT / "scripts/benchmark.sh").read_text()
-    return re.search(r"^programs=\((.*)\)$", text, re.MULTILINE).group(1).split()
+def of_benchmark_sh(pattern):
+    """A setting of scripts/benchmark.sh, which says what is run."""
+    return re.search(pattern, (ROOT / "scripts/benchmark.sh").read_text(), re.MULTILINE).group(1)
 
 
 def older_tree(commit):
@@ -64,7 +62,8 @@ def build(tree, programs):
 
 def measure(tree, name, into):
     into.mkdir(parents=True, exist_ok=True)
-    run(tree / f"build/release/benchmarks/{name}_benchmark", f"--benchmark_filter={FILTER}",
+    left_out = of_benchmark_sh("filter='(.*)'$")
+    run(tree / f"build/release/benchmarks/{name}_benchmark", f"--benchmark_filter={left_out}",
         "--benchmark_min_time=0.02", f"--benchmark_repetitions={REPETITIONS}",
         "--benchmark_enable_random_interleaving=true", f"--benchmark_out={into / name}.json",
         "--benchmark_out_format=json", cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -102,7 +101,7 @@ def compare(before, now):
 
 
 def main():
-    known = names()
+    known = of_benchmark_sh(r"^programs=\((.*)\)$").split()
     if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(known):
         sys.exit(f"usage: {sys.argv[0]} COMMIT [{' '.join(known)}]")
     programs = sys.argv[2:] or known

@@ -40,13 +40,6 @@ ContactMotion motion_of(const PairSide& a, const PairSide& b, const GapPoint& at
   return {turning, a.velocity_at(vertex_a) - (a.radius + half_gap) * normal_rate - half_rate * n};
 }
 
-/// Rate of the velocity of a side's material at a point that moves.
-Vec<2> material_rate(const PairSide& side, const Vec<2>& point, const Vec<2>& point_rate) {
-  return side.acceleration +
-         Space<2>::lever_velocity(&side.angular_acceleration, Vec<2>(point - side.centre)) +
-         Space<2>::lever_velocity(&side.spin, Vec<2>(point_rate - side.velocity));
-}
-
 /// Writes a row between two bodies that turn, the usual case in a pile.
 void write_row_of_two(const RowSide& a, const RowSide& b, const Vec<2>& direction, const Vec<2>& point,
                       double* row) {
@@ -131,7 +124,8 @@ void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Co
   // n' = -turning t, t' = turning n.
   const double normal = n.dot(relative), tangential = t.dot(relative);
   const ContactMotion motion = motion_of(a, b, at, normal);
-  const Vec<2> rate = material_rate(a, point, motion.point_rate) - material_rate(b, point, motion.point_rate);
+  const Vec<2> rate =
+      a.velocity_rate_at(point, motion.point_rate) - b.velocity_rate_at(point, motion.point_rate);
   out.drift = {n.dot(rate) - motion.turning * tangential, t.dot(rate) + motion.turning * normal, 0.0};
 }
 

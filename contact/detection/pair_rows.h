@@ -49,6 +49,15 @@ struct CAROM_API PairSide : RowSide {
   [[nodiscard]] Vec<2> velocity_at(const Vec<2>& point) const {
     return velocity + Space<2>::lever_velocity(&spin, Vec<2>(point - centre));
   }
+  /// Rate of that velocity at a point that moves [m/s^2]. \param point_rate its velocity [m/s]
+  [[nodiscard]] Vec<2> velocity_rate_at(const Vec<2>& point, const Vec<2>& point_rate) const {
+    return acceleration + Space<2>::lever_velocity(&angular_acceleration, Vec<2>(point - centre)) +
+           Space<2>::lever_velocity(&spin, Vec<2>(point_rate - velocity));
+  }
+  /// Acceleration of its material at a point of space [m/s^2].
+  [[nodiscard]] Vec<2> acceleration_at(const Vec<2>& point) const {
+    return velocity_rate_at(point, velocity_at(point));
+  }
 };
 
 /// Writes bodies (that of `a` first), rows, gap, Jacobian, surface velocity (of a shape on ground, also in

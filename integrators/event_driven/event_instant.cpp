@@ -28,15 +28,16 @@ void EventInstant::update() {
   motion.sample(time, y.data(), Forces::without_contact, now);
   contacts.resize(motion.model().pairs.size());
   const GroupModel& model = motion.model();
+  const double within = near();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (model.pairs[i].rolling) {
       contacts[i] =
           rolling_resistance(contacts[i - 1], motion_of(*model.detector, model.pairs[i], now.places));
       continue;
     }
-    motion.contact_if_near(i, now, near(), contacts[i]);
+    motion.contact_if_near(i, now, within, contacts[i]);
     const Index bound = model.bound_of(i);
-    if (bound == none || contacts[i].gap > near() || model.bounds[bound].rounding > 0.0) continue;
+    if (bound == none || contacts[i].gap > within || model.bounds[bound].rounding > 0.0) continue;
     if (!motion.regions(model.pairs[i], now).may_touch()) {
       contacts[i].gap = std::numeric_limits<double>::infinity();
     }

@@ -1,6 +1,7 @@
 // Problem: modes of all that touches, where events have just ended some, and forces may not exist.
 
 #include <carom/contact/contact_point.h>
+#include <carom/contact/detection/pair_rows.h>
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/pressed_bodies.h>
 #include <carom/integrators/event_driven/mode_selection.h>
@@ -22,12 +23,10 @@ std::array<double, 2> acceleration_of_ground(const Constraint& contact, const Ev
   if (motion == nullptr || contact.type != ConstraintType::contact) return {};
   const BodySlot slot = model.assembly->layout()->bodies()[contact.body()];
   const PointOfContact place = point_of_contact(contact, at.now.state.q.data() + slot.q);
-  const double x = place.point[0] - motion->point[0], y = place.point[1] - motion->point[1];
-  const double square = motion->spin * motion->spin, turn = motion->angular_acceleration;
-  const double along_x = motion->acceleration[0] - turn * y - square * x;
-  const double along_y = motion->acceleration[1] + turn * x - square * y;
+  const Vec<2> acceleration =
+      PairSide::of_motion(*motion, 0.0).acceleration_at({place.point[0], place.point[1]});
   const double *const n = contact.row(0), *const t = contact.row(1);
-  return {n[0] * along_x + n[1] * along_y, t[0] * along_x + t[1] * along_y};
+  return {n[0] * acceleration[0] + n[1] * acceleration[1], t[0] * acceleration[0] + t[1] * acceleration[1]};
 }
 
 /// The contacts of candidates that nothing keeps. Ground that turns round stands still and presses all the
