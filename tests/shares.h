@@ -1,10 +1,12 @@
 #pragma once
 
-// Long tests take a share of their seeds, and tests of many samples take fewer in builds with sanitizers.
+// Long tests take a share of their seeds, or others than usual, and tests of many samples take fewer in
+// builds with sanitizers.
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 
 namespace carom_test {
 
@@ -20,6 +22,24 @@ inline std::uint64_t seeds(std::uint64_t usual, std::uint64_t all, std::uint64_t
 }
 /// Where the usual ones are all there are.
 inline std::uint64_t seeds(std::uint64_t usual) { return seeds(usual, usual); }
+
+/// Seeds from `first` to one before `last`.
+struct SeedRange {
+  std::uint64_t first, last;
+  [[nodiscard]] int count() const { return static_cast<int>(last - first); }
+};
+
+/// So many from a first one, of a long test. With a number as CAROM_SEEDS_AHEAD in the environment they are
+/// those so far ahead: scenes that nobody has seen find faults that the usual ones do not.
+inline SeedRange seeds_from(std::uint64_t first, std::uint64_t usual, std::uint64_t all,
+                            std::uint64_t least = 4) {
+  const char* const ahead = std::getenv("CAROM_SEEDS_AHEAD");  // NOLINT(concurrency-mt-unsafe): as above
+  if (ahead != nullptr) first += std::stoull(ahead);
+  return {first, first + seeds(usual, all, least)};
+}
+inline SeedRange seeds_from(std::uint64_t first, std::uint64_t usual) {
+  return seeds_from(first, usual, usual);
+}
 
 /// Of a count of samples that tell something about numbers: all, but a fifth in a build with sanitizers,
 /// which looks at memory and takes some twenty times as long.

@@ -89,10 +89,9 @@ void run_scene(std::uint64_t seed, const EventDriven& options, double allowed_re
   findings.longest = std::max(findings.longest, seconds);
 }
 
-Findings run_scenes(std::uint64_t first, std::uint64_t count, const EventDriven& options,
-                    double allowed_residual) {
+Findings run_scenes(const carom_test::SeedRange& seeds, const EventDriven& options, double allowed_residual) {
   Findings findings;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     if (std::count(without_direction.begin(), without_direction.end(), seed) != 0) continue;
     run_scene(seed, options, allowed_residual, findings);
   }
@@ -103,11 +102,11 @@ Findings run_scenes(std::uint64_t first, std::uint64_t count, const EventDriven&
   return findings;
 }
 
-void expect_sound(const Findings& findings, std::uint64_t count) {
+void expect_sound(const Findings& findings, int count) {
   EXPECT_TRUE(findings.failures.empty()) << findings.failures.size() << " of " << count << " scenes";
   for (const std::string& failure : findings.failures) ADD_FAILURE() << failure;
   // Else nothing would have been tried.
-  EXPECT_GE(findings.scenes_with_contact, static_cast<int>(3 * count / 4));
+  EXPECT_GE(findings.scenes_with_contact, 3 * count / 4);
   // Seen: 0.2 s with most of it in contact problems; the rest is for sanitizers and busy machines.
   EXPECT_LE(findings.longest, 20.0);
 }
@@ -118,31 +117,31 @@ constexpr double residual_at_default = 1e-7, residual_at_tight = 1e-9;
 const EventDriven tight{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-13};
 
 TEST(EventScenes, NoImpactIsMissedAndTheAccountCloses) {
-  const Findings findings = run_scenes(0, 20, {}, residual_at_default);
+  const Findings findings = run_scenes({0, 20}, {}, residual_at_default);
   expect_sound(findings, 20);
   EXPECT_LE(findings.without_solution, 1);
 }
 
 TEST(EventScenesLong, NoImpactIsMissedAndTheAccountCloses) {
-  const std::uint64_t count = carom_test::seeds(1080);
-  const Findings findings = run_scenes(20, count, {}, residual_at_default);
-  expect_sound(findings, count);
-  EXPECT_LE(54 * findings.without_solution, static_cast<int>(count));
+  const carom_test::SeedRange seeds = carom_test::seeds_from(20, 1080);
+  const Findings findings = run_scenes(seeds, {}, residual_at_default);
+  expect_sound(findings, seeds.count());
+  EXPECT_LE(54 * findings.without_solution, seeds.count());
 }
 
 // Seen: 3.6e-8.
 TEST(EventScenesLong, LikewiseInOtherScenes) {
-  const std::uint64_t count = carom_test::seeds(2000);
-  const Findings findings = run_scenes(3000, count, {}, residual_at_default);
-  expect_sound(findings, count);
-  EXPECT_LE(50 * findings.without_solution, static_cast<int>(count));
+  const carom_test::SeedRange seeds = carom_test::seeds_from(3000, 2000);
+  const Findings findings = run_scenes(seeds, {}, residual_at_default);
+  expect_sound(findings, seeds.count());
+  EXPECT_LE(50 * findings.without_solution, seeds.count());
 }
 
 TEST(EventScenesLong, LikewiseAtATightTolerance) {
-  const std::uint64_t count = carom_test::seeds(1000);
-  const Findings findings = run_scenes(100, count, tight, residual_at_tight);
-  expect_sound(findings, count);
-  EXPECT_LE(50 * findings.without_solution, static_cast<int>(count));
+  const carom_test::SeedRange seeds = carom_test::seeds_from(100, 1000);
+  const Findings findings = run_scenes(seeds, tight, residual_at_tight);
+  expect_sound(findings, seeds.count());
+  EXPECT_LE(50 * findings.without_solution, seeds.count());
 }
 
 TEST(EventScenesLong, LikewiseWithEachMethod) {
@@ -150,8 +149,8 @@ TEST(EventScenesLong, LikewiseWithEachMethod) {
     SCOPED_TRACE(static_cast<int>(method));
     // Multistep methods spend more of their tolerance: seen 3.4e-7 with bdf.
     const double allowed = method == FlowMethod::one_step ? residual_at_default : 5e-7;
-    const std::uint64_t count = carom_test::seeds(200);
-    expect_sound(run_scenes(2000, count, {.method = method}, allowed), count);
+    const carom_test::SeedRange seeds = carom_test::seeds_from(2000, 200);
+    expect_sound(run_scenes(seeds, {.method = method}, allowed), seeds.count());
   }
 }
 

@@ -124,9 +124,9 @@ TEST(JointFrictionWithContactsLong, ModesAreDecidedByTheForcesOfTheFlow) {
 // and forces do not settle. None ends at event_limit.
 TEST(JointFrictionWithContactsLong, RandomBars) {
   Random random(11);
-  const std::uint64_t count = carom_test::seeds(200, 1000);
-  std::uint64_t failed = 0;
-  for (std::uint64_t seed = 1000; seed < 1000 + count; ++seed) {
+  const carom_test::SeedRange seeds = carom_test::seeds_from(1000, 200, 1000);
+  int failed = 0;
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     const int bars = 2 + static_cast<int>(random.below(3));
     const double slope = random.uniform(-0.3, 0.5);
     const double coefficient = std::pow(10.0, random.uniform(-3.0, -1.3));
@@ -136,7 +136,7 @@ TEST(JointFrictionWithContactsLong, RandomBars) {
     EXPECT_NE(error.find("not solved"), std::string::npos) << error;
     EXPECT_EQ(error.find("event_limit"), std::string::npos) << error;
   }
-  EXPECT_LE(200 * failed, count);
+  EXPECT_LE(200 * failed, seeds.count());
 }
 
 /// Largest distance of the bars' centres in the two modes.
@@ -152,11 +152,11 @@ double distance(const PinnedBars& scene, double end, double step) {
   return largest;
 }
 
-void modes_agree(std::uint64_t first, std::uint64_t last, int least_compared) {
+void modes_agree(const carom_test::SeedRange& seeds, int least_compared) {
   // Through the first impacts, which later ones amplify. Corners apart, so that forces are unique until bars
   // lie flat.
   int compared = 0;
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     const PinnedBars scene(seed, 2, 0.1, 0.02, 0.9);
     double coarse = 0.0, fine = 0.0;
     try {
@@ -171,15 +171,15 @@ void modes_agree(std::uint64_t first, std::uint64_t last, int least_compared) {
   EXPECT_GE(compared, least_compared);
 }
 
-TEST(JointFrictionWithContacts, ModesAgree) { modes_agree(0, 1, 1); }
+TEST(JointFrictionWithContacts, ModesAgree) { modes_agree({0, 1}, 1); }
 
-TEST(JointFrictionWithContactsLong, ModesAgree) { modes_agree(0, 5, 3); }
+TEST(JointFrictionWithContactsLong, ModesAgree) { modes_agree({0, 5}, 3); }
 
 /// Chains of two to four capsules with friction in their joints fall on the ground and come to lie. A slow
 /// impact, which friction in a joint has no impulse in, lets the joint slip by little; where it stopped again
 /// the friction lifted the end that had just closed, and so on until `event_limit`.
-void chains_come_to_rest(std::uint64_t first, std::uint64_t last) {
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+void chains_come_to_rest(const carom_test::SeedRange& seeds) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     SCOPED_TRACE(seed);
     carom_test::Random random(seed);
     System system;
@@ -219,10 +219,10 @@ void chains_come_to_rest(std::uint64_t first, std::uint64_t last) {
   }
 }
 
-TEST(JointFrictionWithContacts, ChainsComeToRest) { chains_come_to_rest(0, 40); }
+TEST(JointFrictionWithContacts, ChainsComeToRest) { chains_come_to_rest({0, 40}); }
 
 TEST(JointFrictionWithContactsLong, ChainsComeToRest) {
-  chains_come_to_rest(0, carom_test::seeds(200, 2000));
+  chains_come_to_rest(carom_test::seeds_from(0, 200, 2000));
 }
 
 }  // namespace

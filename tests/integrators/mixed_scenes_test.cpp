@@ -84,10 +84,10 @@ bool is_driven_through_dead_centre(const MixedScene& scene, const SolverError& e
          std::abs(at_last / at_first / std::sqrt(early / late) - 1.0) < 0.05;  // terms without growth
 }
 
-Findings run_scenes(std::uint64_t first, std::uint64_t count) {
+Findings run_scenes(const carom_test::SeedRange& seeds) {
   constexpr double step = 1e-3;
   Findings findings;
-  for (std::uint64_t number = first; number < first + count; ++number) {
+  for (std::uint64_t number = seeds.first; number < seeds.last; ++number) {
     SCOPED_TRACE("scene " + std::to_string(number));
     const MixedScene scene(number);
     Simulation simulation(scene.system(), TimeStepping{.step = step});
@@ -109,13 +109,13 @@ Findings run_scenes(std::uint64_t first, std::uint64_t count) {
   return findings;
 }
 
-void expect_sound(const Findings& findings, std::uint64_t count) {
-  EXPECT_GE(findings.with_contact, static_cast<int>(count / 2));  // else nothing was tried
-  EXPECT_LE(findings.pressed, 1 + static_cast<int>(count / 200));
+void expect_sound(const Findings& findings, int count) {
+  EXPECT_GE(findings.with_contact, count / 2);  // else nothing was tried
+  EXPECT_LE(findings.pressed, 1 + count / 200);
   EXPECT_LE(findings.worst_residual, SweepBudget{}.accepted);
 }
 
-TEST(MixedScenes, AreSolvedAndKeepTheirAccountAndTheirDistance) { expect_sound(run_scenes(0, 60), 60); }
+TEST(MixedScenes, AreSolvedAndKeepTheirAccountAndTheirDistance) { expect_sound(run_scenes({0, 60}), 60); }
 
 TEST(MixedScenes, AnObstacleThatPressesIsNamed) {
   // A disc comes between a peg that moves down and one at rest.
@@ -132,9 +132,9 @@ TEST(MixedScenes, AnObstacleThatPressesIsNamed) {
 }
 
 TEST(MixedScenesLong, AreSolvedAndKeepTheirAccountAndTheirDistance) {
-  const std::uint64_t count = carom_test::seeds(1000, 10000, 1000);
-  const Findings findings = run_scenes(0, count);
-  expect_sound(findings, count);
+  const carom_test::SeedRange seeds = carom_test::seeds_from(0, 1000, 10000, 1000);
+  const Findings findings = run_scenes(seeds);
+  expect_sound(findings, seeds.count());
   EXPECT_GT(findings.jams, 0);  // else no scene jams
   RecordProperty("plastic_jams", std::to_string(findings.jams));
   RecordProperty("pressed", std::to_string(findings.pressed));
@@ -146,9 +146,9 @@ struct EventFindings {
 };
 
 /// From event to event: accounts close, contacts push, and what ends a scene is named.
-EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count, double interval = 1e-2) {
+EventFindings run_scenes_by_events(const carom_test::SeedRange& seeds, double interval = 1e-2) {
   EventFindings findings;
-  for (std::uint64_t number = first; number < first + count; ++number) {
+  for (std::uint64_t number = seeds.first; number < seeds.last; ++number) {
     SCOPED_TRACE("scene " + std::to_string(number));
     const MixedScene scene(number);
     Simulation simulation(scene.system(), EventDriven{.interval = interval});
@@ -176,13 +176,13 @@ EventFindings run_scenes_by_events(std::uint64_t first, std::uint64_t count, dou
   return findings;
 }
 
-void expect_sound(const EventFindings& findings, std::uint64_t count) {
-  EXPECT_GE(findings.looked, static_cast<std::int64_t>(count));  // else nothing was tried
-  EXPECT_LE(findings.pressed, 1 + static_cast<int>(count / 500));
+void expect_sound(const EventFindings& findings, int count) {
+  EXPECT_GE(findings.looked, count);  // else nothing was tried
+  EXPECT_LE(findings.pressed, 1 + count / 500);
 }
 
 TEST(MixedScenes, AccountsCloseAndContactsPushFromEventToEvent) {
-  expect_sound(run_scenes_by_events(0, 15), 15);
+  expect_sound(run_scenes_by_events({0, 15}), 15);
 }
 
 TEST(MixedScenes, OnlyGroundThatMovesEndsARunFromEventToEvent) {
@@ -215,14 +215,15 @@ TEST(MixedScenes, OnlyGroundThatMovesEndsARunFromEventToEvent) {
 }
 
 TEST(MixedScenes, AnObstacleThatPressesIsNamedFromEventToEvent) {
-  for (const std::uint64_t number : {732u, 2468u}) EXPECT_EQ(run_scenes_by_events(number, 1).pressed, 1);
+  for (const std::uint64_t number : {732u, 2468u})
+    EXPECT_EQ(run_scenes_by_events({number, number + 1}).pressed, 1);
 }
 
 TEST(MixedScenes, ForcesThatComeToTheirEndEndTheContact) {
   // 2216: within a step of 1 s a force falls below zero, comes back and falls again. 3471: of a body wedged
   // between two pegs a force falls below zero; no force of the wedge, however large, makes up for it.
   for (const std::uint64_t number : {2216u, 3471u}) {
-    EXPECT_EQ(run_scenes_by_events(number, 1, 1e-3).pressed, 0);
+    EXPECT_EQ(run_scenes_by_events({number, number + 1}, 1e-3).pressed, 0);
   }
 }
 
@@ -256,9 +257,9 @@ TEST(MixedScenes, JamsAreSolvedWithoutRestitutionFromEventToEvent) {
 }
 
 TEST(MixedScenesLong, AccountsCloseAndContactsPushFromEventToEvent) {
-  const std::uint64_t count = carom_test::seeds(300, 10000);
-  const EventFindings findings = run_scenes_by_events(0, count);
-  expect_sound(findings, count);
+  const carom_test::SeedRange seeds = carom_test::seeds_from(0, 300, 10000);
+  const EventFindings findings = run_scenes_by_events(seeds);
+  expect_sound(findings, seeds.count());
   RecordProperty("pressed", std::to_string(findings.pressed));
 }
 
@@ -334,9 +335,9 @@ private:
 };
 
 /// Numbers of scenes and of impacts that were compared.
-void compare_modes(std::uint64_t first, std::uint64_t count) {
+void compare_modes(const carom_test::SeedRange& seeds) {
   std::int64_t impacts = 0;
-  for (std::uint64_t number = first; number < first + count; ++number) {
+  for (std::uint64_t number = seeds.first; number < seeds.last; ++number) {
     SCOPED_TRACE("scene " + std::to_string(number));
     const MixedScene scene(number, 3);
     TwoModes modes(scene, 1e-4);
@@ -354,14 +355,14 @@ void compare_modes(std::uint64_t first, std::uint64_t count) {
     }
     impacts += modes.impacts();
   }
-  EXPECT_GE(impacts, static_cast<std::int64_t>(count / 2));  // else nothing was compared
+  EXPECT_GE(impacts, seeds.count() / 2);  // else nothing was compared
 }
 
-TEST(MixedScenes, BothModesTellTheSame) { compare_modes(0, 3); }
+TEST(MixedScenes, BothModesTellTheSame) { compare_modes({0, 3}); }
 
 TEST(MixedScenesLong, BothModesTellTheSame) {
-  compare_modes(3, 7);
-  compare_modes(100, carom_test::seeds(150));
+  compare_modes({3, 7});
+  compare_modes(carom_test::seeds_from(100, 150));
 }
 
 }  // namespace

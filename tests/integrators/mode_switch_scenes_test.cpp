@@ -175,9 +175,9 @@ TEST(ModeSwitch, JointedBodiesComeOutTogether) {
 }
 
 /// Random scenes, changed from time stepping at random instants: no gap is left, the account closes.
-void change_over(std::uint64_t first, std::uint64_t last) {
+void change_over(const carom_test::SeedRange& seeds) {
   int moved = 0, jammed = 0;
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const EventScene scene(seed);
@@ -205,19 +205,19 @@ void change_over(std::uint64_t first, std::uint64_t last) {
       EXPECT_NE(std::string(error.what()).find("has no direction"), std::string::npos) << error.what();
     }
   }
-  EXPECT_GT(moved, static_cast<int>(last - first) / 10);
-  EXPECT_LE(jammed, static_cast<int>(last - first) / 30);
+  EXPECT_GT(moved, seeds.count() / 10);
+  EXPECT_LE(jammed, seeds.count() / 30);
 }
 
-TEST(ModeSwitch, RandomScenesChangeOver) { change_over(0, 60); }
+TEST(ModeSwitch, RandomScenesChangeOver) { change_over({0, 60}); }
 
-TEST(ModeSwitchLong, RandomScenesChangeOver) { change_over(0, carom_test::seeds(400, 4000)); }
+TEST(ModeSwitchLong, RandomScenesChangeOver) { change_over(carom_test::seeds_from(0, 400, 4000)); }
 
 /// Piles in a box, some of their bodies joined, changed to events and back again: bodies that stand in each
 /// other come apart along their joints, and the run goes on.
-void change_piles(std::uint64_t first, std::uint64_t last) {
+void change_piles(const carom_test::SeedRange& seeds) {
   int moved = 0;
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     System system;
@@ -261,18 +261,18 @@ void change_piles(std::uint64_t first, std::uint64_t last) {
       simulation.switch_to(TimeStepping{.step = step});
     }
   }
-  EXPECT_GT(moved, static_cast<int>(last - first));
+  EXPECT_GT(moved, seeds.count());
 }
 
-TEST(ModeSwitch, PilesChangeOver) { change_piles(0, 12); }
+TEST(ModeSwitch, PilesChangeOver) { change_piles({0, 12}); }
 
 // Time stepping keeps contacts closed that turning has opened, by some 1e-6 m: too far for events.
 // (Velocities were projected onto one, and another, of which no rows are known that far off, ended the
 // program.)
 TEST(ModeSwitch, WhatTurningHasOpenedIsOpen) {
-  for (const std::uint64_t seed : {21U, 527U}) change_piles(seed, seed + 1);
+  for (const std::uint64_t seed : {21U, 527U}) change_piles({seed, seed + 1});
 }
 
-TEST(ModeSwitchLong, PilesChangeOver) { change_piles(0, carom_test::seeds(200, 2000)); }
+TEST(ModeSwitchLong, PilesChangeOver) { change_piles(carom_test::seeds_from(0, 200, 2000)); }
 
 }  // namespace

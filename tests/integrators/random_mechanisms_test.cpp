@@ -80,21 +80,21 @@ void both_modes(const Scene& scene, const std::string& name) {
   }
 }
 
-void trees(std::uint64_t first, std::uint64_t last) {
-  for (std::uint64_t seed = first; seed < last; ++seed)
+void trees(const carom_test::SeedRange& seeds) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed)
     both_modes(random_tree(seed), "tree " + std::to_string(seed));
 }
-void loops(std::uint64_t first, std::uint64_t last) {
-  for (std::uint64_t seed = first; seed < last; ++seed)
+void loops(const carom_test::SeedRange& seeds) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed)
     both_modes(random_loop(seed), "loop " + std::to_string(seed));
 }
 
 /// Friction turns round somewhere within a step: errors are of order 1 in the mean over many steps.
-void rubbing(std::uint64_t first, std::uint64_t last) {
+void rubbing(const carom_test::SeedRange& seeds) {
   constexpr double compared = 0.3, coarse = 4e-4, fine_step = 5e-5;
   double logarithm = 0.0;
   int counted = 0;
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     SCOPED_TRACE("rubbing tree " + std::to_string(seed));
     try {
       const Scene scene = rubbing_tree(seed);
@@ -128,12 +128,12 @@ void rubbing(std::uint64_t first, std::uint64_t last) {
   EXPECT_GT(order, 0.9);
 }
 
-TEST(RandomMechanisms, Trees) { trees(0, 4); }
-TEST(RandomMechanisms, Loops) { loops(0, 4); }
+TEST(RandomMechanisms, Trees) { trees({0, 4}); }
+TEST(RandomMechanisms, Loops) { loops({0, 4}); }
 
 // All seeds (shares.h) take some minutes.
-TEST(RandomMechanismsLong, Trees) { trees(4, 4 + carom_test::seeds(56, 496)); }
-TEST(RandomMechanismsLong, TreesThatRub) { rubbing(0, carom_test::seeds(15, 200)); }
-TEST(RandomMechanismsLong, Loops) { loops(4, 4 + carom_test::seeds(20, 196)); }
+TEST(RandomMechanismsLong, Trees) { trees(carom_test::seeds_from(4, 56, 496)); }
+TEST(RandomMechanismsLong, TreesThatRub) { rubbing(carom_test::seeds_from(0, 15, 200)); }
+TEST(RandomMechanismsLong, Loops) { loops(carom_test::seeds_from(4, 20, 196)); }
 
 }  // namespace

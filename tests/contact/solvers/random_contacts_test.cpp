@@ -25,12 +25,11 @@ struct Counts {
 };
 
 // 2 to 12 contacts on one or more rigid bodies; a solution exists for each (random_problems.h).
-void solve_many(std::uint64_t first, int count, double decades) {
+void solve_many(const carom_test::SeedRange& seeds, double decades) {
   SolverChain chain;
   Counts counts;
   std::vector<double> impulse, xi;
-  for (int k = 0; k < count; ++k) {
-    const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     const auto random = contact_test::random_problem(seed, 12, decades);
     ASSERT_TRUE(random.existence_guaranteed);
     impulse.assign(static_cast<std::size_t>(random.problem.rows()), 0.0);
@@ -72,7 +71,7 @@ void solve_many(std::uint64_t first, int count, double decades) {
       "%lld, projection %lld of %lld, enumeration %lld; above 1e-12: %lld; worst residual %.1e; failures "
       "%lld; "
       "energy gain at most %.1e of its terms\n",
-      count, decades, static_cast<long long>(s.accepted[1]), static_cast<long long>(s.tried[1]),
+      seeds.count(), decades, static_cast<long long>(s.accepted[1]), static_cast<long long>(s.tried[1]),
       static_cast<long long>(s.accepted[2]), static_cast<long long>(s.tried[2]),
       static_cast<long long>(s.accepted[3]), static_cast<long long>(s.tried[3]),
       static_cast<long long>(s.accepted[4]), static_cast<long long>(s.tolerated), s.worst_residual,
@@ -82,12 +81,11 @@ void solve_many(std::uint64_t first, int count, double decades) {
 
 // Any directions, each contact with its own e: contacts can jam, and then there need not be a solution. Every
 // problem ends with an answer that is right, a proof that there is none, or a plain not_solved.
-void solve_jams(std::uint64_t first, int count) {
+void solve_jams(const carom_test::SeedRange& seeds) {
   SolverChain chain;
   std::vector<double> impulse, xi;
   int small = 0, small_open = 0;
-  for (int k = 0; k < count; ++k) {
-    const std::uint64_t seed = first + static_cast<std::uint64_t>(k);
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     const auto random = contact_test::random_problem(seed, 12, 3.0, true);
     impulse.assign(static_cast<std::size_t>(random.problem.rows()), 0.0);
     xi.resize(impulse.size());
@@ -110,23 +108,23 @@ void solve_jams(std::uint64_t first, int count) {
       "[   data   ] %d problems that may jam: no solution proved %lld, not solved %lld; up to three "
       "contacts: %d, "
       "of which solved by enumeration %lld, open %d; worst residual %.1e\n",
-      count, static_cast<long long>(s.no_solution), static_cast<long long>(s.not_solved), small,
+      seeds.count(), static_cast<long long>(s.no_solution), static_cast<long long>(s.not_solved), small,
       static_cast<long long>(s.accepted[static_cast<std::size_t>(SolverId::enumeration)]), small_open,
       s.worst_residual);
   EXPECT_EQ(small_open, 0) << "up to three contacts the enumeration decides";
 }
 
-TEST(RandomContacts, JamsAreSolvedOrNamed) { solve_jams(1, 500); }
+TEST(RandomContacts, JamsAreSolvedOrNamed) { solve_jams({1, 501}); }
 
-int count_of(std::uint64_t seeds) { return static_cast<int>(carom_test::seeds(seeds)); }
+TEST(RandomContactsLong, JamsAreSolvedOrNamed) { solve_jams(carom_test::seeds_from(1'000'000, 10'000)); }
 
-TEST(RandomContactsLong, JamsAreSolvedOrNamed) { solve_jams(1'000'000, count_of(10'000)); }
+TEST(RandomContacts, TenThousandProblems) { solve_many({1, 10'001}, 3.0); }
 
-TEST(RandomContacts, TenThousandProblems) { solve_many(1, 10'000, 3.0); }
+TEST(RandomContactsLong, HundredThousandProblems) {
+  solve_many(carom_test::seeds_from(1'000'000, 100'000), 3.0);
+}
 
-TEST(RandomContactsLong, HundredThousandProblems) { solve_many(1'000'000, count_of(100'000), 3.0); }
-
-TEST(RandomContactsLong, MassesOverSixDecades) { solve_many(3'000'000, count_of(50'000), 6.0); }
+TEST(RandomContactsLong, MassesOverSixDecades) { solve_many(carom_test::seeds_from(3'000'000, 50'000), 6.0); }
 
 }  // namespace
 }  // namespace carom

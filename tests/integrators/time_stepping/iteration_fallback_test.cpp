@@ -210,9 +210,9 @@ struct Findings {
   int failed = 0, failed_alone = 0;  // with all iterations, with the fixed point alone
 };
 
-Findings run_scenes(std::uint64_t first, std::uint64_t last, double end) {
+Findings run_scenes(const carom_test::SeedRange& seeds, double end) {
   Findings findings;
-  for (std::uint64_t seed = first; seed < last; ++seed) {
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     SCOPED_TRACE(seed);
     const StiffScene scene(seed);
     TimeStepping alone = scene.options();
@@ -243,7 +243,7 @@ Findings run_scenes(std::uint64_t first, std::uint64_t last, double end) {
 }
 
 TEST(IterationFallback, StiffScenesRunOn) {
-  const Findings findings = run_scenes(0, 10, 0.1);
+  const Findings findings = run_scenes({0, 10}, 0.1);
   EXPECT_EQ(findings.failed, 0);
   EXPECT_GE(findings.failed_alone, 3);
 }
@@ -251,10 +251,10 @@ TEST(IterationFallback, StiffScenesRunOn) {
 // Seen: of 400 scenes 28 end with all iterations: bodies on stiff springs that turn far within a step (of
 // h^2 k/m from 40 on, to 1e4).
 TEST(IterationFallbackLong, StiffScenesRunOn) {
-  const int count = static_cast<int>(carom_test::seeds(50, 400, 50));
-  const Findings findings = run_scenes(10, 10 + static_cast<std::uint64_t>(count), 1.0);
-  EXPECT_LE(findings.failed, count / 10);
-  EXPECT_GE(findings.failed_alone, count / 3);
+  const carom_test::SeedRange seeds = carom_test::seeds_from(10, 50, 400, 50);
+  const Findings findings = run_scenes(seeds, 1.0);
+  EXPECT_LE(findings.failed, seeds.count() / 10);
+  EXPECT_GE(findings.failed_alone, seeds.count() / 3);
 }
 
 // Iterates of sweeps wander by h^2 k/m = 1000 times an error: past the length of the spring, behind which it
