@@ -4,10 +4,11 @@
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
+#include <carom/core/dynamics/answering_bodies.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
-#include <carom/integrators/event_driven/event_motions.h>
+#include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
 
@@ -49,49 +50,15 @@ namespace {
   throw SolverError(message, std::move(failure));
 }
 
-/// Record of a contact that took part in the answer of its island.
-EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std::size_t c, double time,
-                     const EventMotions& before, const double* velocity_after) {
-  const Constraint& contact = island.constraints()[c];
-  EventRecord event;
-  event.motions = before;
-  set_after(contact, velocity_after, assembly, event.motions);
-  event.time = time;
-  event.kind = EventKind::mode_switch;
-  event.contact = contact.key;
-  event.body = assembly.layout()->id(contact.body());
-  if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
-    event.obstacle = {contact.key.b.serial, assembly.system().token()};
-  }
-  for (int row = 0; row < contact.rows; ++row) {
-    const auto at = static_cast<std::size_t>(row);
-    const auto place = static_cast<std::size_t>(island.first_row(c)) + at;
-    event.velocity_before[at] = island.before()[place];
-    event.velocity_after[at] = contact.velocity(row, velocity_after);
-    event.impulse[at] = island.impulses()[place];
-  }
-  event.mode = island.modes()[c];
-  event.outcome = island.report().outcome;
-  event.residual = island.report().residual;
-  event.solver = island.report().solver;
-  const bool resists =
-      c + 1 < island.constraints().size() && island.constraints()[c + 1].type == ConstraintType::rolling;
-  if (resists) event.rolling_moment = island.map().impulse(c + 1, 0);
-  return event;
-}
-
-/// Applies the answer of an island, and appends the records of its contacts.
-void apply_and_record(const Assembly& assembly, const IslandProblem& island, State& trial,
-                      std::vector<EventRecord>& recorded) {
-  std::vector<EventMotions> before;
-  for (const Constraint& contact : island.constraints()) {
-    before.push_back(motions_of(contact, trial.view(), assembly));
-  }
+/// Applies the answer of an island, and records its contacts.
+void apply(const Assembly& assembly, const IslandProblem& island, State& trial, EventBalance& balance) {
+  SolvedImpact impact{
+      .kind = EventKind::mode_switch, .time = trial.time, .problem = island, .velocity = trial.v.data()};
+  impact.energy_before = kinetic_energy_of_answering(assembly, island.constraints(), trial.v.data());
+  balance.note_before(island, trial.view(), assembly);
   island.map().add_velocities(trial.v.data());
-  for (std::size_t c = 0; c < before.size(); ++c) {
-    if (island.constraints()[c].type == ConstraintType::rolling) continue;
-    recorded.push_back(event_of(assembly, island, c, trial.time, before[c], trial.v.data()));
-  }
+  impact.energy_after = kinetic_energy_of_answering(assembly, island.constraints(), trial.v.data());
+  balance.book(impact, assembly);
 }
 
 /// Lists the closed contacts of a component, behind each its rolling resistance.
@@ -189,7 +156,7 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
   GroundPlaces places;
   detector.place(state.time, places);
   std::vector<Constraint> contacts;
-  std::vector<EventRecord> recorded;
+  EventBalance balance;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
     find_closed(detector, places, component, trial, evaluation, contacts);
@@ -209,7 +176,7 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
       problem.respond(joints.empty() ? static_cast<BodyResponse&>(masses) : with_joints);
       problem.set_free_velocity(trial.v.data());
       if (!problem.solve(chain).usable()) fail(detector, of_body.front(), state.time, "no impact is found");
-      apply_and_record(assembly, problem, trial, recorded);
+      apply(assembly, problem, trial, balance);
     }
   }
   const GapProjection::Result moved = move_apart(assembly, detector, places, chain, trial, evaluation);
@@ -218,12 +185,12 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
   driver.demand_start(trial);
   const StoredEnergies stored = stored_energies(assembly, trial.view(), evaluation);
   if (moved.moved) forget_opened(assembly, detector, state, trial, moved, companion);
-  book(stored, chain.statistics(), recorded.size(), companion);
+  book(stored, chain.statistics(), balance.fresh.size(), companion);
   state = std::move(trial);
   report = {};
   report.time = state.time;
   report.projected = shift;
-  events.append(std::move(recorded));
+  events.append(std::move(balance.fresh));
 }
 
 }  // namespace carom

@@ -1,5 +1,6 @@
 // Problem: a clock group from event to event, with output in between.
 
+#include <carom/contact/contact_parties.h>
 #include <carom/contact/contact_point.h>
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/group_stages.h>
@@ -166,7 +167,7 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
   parts_.motion.sample(parts_.clock.output, parts_.output.y().data(), Forces::all, at);
   // Of forces that are not unique those that the law allows.
   parts_.motion.active().margins(parts_.memory->detection.margins);
-  const Layout& layout = *parts_.motion.model().assembly->layout();
+  const Assembly& assembly = *parts_.motion.model().assembly;
   for (const ActiveContact& contact : parts_.motion.active().list()) {
     if (contact.at.type == ConstraintType::rolling) {
       out.back().rolling_moment = contact.tangential;
@@ -174,14 +175,9 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;
       force.key = closed.key;
-      force.body = layout.id(closed.body());
-      if (closed.key.b.owner == FeatureKey::Owner::obstacle) {
-        force.obstacle = {closed.key.b.serial, force.body.token};
-      } else {
-        force.other = layout.id(closed.blocks[1].body);
-      }
-      find_point_of_contact(closed, at.state.q.data() + layout.bodies()[closed.body()].q, force.point,
-                            force.normal);
+      set_parties(closed, assembly, force);
+      find_point_of_contact(closed, at.state.q.data() + assembly.layout()->bodies()[closed.body()].q,
+                            force.point, force.normal);
       force.gap = closed.gap;
       force.velocity = {closed.normal_velocity(at.state.v.data()),
                         closed.tangential_velocity(at.state.v.data())};

@@ -1,5 +1,6 @@
 // Problem: every impulse does its work on a line of the ledger, and is recorded.
 
+#include <carom/contact/contact_parties.h>
 #include <carom/contact/contact_point.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/integrators/event_driven/event_balance.h>
@@ -91,13 +92,7 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
   event.instant = instant_;
   if (contact.bodies == 0) return event;
   event.contact = contact.key;
-  event.body = assembly.layout()->id(contact.body());
-  if (contact.type == ConstraintType::contact && contact.bodies == 2) {
-    event.other = assembly.layout()->id(contact.blocks[1].body);
-  }
-  if (contact.key.b.owner == FeatureKey::Owner::obstacle) {
-    event.obstacle = {contact.key.b.serial, assembly.system().token()};
-  }
+  set_parties(contact, assembly, event);
   return event;
 }
 

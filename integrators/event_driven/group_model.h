@@ -81,17 +81,12 @@ struct CAROM_API GroupModel {
   }
   /// Kinetic energy of the group [J]. \param velocities of the model
   [[nodiscard]] double kinetic_energy(const double* velocities) const;
-  /// Kinetic energy of all bodies that answer an impulse along one of some constraints [J].
-  [[nodiscard]] double kinetic_energy_of(std::span<const Constraint> constraints,
-                                         const double* velocities) const;
   /// The first element without a direction in a sample (find_without_direction()). \param speed [m/s]
   [[nodiscard]] ElementId find_without_direction(const MotionSample& at, double speed) const;
   /// Tells, for messages, what drives the joints of the group (driven_by()).
   [[nodiscard]] std::string driven() const;
 
 private:
-  [[nodiscard]] double kinetic_energy_of_mechanism(Index body, const double* velocities) const;
-
   std::vector<Index> bound_places_;  // by pair; empty without bounds
 };
 

@@ -3,6 +3,7 @@
 #include <carom/contact/impact_restitution.h>
 #include <carom/contact/impact_rules.h>
 #include <carom/contact/pressed_bodies.h>
+#include <carom/core/dynamics/answering_bodies.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 
 #include <algorithm>
@@ -221,11 +222,11 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   const GroupModel& model = at.motion.model();
   SolvedImpact impact{.kind = kind, .time = at.time, .problem = problem, .velocity = at.velocities()};
   impact.note = kind == EventKind::impact_without_collision ? ImpactNote{} : memory_->note;
-  impact.energy_before = model.kinetic_energy_of(problem.constraints(), at.velocities());
+  impact.energy_before = kinetic_energy_of_answering(*model.assembly, problem.constraints(), at.velocities());
   at.balance.note_before(problem, at.now.view(), *model.assembly);
   problem.map().add_velocities(at.velocities());
   at.take_velocities();
-  impact.energy_after = model.kinetic_energy_of(problem.constraints(), at.velocities());
+  impact.energy_after = kinetic_energy_of_answering(*model.assembly, problem.constraints(), at.velocities());
   // Before the impacts of this instant are remembered.
   if (kind == EventKind::accumulation)
     impact.accumulation_time = accumulation_.end(at.time, problem.constraints());

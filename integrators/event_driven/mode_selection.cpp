@@ -4,6 +4,7 @@
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/pressed_bodies.h>
+#include <carom/core/dynamics/answering_bodies.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 #include <carom/integrators/run/time_resolution.h>
 
@@ -312,7 +313,8 @@ void ModeSelection::record_changes(EventInstant& at) const {
           event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
     }
     note_motions(contact, at, event);
-    event.energy_before = event.energy_after = model.kinetic_energy_of({&contact, 1}, velocity);
+    event.energy_before = event.energy_after =
+        kinetic_energy_of_answering(*model.assembly, {&contact, 1}, velocity);
     event.mode = mode;
   };
   std::vector<char>& is_active = memory_->is_active;

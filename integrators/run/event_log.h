@@ -85,10 +85,10 @@ struct EventRecord : EventParts, EventSolution, ImpactNote {
   EventKind kind = EventKind::impact;       ///< what happened
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
-  std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts
-  std::array<double, 3> point{};            ///< of an impact where it touches [m]; 0 of a limit
+  std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts and changes of the mode
+  std::array<double, 3> point{};            ///< of both, where it touches [m]; 0 of a limit
   std::array<double, 3> normal{};           ///< likewise unit vector towards `body`
-  double gap = 0.0;                         ///< of an impact, then [m]
+  double gap = 0.0;                         ///< of both, then [m]
   double energy_before = 0.0;               ///< kinetic energy of all bodies that answer [J]
   double energy_after = 0.0;                ///< likewise after
   /// Motions of the bodies that the contact is of, first that which `body` names; none of events without a

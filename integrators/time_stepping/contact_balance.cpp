@@ -1,5 +1,6 @@
 // Problem: tell the ledger and the report what the impulses of contacts, limits and friction in joints did.
 
+#include <carom/contact/contact_parties.h>
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/fetch_contact.h>
@@ -75,14 +76,9 @@ public:
 private:
   /// Which contact it is, and where.
   void write_place(const Constraint& at, ContactRecord& entry) const {
-    const Layout& layout = *assembly_.layout();
-    const BodySlot body = layout.bodies()[at.body()];
-    const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
-    const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
+    const BodySlot body = assembly_.layout()->bodies()[at.body()];
     entry.key = at.key;
-    entry.body = {body.serial, layout.token()};
-    entry.obstacle = of_ground ? ObstacleId{at.key.b.serial, assembly_.system().token()} : ObstacleId{};
-    entry.other = of_bodies ? BodyId{layout.bodies()[at.blocks[1].body].serial, layout.token()} : BodyId{};
+    set_parties(at, assembly_, entry);
     entry.directions = at.rows;
     entry.gap = at.gap;
     entry.point = entry.normal = {};

@@ -1,0 +1,23 @@
+#pragma once
+
+/// \file
+/// Who takes part in a contact, as records of contacts and events name them.
+
+#include <carom/core/assembly.h>
+#include <carom/core/constraint.h>
+#include <carom/core/ids.h>
+
+namespace carom {
+
+/// Sets `body`, and `other` or `obstacle` of a record, or none of a joint limit, from its constraint.
+template <class Record>
+void set_parties(const Constraint& at, const Assembly& assembly, Record& out) {
+  const Layout& layout = *assembly.layout();
+  const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
+  const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
+  out.body = layout.id(at.body());
+  out.obstacle = of_ground ? ObstacleId{at.key.b.serial, assembly.system().token()} : ObstacleId{};
+  out.other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
+}
+
+}  // namespace carom
