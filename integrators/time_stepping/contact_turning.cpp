@@ -151,6 +151,13 @@ bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const
   return any;
 }
 
+void ContactTurning::give_up(std::span<const StepIsland> islands) {
+  joints_->forget_paths();
+  tries_ = 0;
+  for (Turned& turned : turned_) turned.now = turned.start;
+  for (const StepIsland& island : islands) restore(island);
+}
+
 void ContactTurning::restore(const StepIsland& island) const {
   for (Constraint& constraint : island.constraints) {
     const std::size_t place = find(constraint);

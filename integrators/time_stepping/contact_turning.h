@@ -46,6 +46,9 @@ public:
   /// answers since the last time, or no less. \param residual the largest certificate of the answers
   [[nodiscard]] bool turn(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands,
                           double residual);
+  /// Brings the constraints back to the start of the step. Contacts between which a body jams may press it,
+  /// as they turn, by what is an error of the step; no impulses hold then, but along the rows at the start.
+  void give_up(std::span<const StepIsland> islands);
   /// Brings constraints that were found anew to the path again.
   void restore(const StepIsland& island) const;
   /// Work of the impulses of a problem on what turning makes of the velocities along its rows: an error of

@@ -81,6 +81,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
     for (const FlightClosing& contact : closing) closed_.push_back(contact.key);
     const double hit = closing.front().share;
     if (hit > now) {
+      flight.constraints = of_flight_.begin;  // they may have turned on the longer way
       for (Constraint& contact : flight.constraints) contact.shorten((hit - now) / (1.0 - now));
       flight.end = hit;
       if (!fly(at, flight)) return false;
@@ -133,7 +134,9 @@ bool LocatedMotion::fly(const LocatedBody& at, MotionPhase& flight) {
     const std::array<double, 6> before = flight.v1;
     const bool turned = turn(at, flight);
     write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
-    if (!fly_once(at, flight)) return false;
+    if (!fly_once(at, flight) || flight.problem.restitution_factor() == 0.0) {
+      return fly_along_begin(at, flight);
+    }
     if (!turned) break;
     any_turned = true;
     double change = 0.0, size = 0.0;
@@ -160,6 +163,15 @@ void LocatedMotion::book_turning(MotionPhase& flight) const {
       flight.turning_work += 0.5 * flight.problem.map().impulse(c, i) * made_up;
     }
   }
+}
+
+/// Contacts between which a body jams may press it, as they turn, by what is an error of the step: then no
+/// impulses hold along the directions halfway. Along those at the begin some always do, on ground at rest.
+bool LocatedMotion::fly_along_begin(const LocatedBody& at, MotionPhase& flight) {
+  failed_ = nullptr;
+  flight.constraints = of_flight_.begin;
+  write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
+  return fly_once(at, flight);
 }
 
 bool LocatedMotion::fly_once(const LocatedBody& at, MotionPhase& flight) {

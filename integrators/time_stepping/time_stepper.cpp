@@ -131,13 +131,24 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   passes_ = 1;
   while (turning_ != nullptr &&
          turning_->turn(in, parts_.trial, islands, balance_.result().tally.worst_residual)) {
-    balance_.begin(in);
-    capped_.begin();
-    memory_.iterations.clear();
-    advance_all(in);
     ++passes_;
+    try {
+      advance_anew(in);
+    } catch (const SolverError&) {
+      turning_->give_up(islands);
+      advance_anew(in);
+      break;
+    }
   }
   return balance_.finish(in);  // works of what acted, records
+}
+
+/// Forgets what was booked of the step.
+void TimeStepper::advance_anew(const StepInput& in) {
+  balance_.begin(in);
+  capped_.begin();
+  memory_.iterations.clear();
+  advance_all(in);
 }
 
 void TimeStepper::advance_all(const StepInput& in) {

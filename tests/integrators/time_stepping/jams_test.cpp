@@ -106,6 +106,21 @@ TEST(Jams, WhereImpactsAreLocated) {
   expect_jams(run_troughs(1, {.step = 1e-3, .impacts = ImpactTimes::located}, {0, 10}));
 }
 
+// No impulses hold jammed bodies along directions halfway, which turn into each other: those at the start do.
+TEST(Jams, WhereDirectionsThatTurnPressTheBody) {
+  struct Scene {
+    std::uint64_t seed;
+    int bodies;
+  };
+  for (const Scene& scene : {Scene{7000140, 1}, Scene{30000164, 2}, Scene{30000170, 2}, Scene{30000010, 4}}) {
+    SCOPED_TRACE(scene.seed);
+    Simulation simulation(trough(scene.seed, scene.bodies),
+                          TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located});
+    EXPECT_NO_THROW(simulation.run_until(1.0));
+    EXPECT_TRUE(ledger_closes(simulation.energy()));
+  }
+}
+
 TEST(Jams, WhereImpactsAreResolvedAtTheStartOfSteps) {
   expect_jams(run_troughs(2, {.step = 1e-3, .impact_rules = {.energy_gain = EnergyGain::limit}}, {0, 10}));
 }
