@@ -14,11 +14,7 @@ bool BoundFactors::write(std::span<const ImpulseDirection> directions, const Del
     return false;
   }
   ResponseFactors& factors = problem.factors();
-  factors.inverse_mass.clear();
-  for (const Delassus::Slot& slot : slots_) {
-    factors.inverse_mass.insert(factors.inverse_mass.end(), slot.inverse_mass.begin(),
-                                slot.inverse_mass.end());
-  }
+  write_factor_masses(slots_, factors);
   write_rows(directions, factors);
   write_answers(responses, factors);
   return true;

@@ -90,7 +90,6 @@ private:
   };
   [[nodiscard]] int slot_of(const Constraint& constraint, std::size_t body, const BodyResponse& response);
   [[nodiscard]] int add_slot(const Constraint::Block& block, const BodyResponse& response);
-  void write_masses(ResponseFactors& factors) const;
   void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);

@@ -85,16 +85,8 @@ bool Delassus::build_factors(std::span<const ImpulseDirection> directions, Range
   if (factored_ && some.end < directions.size()) return true;
   // Bodies are no slots until the next problem.
   for (const Slot& own : slots_) slot_of_body_[own.block.body] = ResponseFactors::no_slot;
-  if (factored_) write_masses(factors);
+  if (factored_) write_factor_masses(slots_, factors);
   return factored_;
-}
-
-void Delassus::write_masses(ResponseFactors& factors) const {
-  factors.inverse_mass.clear();
-  for (const Slot& slot : slots_) {
-    factors.inverse_mass.insert(factors.inverse_mass.end(), slot.inverse_mass.begin(),
-                                slot.inverse_mass.end());
-  }
 }
 
 void Delassus::add_factored_response(std::span<const double> impulses, double* x, double scale) const {

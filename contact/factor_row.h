@@ -1,12 +1,15 @@
 #pragma once
 
 /// \file
-/// Rows of constraints as factors of a contact problem have them (solvers/response_factors.h).
+/// Rows of constraints, and masses of bodies, as factors of a contact problem have them
+/// (solvers/response_factors.h).
 
+#include <carom/contact/delassus.h>
 #include <carom/contact/solvers/response_factors.h>
 #include <carom/core/constraint.h>
 
 #include <cstddef>
+#include <span>
 
 namespace carom {
 
@@ -22,6 +25,15 @@ inline void write_factor_row(const Constraint& at, const double* h, ResponseFact
     to[1] = h[1];
     if (turns) to[2] = h[2];
     h += turns ? 3 : 2;
+  }
+}
+
+/// Writes inverse masses of bodies, slot by slot.
+inline void write_factor_masses(std::span<const Delassus::Slot> slots, ResponseFactors& factors) {
+  factors.inverse_mass.clear();
+  for (const Delassus::Slot& slot : slots) {
+    factors.inverse_mass.insert(factors.inverse_mass.end(), slot.inverse_mass.begin(),
+                                slot.inverse_mass.end());
   }
 }
 

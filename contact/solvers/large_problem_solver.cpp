@@ -17,6 +17,9 @@ namespace {
 /// What rests stays where it is, to the rounding of places.
 constexpr double exact_aim = 1e-14;
 
+/// Rows up to which W is made in full, at last: half a gigabyte.
+constexpr int most_dense_rows = 8192;
+
 /// True of a single body, and of bodies that answer together.
 bool demands_exact(const ContactProblem& problem) {
   return problem.factors().any_bound() || problem.factors().slots() == 1;
@@ -66,7 +69,7 @@ Outcome LargeProblemSolver::judged(double residual) const {
 bool LargeProblemSolver::has_dense(const ContactProblem& problem, const ContactReport& report) const {
   const std::size_t contacts = problem.groups().size();
   if (contacts <= most_exact) return true;
-  if (!demands_exact(problem)) return false;
+  if (!demands_exact(problem) || problem.rows() > most_dense_rows) return false;
   return !report.usable() || (contacts <= most_polished && report.outcome != Outcome::solved);
 }
 
@@ -115,7 +118,8 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   const Outcome swept = judged(found.value);
   const bool is_left = swept == Outcome::not_solved || (is_exacting && swept != Outcome::solved);
   const bool is_polished =
-      is_left && (contacts <= most_polished || (is_exacting && swept == Outcome::not_solved));
+      is_left && (contacts <= most_polished ||
+                  (is_exacting && swept == Outcome::not_solved && problem.rows() <= most_dense_rows));
   if (is_small ? !(found.value <= NewtonPolish::round_off) : is_polished) {
     polish(problem, impulse);
     found = judge(problem, impulse, xi);
